@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
 from crowdbot.core.crowd.engine import NO_STIFFNESSES, NONE
@@ -64,7 +63,7 @@ def whole_step(
     robots, everybody = np.zeros((0, 8)), np.ones(n, np.bool_)
     people = AgentParameters.of(agents, np.full(n, CONTACT_STIFFNESS))
     place = WorldParameters.of(world)
-    scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
+    scratch = Scratch.of(n)
 
     def step() -> None:
         view = CrowdView(
@@ -76,17 +75,10 @@ def whole_step(
         if seen is not None:
             seen.append(view)
         rows[:, s.AX : s.AY + 1] = desired_acceleration(chosen, view)
-        tick(
-            flat,
-            robots,
-            DISC[None],
-            NONE,
-            NO_STIFFNESSES,
-            world.pillars,
-            DT,
-            *people,
-            *place,
-            *scratch,
-        )
+        given: tuple[Any, ...] = (
+            flat, robots, DISC[None], NONE, NO_STIFFNESSES, world.pillars, DT,
+            *people, *place, *scratch,
+        )  # fmt: skip
+        tick(*given)
 
     return step

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 import crowdbot.core.crowd.state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
-from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration, relaxation_time_of
 from crowdbot.core.crowd.groups import groups_of, hold_together
@@ -66,7 +65,7 @@ class CrowdEngine:
     Attributes:
         policies: how they decide, as `Agents.policy` numbers them.
         aim: column of the state where the point begins that policies see as the goal: the goal,
-            or the corner on the way to it.
+            or a point on the way to it.
 
     Raises:
         ValueError: an agent refers to a policy or a portal that does not exist.
@@ -98,17 +97,17 @@ class CrowdEngine:
         self._place = WorldParameters.of(world)
         dt = self._ticks_per_decision * TICK
         self._steering = parts_of(world.steering)
+        self._heeds_robots = ~agents.ignores_robot
         self._evades = world.response.by_decision(dt)
         self._router = (
             None
             if world.routing is None
             else Router(agents, world.walls, world.pillars, world.routing)
         )
-        self.aim = s.GOAL_X if self._router is None else s.AIM_X
+        self.aim = s.GOAL_X if self._router is None else s.WAYPOINT_X
         self._members, self._ends = groups_of(agents)
-        self._cohesion = None if world.cohesion is None else world.cohesion.row
-        n = len(agents)
-        self._scratch = Scratch(np.zeros((n, 2)), np.zeros((n, PLACED_COLUMNS)), np.arange(n))
+        self._cohesion = None if world.cohesion is None else world.cohesion.forces
+        self._scratch = Scratch.of(len(agents))
 
     def initial_state(self, robots: int = 1) -> Array:
         """The state at t = 0, with room for the contacts of some robots.
@@ -116,22 +115,22 @@ class CrowdEngine:
         Those who start at once walk to their first goal at preferred speed; others wait.
         """
         flat = s.blank(len(self.agents), robots)
-        _, rows = s.view(flat)
+        (_, rows), people = s.view(flat), s.people_in(flat)
         a = self.agents
         rows[:, s.X], rows[:, s.Y] = a.x, a.y
         for i in range(len(a)):
             if a.at_goal[i] == PORTAL:
-                draw_goal(rows, i, a.id, a.radius, a.flow[i], self._place, a.x[i], a.y[i])
+                draw_goal(people, i, self._people, self._place, a.x[i], a.y[i])
             else:
-                rows[i, s.WAYPOINT] = a.at_goal[i] == ONWARD
-                head_for(rows, i, self._people, self._place.goal_key)
+                rows[i, s.ROUTE_POINT] = a.at_goal[i] == ONWARD
+                head_for(people, i, self._people, self._place.goal_key)
         if self._router is not None:
-            self._router.find(rows, 0.0)
+            self._router.find(people, 0.0)
         for i in range(len(a)):
             if a.start_time[i] > 0.0:
                 rows[i, s.WAITING] = s.NOT_YET
             else:
-                enter(rows, i, a.x[i], a.y[i], a.preferred_speed[i], 0.0)
+                enter(people, i, a.x[i], a.y[i], a.preferred_speed[i], 0.0)
         rows[:, s.ON_TRIP] = (a.at_goal == PORTAL) | (np.diff(a.first) > 0)
         to_goal = rows[:, self.aim : self.aim + 2] - rows[:, s.X : s.Y + 1]
         distance = np.hypot(to_goal[:, :1], to_goal[:, 1:])
@@ -148,17 +147,18 @@ class CrowdEngine:
 
     def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
         """(N,) who begins with a stay: where its first goal is, which is a point."""
-        a, people = self.agents, self._people
-        begins = a.first[:-1][people.stays]
-        found = people.stays.copy()
+        a = self.agents
+        found: NDArray[np.bool_] = self._people.traits["stays"] != 0.0
+        stays = found.copy()
+        begins = a.first[:-1][stays]
         away = np.hypot(
-            rows[people.stays, s.X] - a.route[begins, 0],
-            rows[people.stays, s.Y] - a.route[begins, 1],
+            rows[stays, s.X] - a.route[begins, 0],
+            rows[stays, s.Y] - a.route[begins, 1],
         )
-        found[people.stays] = (
-            (away <= a.radius[people.stays])
+        found[stays] = (
+            (away <= a.radius[stays])
             & (a.goal_area[begins, 0] == 0.0)
-            & ((a.pause[begins] > 0.0) | (a.ahead[people.stays] >= 0))
+            & ((a.pause[begins] > 0.0) | (a.ahead[stays] >= 0))
         )
         return found
 
@@ -262,12 +262,12 @@ class CrowdEngine:
         return np.array(times), np.array(positions)
 
     def _decide(self, flat: Array, robots: Array, outlines: Array) -> None:
-        _, rows = s.view(flat)
+        (_, rows), people = s.view(flat), s.people_in(flat)
         if not self.world.robot_visible:
             robots = np.where(_MOTION, 0.0, robots)
         if self._router is not None:
             number = int(flat[s.TICK]) // self._ticks_per_decision
-            self._router.find(rows, self._ticks_per_decision * TICK, number)
+            self._router.find(people, self._ticks_per_decision * TICK, number)
         for group in self._groups if len(robots) else self._groups_alone:
             shown = robots[:, _SEEN] if group.sees_robot and len(robots) else _NOT_SHOWN
             view = self._view(flat, rows, group.members, shown)
@@ -280,21 +280,21 @@ class CrowdEngine:
                 wanted = steer(self._steering, view, relaxation, wanted)
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
         if self._router is not None:
-            squeeze(rows, self.agents.max_acceleration)
+            squeeze(people, self.agents.max_acceleration)
         if self._cohesion is not None and len(self._members):
             hold_together(
-                rows, self._members, self._ends, self.agents.max_acceleration,
+                people, self._members, self._ends, self.agents.max_acceleration,
                 self._place.boundary, self._cohesion,
             )  # fmt: skip
-        self._evade(flat, rows, robots, outlines)
+        self._evade(flat, people, robots, outlines)
 
-    def _evade(self, flat: Array, rows: Array, robots: Array, outlines: Array) -> None:
-        """Those who have noticed robots change what they want, whatever their policy is."""
+    def _evade(self, flat: Array, people: s.People, robots: Array, outlines: Array) -> None:
+        """Change what people want who have noticed robots, whatever their policy is."""
         if not len(robots):
             return
-        people, now = self._people, float(flat[s.TICK]) * TICK
+        now = float(flat[s.TICK]) * TICK
         evade_robots(
-            rows, people.radius, people.heeds_robot, self.agents.late, robots, outlines,
+            people, self.agents.radius, self._heeds_robots, self.agents.late, robots, outlines,
             self._evades, now,
         )  # fmt: skip
 

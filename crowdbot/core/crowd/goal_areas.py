@@ -5,48 +5,69 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.support.compile import kernel
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.support.records import record_type
+
+
+class PlaceRecord:
+    """A point of a route, or where people come in.
+
+    Attributes:
+        x, y: middle, m.
+        width, height: size along its own x and y, m; zeros: the point itself.
+        turn: its rotation, rad.
+        pause: how long people stay there, s.
+    """
+
+    x: float
+    y: float
+    width: float
+    height: float
+    turn: float
+    pause: float
+
+
+PLACE = record_type(PlaceRecord)
 
 
 @kernel
 def point_in_area(
-    x: float, y: float, size: Array, margin: float, u: float, v: float
+    x: float, y: float, area: PlaceRecord, margin: float, u: float, v: float
 ) -> tuple[float, float]:
     """The point of an area, shrunk by a margin, at fractions u and v of its own x and y.
 
     Args:
         x, y: middle of the area, m.
-        size: (3,) size along its own x and y (m) and rotation (rad).
+        area: its size.
         margin: distance from its sides where there is room, m.
     """
-    a = (2.0 * u - 1.0) * max(0.0, 0.5 * size[0] - margin)
-    b = (2.0 * v - 1.0) * max(0.0, 0.5 * size[1] - margin)
-    c, s = math.cos(size[2]), math.sin(size[2])
+    a = (2.0 * u - 1.0) * max(0.0, 0.5 * area.width - margin)
+    b = (2.0 * v - 1.0) * max(0.0, 0.5 * area.height - margin)
+    c, s = math.cos(area.turn), math.sin(area.turn)
     return x + c * a - s * b, y + s * a + c * b
 
 
 @kernel
 def into_area(
-    px: float, py: float, x: float, y: float, size: Array, margin: float
+    px: float, py: float, x: float, y: float, area: PlaceRecord, margin: float
 ) -> tuple[float, float]:
     """The point of an area, shrunk by a margin, that is nearest to p in the area's own frame."""
-    c, s = math.cos(size[2]), math.sin(size[2])
+    c, s = math.cos(area.turn), math.sin(area.turn)
     a, b = c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
-    ha, hb = max(0.0, 0.5 * size[0] - margin), max(0.0, 0.5 * size[1] - margin)
+    ha, hb = max(0.0, 0.5 * area.width - margin), max(0.0, 0.5 * area.height - margin)
     a, b = min(max(a, -ha), ha), min(max(b, -hb), hb)
     return x + c * a - s * b, y + s * a + c * b
 
 
 @kernel
 def area_fraction(
-    x0: float, y0: float, x1: float, y1: float, x: float, y: float, size: Array
+    x0: float, y0: float, x1: float, y1: float, x: float, y: float, area: PlaceRecord
 ) -> float:
     """Fraction of the way from p0 to p1 at which an area is entered; above 1 if it is not."""
-    c, s = math.cos(size[2]), math.sin(size[2])
+    c, s = math.cos(area.turn), math.sin(area.turn)
     a0, b0 = c * (x0 - x) + s * (y0 - y), c * (y0 - y) - s * (x0 - x)
     a1, b1 = c * (x1 - x) + s * (y1 - y), c * (y1 - y) - s * (x1 - x)
     enter, leave = 0.0, 1.0
-    for start, step, half in ((a0, a1 - a0, 0.5 * size[0]), (b0, b1 - b0, 0.5 * size[1])):
+    for start, step, half in ((a0, a1 - a0, 0.5 * area.width), (b0, b1 - b0, 0.5 * area.height)):
         if step == 0.0:
             if abs(start) > half:
                 return 2.0
@@ -56,4 +77,4 @@ def area_fraction(
     return enter if enter <= leave else 2.0
 
 
-__all__ = ["area_fraction", "into_area", "point_in_area"]
+__all__ = ["PLACE", "PlaceRecord", "area_fraction", "into_area", "point_in_area"]

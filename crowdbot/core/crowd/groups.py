@@ -12,14 +12,30 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core.crowd.agents import Agents
-from crowdbot.core.crowd.state import AX, AY, DIR_X, DIR_Y, ON_TRIP, PRESENT, VX, VY, WAITING, X, Y
+from crowdbot.core.crowd.state import (
+    PRESENT,
+    People,
+)
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows, record_type, record_values, rows_in
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Members who are farther away are out of sight, and do not count; ours, m.
 SIGHT = 8.0
-# Entries of a row of parameters.
-_GAZE, _COHESION, _REPULSION, _HALF_VIEW, _DISTANCE, _LIMIT = range(6)
+
+
+class GroupForces:
+    """What `hold_together` takes, see `Cohesion`; half_view: half the field of view, rad."""
+
+    gaze: float
+    cohesion: float
+    repulsion: float
+    half_view: float
+    distance: float
+    limit: float
+
+
+_FORCES = record_type(GroupForces)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,19 +50,25 @@ class Cohesion:
     limit: float = 3.0
 
     @property
-    def row(self) -> Array:
-        """The numbers as `hold_together` takes them."""
-        return np.array(
-            [self.gaze, self.cohesion, self.repulsion, 0.5 * self.field_of_view, self.distance,
-             self.limit]
-        )  # fmt: skip
+    def forces(self) -> Rows[GroupForces]:
+        """(1,) the numbers as `hold_together` takes them."""
+        numbers = record_values(
+            _FORCES,
+            gaze=self.gaze,
+            cohesion=self.cohesion,
+            repulsion=self.repulsion,
+            half_view=0.5 * self.field_of_view,
+            distance=self.distance,
+            limit=self.limit,
+        )
+        return rows_in(numbers, _FORCES)
 
 
 def groups_of(agents: Agents) -> tuple[Indices, Indices]:
     """Rows of all members, group by group, and where in them each group begins and the last ends.
 
     Returns:
-        (M,) rows in the order of their ids, and (G + 1,) places; nothing of who is alone.
+        (M,) rows in the order of their ids, and (G + 1,) places; without people who are alone.
     """
     found: list[np.ndarray[tuple[int], np.dtype[np.int64]]] = []
     for number in np.unique(agents.group[agents.group >= 0]):
@@ -59,66 +81,72 @@ def groups_of(agents: Agents) -> tuple[Indices, Indices]:
 
 @kernel
 def hold_together(
-    agents: Array, members: Indices, ends: Indices, most: Array, boundary: Array, forces: Array
+    agents: People,
+    members: Indices,
+    ends: Indices,
+    most: Array,
+    boundary: Array,
+    parameters: Rows[GroupForces],
 ) -> None:
     """Add what groups want to the desired acceleration of each member who is on its way.
 
     Args:
-        agents: rows of the crowd's state, changed in place.
+        agents: of the crowd's state, changed in place.
         members, ends: see `groups_of`.
         most: (N,) largest acceleration by own will, m/s^2.
         boundary: (4,) x0, x1, y0, y1 of a torus, m; infinite elsewhere.
-        forces: see `Cohesion.row`.
+        parameters: see `Cohesion.forces`.
     """
+    forces = parameters[0]
     for g in range(ends.shape[0] - 1):
         for a in range(ends[g], ends[g + 1]):
             i = members[a]
-            if agents[i, WAITING] != PRESENT or agents[i, ON_TRIP] == 0.0:
+            if agents[i].waiting != PRESENT or agents[i].on_trip == 0.0:
                 continue
             ax, ay = _pull(agents, i, members, ends[g], ends[g + 1], boundary, forces)
-            scale = _within(ax, ay, forces[_LIMIT])
-            ax, ay = agents[i, AX] + scale * ax, agents[i, AY] + scale * ay
+            scale = _within(ax, ay, forces.limit)
+            ax, ay = agents[i].ax + scale * ax, agents[i].ay + scale * ay
             scale = _within(ax, ay, most[i])
-            agents[i, AX], agents[i, AY] = scale * ax, scale * ay
+            agents[i].ax, agents[i].ay = scale * ax, scale * ay
 
 
 @kernel
 def _pull(
-    agents: Array,
+    agents: People,
     i: int,
     members: Indices,
     begin: int,
     end: int,
     boundary: Array,
-    forces: Array,
+    forces: GroupForces,
 ) -> tuple[float, float]:
     """Acceleration of agent i by the others of its group, m/s^2."""
     count, mx, my, ax, ay = 1, 0.0, 0.0, 0.0, 0.0
     for b in range(begin, end):
         j = members[b]
-        if j == i or agents[j, WAITING] != PRESENT:
+        if j == i or agents[j].waiting != PRESENT:
             continue
-        dx = _nearest(agents[j, X] - agents[i, X], boundary[1] - boundary[0])
-        dy = _nearest(agents[j, Y] - agents[i, Y], boundary[3] - boundary[2])
+        dx = _nearest(agents[j].x - agents[i].x, boundary[1] - boundary[0])
+        dy = _nearest(agents[j].y - agents[i].y, boundary[3] - boundary[2])
         distance = math.hypot(dx, dy)
         if distance > SIGHT:
             continue
         count += 1
         mx += dx
         my += dy
-        if 0.0 < distance < forces[_DISTANCE]:
-            ax -= forces[_REPULSION] * dx / distance
-            ay -= forces[_REPULSION] * dy / distance
+        if 0.0 < distance < forces.distance:
+            ax -= forces.repulsion * dx / distance
+            ay -= forces.repulsion * dy / distance
     away = math.hypot(mx, my) / count  # to the middle of all, the agent among them
     if count == 1 or away == 0.0:
         return ax, ay
     ux, uy = mx / count / away, my / count / away
     if away > 0.5 * (count - 1):
-        ax += forces[_COHESION] * ux
-        ay += forces[_COHESION] * uy
-    cosine = min(1.0, max(-1.0, agents[i, DIR_X] * ux + agents[i, DIR_Y] * uy))
-    turn = max(0.0, math.acos(cosine) - forces[_HALF_VIEW])
-    return ax - forces[_GAZE] * turn * agents[i, VX], ay - forces[_GAZE] * turn * agents[i, VY]
+        ax += forces.cohesion * ux
+        ay += forces.cohesion * uy
+    cosine = min(1.0, max(-1.0, agents[i].dir_x * ux + agents[i].dir_y * uy))
+    turn = max(0.0, math.acos(cosine) - forces.half_view)
+    return ax - forces.gaze * turn * agents[i].vx, ay - forces.gaze * turn * agents[i].vy
 
 
 @kernel

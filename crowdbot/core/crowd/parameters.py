@@ -7,79 +7,98 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.contact.pedestrian_contact import PLACED, PlacedRecord
+from crowdbot.core.crowd.goal_areas import PLACE, PlaceRecord
 from crowdbot.core.crowd.periodic_boundary import ENDLESS
+from crowdbot.core.crowd.response.parameters import TickResponse
+from crowdbot.core.crowd.traits import TRAITS, TraitsRecord
 from crowdbot.core.crowd.world import CrowdWorld
+from crowdbot.core.support.records import RecordType, Rows, record_type, rows_of
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
 class AgentParameters(NamedTuple):
-    """Columns of `Agents`, (N,) each; units are those of `Agents`.
+    """What people keep for the whole run.
 
     Attributes:
-        id, radius, mass, preferred_speed, max_speed, start_time, at_goal, flow: as there.
-        route, first: (W, 2), (N + 1,) as there.
-        entry_order: rows of agents by id: the order in which they enter.
-        heeds_robot: whether an agent steers away from robots.
-        push: stiffness of contacts with people, walls and pillars, 1/s^2.
-        goal_area, pause, ahead, origin, guide, abreast: as in `Agents`.
-        stays: whether an agent may have reason to stay at a goal for a while.
+        traits: (N,) of each.
+        route: (W,) points of all routes.
+        origin: (N,) where each comes in.
+        entry_order: (N,) rows of agents by id: the order in which they enter.
     """
 
-    id: Indices
-    radius: Array
-    mass: Array
-    preferred_speed: Array
-    max_speed: Array
-    start_time: Array
-    at_goal: Indices
-    flow: Indices
-    route: Array
-    first: Indices
+    traits: Rows[TraitsRecord]
+    route: Rows[PlaceRecord]
+    origin: Rows[PlaceRecord]
     entry_order: Indices
-    heeds_robot: Mask
-    push: Array
-    goal_area: Array
-    pause: Array
-    ahead: Indices
-    origin: Array
-    guide: Indices
-    abreast: Array
-    stays: Mask
 
     @classmethod
     def of(cls, agents: Agents, push: Array) -> AgentParameters:
         """Those of agents who push each other with the stiffness ``push`` (N,)."""
         a = agents
-        return cls(
-            a.id, a.radius, a.mass, a.preferred_speed, a.max_speed, a.start_time, a.at_goal,
-            a.flow, a.route, a.first, np.argsort(a.id, kind="stable"), ~a.ignores_robot, push,
-            a.goal_area, a.pause, a.ahead, a.origin, a.guide, a.abreast, _may_stay(a),
+        traits = _table(
+            TRAITS, len(a), id=a.id, radius=a.radius, mass=a.mass,
+            preferred_speed=a.preferred_speed, max_speed=a.max_speed, start_time=a.start_time,
+            at_goal=a.at_goal, flow=a.flow, first=a.first[:-1], end=a.first[1:], push=push,
+            ahead=a.ahead, guide=a.guide, abreast=a.abreast,
+            chooses_origin=a.origin[:, 2] > 0.0, stays=_may_stay(a),
         )  # fmt: skip
+        route = _places(len(a.route), np.column_stack([a.route, a.goal_area, a.pause]))
+        order = np.argsort(a.id, kind="stable")
+        return cls(traits, route, _places(len(a), a.origin), order)
+
+
+def _table(record: RecordType[Any], count: int, **columns: NDArray[Any]) -> Rows[Any]:
+    rows = rows_of(count, record)
+    for name, column in columns.items():
+        rows[name][:] = column
+    return rows
+
+
+def _places(count: int, columns: Array) -> Rows[PlaceRecord]:
+    """Places (K,) of columns x, y, width, height, turn and, for a route, pause."""
+    return _table(PLACE, count, **dict(zip(PLACE.names, columns.T, strict=False)))
 
 
 def _may_stay(agents: Agents) -> Mask:
-    """(N,) who is in a queue or pauses somewhere."""
+    """(N,) True for people who are in a queue or pause somewhere."""
     pauses = np.concatenate([[0.0], np.cumsum(agents.pause)])
     found: Mask = (agents.ahead >= 0) | (np.diff(pauses[agents.first]) > 0.0)
     return found
+
+
+class RulesRecord:
+    """What holds for all people.
+
+    Attributes:
+        keep_offset: 1 if people come out of the in-portal opposite to where they went in.
+        goal_ahead: 1 if their goal in the out-portal is opposite to where their trip starts.
+        goals_wrap: 1 if goals wrap with their agents.
+        dissipation: as of `CrowdWorld`.
+    """
+
+    keep_offset: float
+    goal_ahead: float
+    goals_wrap: float
+    dissipation: float
+
+
+RULES = record_type(RulesRecord)
 
 
 class WorldParameters(NamedTuple):
     """Fields of `CrowdWorld`; units are those of `CrowdWorld`.
 
     Attributes:
-        walls, entrance, out, dissipation: as there.
-        keep_offset: whether people come out of the in-portal opposite to where they went in.
-        goal_ahead: whether their goal in the out-portal is opposite to where their trip starts.
+        walls, entrance, out: as there.
         boundary: (4,) x0, x1, y0, y1, m, infinite where the world has no border.
-        goals_wrap: whether goals wrap with their agents.
-        response: what people do about robots tick by tick, see
-            `crowdbot.core.crowd.response.parameters`.
+        rules, response: (1,) what holds for all; what people do about robots tick by tick.
         goal_key: key of the counter-based random numbers of goals and entries.
         solids: (M, 5) sides x0, y0, x1, y1 of convex outlines, m, and the outline's number.
     """
@@ -87,12 +106,9 @@ class WorldParameters(NamedTuple):
     walls: Array
     entrance: Array
     out: Array
-    keep_offset: bool
-    goal_ahead: bool
     boundary: Array
-    goals_wrap: bool
-    response: Array
-    dissipation: float
+    rules: Rows[RulesRecord]
+    response: Rows[TickResponse]
     goal_key: np.uint64
     solids: Array
 
@@ -100,11 +116,15 @@ class WorldParameters(NamedTuple):
     def of(cls, world: CrowdWorld) -> WorldParameters:
         """Those of a world."""
         w, boundary = world, world.periodic_boundary
+        rules = _table(
+            RULES, 1, keep_offset=np.array([w.exit_point == "offset"]),
+            goal_ahead=np.array([w.goal_point == "ahead"]), goals_wrap=np.array([not w.parity]),
+            dissipation=np.array([w.dissipation]),
+        )  # fmt: skip
         return cls(
-            w.walls, w.entrance, w.out, w.exit_point == "offset", w.goal_point == "ahead",
-            ENDLESS if boundary is None else np.array(boundary, np.float64), not w.parity,
-            w.response.by_tick, w.dissipation, np.uint64(w.goal_key),
-            _sides(w.solids),
+            w.walls, w.entrance, w.out,
+            ENDLESS if boundary is None else np.array(boundary, np.float64),
+            rules, w.response.by_tick, np.uint64(w.goal_key), _sides(w.solids),
         )  # fmt: skip
 
 
@@ -122,11 +142,16 @@ class Scratch(NamedTuple):
 
     Attributes:
         reaction: (N, 2) force of robots on each agent, N.
-        placed: (N, `PLACED_COLUMNS`) see `push_apart`.
+        placed: (N,) see `push_apart`.
         order: (N,) all agents in any order; sorted by x afterwards, which makes the next sort
             cheap.
     """
 
     reaction: Array
-    placed: Array
+    placed: Rows[PlacedRecord]
     order: Indices
+
+    @classmethod
+    def of(cls, people: int) -> Scratch:
+        """For so many people."""
+        return cls(np.zeros((people, 2)), rows_of(people, PLACED), np.arange(people))

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.crowd.state import GOAL_X, GOAL_Y, JUMPS, LAP_X, LAP_Y, X, Y
+from crowdbot.core.crowd.state import People
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
 
@@ -53,21 +53,31 @@ def images(discs: Array, box: Box, reach: float, *, diagonal: bool = True) -> Ar
 
 
 @kernel
-def wrap(agents: Array, i: int, box: Array, goals_wrap: bool) -> None:
+def wrap(agents: People, i: int, box: Array, goals_wrap: bool) -> None:
     """Put agent i back on the floor, one wrap per axis.
 
     Its goal moves along, so that it walks on as it would on the endless plane that the floor
     repeats. In the original engine goals stay.
     """
-    for at, goal, lap, low, high in (
-        (X, GOAL_X, LAP_X, box[0], box[1]),
-        (Y, GOAL_Y, LAP_Y, box[2], box[3]),
-    ):
-        if low <= agents[i, at] <= high:
-            continue
-        shift = low - high if agents[i, at] > high else high - low
-        agents[i, at] += shift
-        agents[i, JUMPS] += 1.0
+    person = agents[i]
+    dx, dy = _shift(person.x, box[0], box[1]), _shift(person.y, box[2], box[3])
+    if dx != 0.0:
+        person.x += dx
+        person.jumps += 1.0
         if goals_wrap:
-            agents[i, lap] += shift
-            agents[i, goal] += shift
+            person.lap_x += dx
+            person.goal_x += dx
+    if dy != 0.0:
+        person.y += dy
+        person.jumps += 1.0
+        if goals_wrap:
+            person.lap_y += dy
+            person.goal_y += dy
+
+
+@kernel
+def _shift(at: float, low: float, high: float) -> float:
+    """How far a coordinate has to move to be within its borders."""
+    if low <= at <= high:
+        return 0.0
+    return low - high if at > high else high - low

@@ -3,41 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import RETURN
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
+from crowdbot.core.crowd.contact.robot_contact import RobotRecord
 from crowdbot.core.crowd.goal_areas import point_in_area
 from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
 from crowdbot.core.crowd.routes import end_trip, head_for, start_trip
 from crowdbot.core.crowd.state import (
-    AIM,
-    AIM_X,
-    AIM_Y,
-    ARRIVED,
     AT_PORTAL,
-    ATTEMPT,
-    AX,
-    AY,
-    GOAL_X,
-    GOAL_Y,
-    JUMPS,
-    LAP_X,
-    LAP_Y,
-    ON_TRIP,
     PRESENT,
-    PUSH_X,
-    PUSH_Y,
-    TRIP,
-    VX,
-    VY,
-    WAITING,
-    WAYPOINT,
-    X,
-    Y,
+    People,
 )
 from crowdbot.core.crowd.velocity_search import counter_rng
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
 #: Nobody re-enters closer to a robot than this, centre to centre, m.
@@ -75,35 +55,35 @@ def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> fl
 
 @kernel
 def draw_goal(
-    agents: Array,
+    agents: People,
     i: int,
-    ids: NDArray[np.int64],
-    radius: Array,
-    flow: int,
+    people: AgentParameters,
     world: WorldParameters,
     x: float,
     y: float,
 ) -> None:
     """Set the goal of agent i's current trip: a point of the out-portal, a radius inside.
 
-    With ``world.goal_ahead`` it lies in the out-portal as (x, y), where the trip starts, lies in
-    the in-portal, beyond whose sides it counts as on them; or else it is drawn.
+    With `RulesRecord.goal_ahead` it lies in the out-portal as (x, y), where the trip starts, lies
+    in the in-portal, beyond whose sides it counts as on them; or else it is drawn.
     """
+    traits = people.traits[i]
+    flow, radius = int(traits.flow), traits.radius
     out = world.out[flow]
-    if world.goal_ahead:
-        u, v = _shares(world.entrance[flow], radius[i], x, y)
+    if world.rules[0].goal_ahead != 0.0:
+        u, v = _shares(world.entrance[flow], radius, x, y)
     else:
-        key, trip = world.goal_key, int(agents[i, TRIP])
-        u = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 0)
-        v = counter_rng.uniform(key, ids[i], trip, counter_rng.GOAL, 1)
-    agents[i, GOAL_X], agents[i, GOAL_Y] = point_in(out, radius[i], u, v)
+        key, number, trip = world.goal_key, int(traits.id), int(agents[i].trip)
+        u = counter_rng.uniform(key, number, trip, counter_rng.GOAL, 0)
+        v = counter_rng.uniform(key, number, trip, counter_rng.GOAL, 1)
+    agents[i].goal_x, agents[i].goal_y = point_in(out, radius, u, v)
 
 
 @kernel
-def leave(agents: Array, i: int, when: float) -> None:
+def leave(agents: People, i: int, when: float) -> None:
     """Take agent i out of the world at the end of its trip; its position is where it left."""
     end_trip(agents, i, when)
-    agents[i, WAITING], agents[i, ATTEMPT] = AT_PORTAL, 0.0
+    agents[i].waiting, agents[i].attempt = AT_PORTAL, 0.0
 
 
 @kernel
@@ -120,22 +100,29 @@ def _shares(box: Array, margin: float, x: float, y: float) -> tuple[float, float
 
 
 @kernel
-def is_free(agents: Array, i: int, radius: Array, robots: Array, x: float, y: float) -> bool:
-    """Whether agent i could stand at a point: on nobody, and clear of robots."""
+def is_free(
+    agents: People,
+    i: int,
+    people: AgentParameters,
+    robots: Rows[RobotRecord],
+    x: float,
+    y: float,
+) -> bool:
+    """Return True if agent i could stand at a point: on no other, and clear of robots."""
     for r in range(robots.shape[0]):
-        if (robots[r, 0] - x) ** 2 + (robots[r, 1] - y) ** 2 < CLEAR_OF_ROBOT**2:
+        if (robots[r].x - x) ** 2 + (robots[r].y - y) ** 2 < CLEAR_OF_ROBOT**2:
             return False
     for j in range(agents.shape[0]):
-        free = radius[i] + radius[j]
-        away = (agents[j, X] - x) ** 2 + (agents[j, Y] - y) ** 2
-        if j != i and agents[j, WAITING] == PRESENT and away < free * free:
+        free = people.traits[i].radius + people.traits[j].radius
+        away = (agents[j].x - x) ** 2 + (agents[j].y - y) ** 2
+        if j != i and agents[j].waiting == PRESENT and away < free * free:
             return False
     return True
 
 
 @kernel
 def is_off_walls(radius: float, world: WorldParameters, discs: Array, x: float, y: float) -> bool:
-    """Whether a body at a point touches no wall and no disc (D, 3), and is in no solid."""
+    """Return True if a body at a point touches no wall and no disc (D, 3), and is in no solid."""
     reach = radius - _CLEAR
     for wall in world.walls:
         nx, ny = nearest_on_segment(x, y, wall[0], wall[1], wall[2], wall[3])
@@ -156,108 +143,110 @@ def is_off_walls(radius: float, world: WorldParameters, discs: Array, x: float, 
 
 
 @kernel
-def enter(agents: Array, i: int, x: float, y: float, preferred: float, now: float) -> None:
+def enter(agents: People, i: int, x: float, y: float, preferred: float, now: float) -> None:
     """Put agent i into the world, on the way to its goal at preferred speed."""
-    agents[i, WAITING], agents[i, X], agents[i, Y] = PRESENT, x, y
-    gx, gy = agents[i, GOAL_X] - x, agents[i, GOAL_Y] - y
-    if agents[i, AIM] != 0.0:  # around a corner
-        gx, gy = agents[i, AIM_X] - x, agents[i, AIM_Y] - y
+    agents[i].waiting, agents[i].x, agents[i].y = PRESENT, x, y
+    gx, gy = agents[i].goal_x - x, agents[i].goal_y - y
+    if agents[i].corner != 0.0:  # around a corner
+        gx, gy = agents[i].waypoint_x - x, agents[i].waypoint_y - y
     distance = np.hypot(gx, gy)
     pace = preferred / distance if distance > 0.0 else 0.0
-    agents[i, VX], agents[i, VY] = pace * gx, pace * gy
-    for column in (AX, AY, PUSH_X, PUSH_Y):
-        agents[i, column] = 0.0
+    agents[i].vx, agents[i].vy = pace * gx, pace * gy
+    agents[i].ax = agents[i].ay = agents[i].push_x = agents[i].push_y = 0.0
     start_trip(agents, i, now)
 
 
 @kernel
 def try_to_re_enter(
-    agents: Array,
+    agents: People,
     i: int,
     people: AgentParameters,
     world: WorldParameters,
-    robots: Array,
+    robots: Rows[RobotRecord],
     discs: Array,
     now: float,
 ) -> None:
     """Try one point of the in-portal; start a new trip there if it is free.
 
-    The point lies in the in-portal as the agent left the out-portal (``world.keep_offset``), or
+    The point lies in the in-portal as the agent left the out-portal (`RulesRecord.keep_offset`), or
     is drawn anew in each attempt.
     """
-    if people.at_goal[i] == RETURN:
+    traits = people.traits[i]
+    if traits.at_goal == RETURN:
         _try_to_come_back(agents, i, people, world, robots, discs, now)
         return
-    flow, radius, key = people.flow[i], people.radius[i], world.goal_key
-    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
-    agents[i, ATTEMPT] += 1.0
-    if world.keep_offset:
-        u, v = _shares(world.out[flow], radius, agents[i, X], agents[i, Y])
+    flow, radius, key, number = int(traits.flow), traits.radius, world.goal_key, int(traits.id)
+    trip, attempt = int(agents[i].trip), int(agents[i].attempt)
+    agents[i].attempt += 1.0
+    if world.rules[0].keep_offset != 0.0:
+        u, v = _shares(world.out[flow], radius, agents[i].x, agents[i].y)
     else:
-        u = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt)
-        v = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt + 1)
+        u = counter_rng.uniform(key, number, trip, counter_rng.ENTRY, 2 * attempt)
+        v = counter_rng.uniform(key, number, trip, counter_rng.ENTRY, 2 * attempt + 1)
     x, y = point_in(world.entrance[flow], radius, u, v)
-    if not is_free(agents, i, people.radius, robots, x, y):
+    if not is_free(agents, i, people, robots, x, y):
         return
-    agents[i, TRIP] = trip + 1.0
-    agents[i, JUMPS] += 1.0
-    agents[i, AIM] = 0.0
-    draw_goal(agents, i, people.id, people.radius, flow, world, x, y)
-    enter(agents, i, x, y, people.preferred_speed[i], now)
+    agents[i].trip = trip + 1.0
+    agents[i].jumps += 1.0
+    agents[i].corner = 0.0
+    draw_goal(agents, i, people, world, x, y)
+    enter(agents, i, x, y, traits.preferred_speed, now)
 
 
 @kernel
 def place_of_entry(
-    agents: Array, i: int, people: AgentParameters, key: np.uint64
+    agents: People, i: int, people: AgentParameters, key: np.uint64
 ) -> tuple[float, float]:
     """A point of the area in which agent i comes in, drawn anew in each attempt."""
-    trip, attempt = int(agents[i, TRIP]), int(agents[i, ATTEMPT])
-    u = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt)
-    v = counter_rng.uniform(key, people.id[i], trip, counter_rng.ENTRY, 2 * attempt + 1)
-    x, y, size = people.origin[i, 0], people.origin[i, 1], people.origin[i, 2:]
-    return point_in_area(x, y, size, people.radius[i], u, v)
+    trip, attempt = int(agents[i].trip), int(agents[i].attempt)
+    traits, origin = people.traits[i], people.origin[i]
+    u = counter_rng.uniform(key, int(traits.id), trip, counter_rng.ENTRY, 2 * attempt)
+    v = counter_rng.uniform(key, int(traits.id), trip, counter_rng.ENTRY, 2 * attempt + 1)
+    return point_in_area(origin.x, origin.y, origin, traits.radius, u, v)
 
 
 @kernel
 def _try_to_come_back(
-    agents: Array, i: int, people: AgentParameters, world: WorldParameters, robots: Array,
+    agents: People, i: int, people: AgentParameters, world: WorldParameters,
+    robots: Rows[RobotRecord],
     discs: Array, now: float,
 ) -> None:  # fmt: skip
     """Try one point of the origin; begin the way anew there if it is free."""
     key = world.goal_key
     x, y = place_of_entry(agents, i, people, key)
-    agents[i, ATTEMPT] += 1.0
-    if not is_free(agents, i, people.radius, robots, x, y):
+    agents[i].attempt += 1.0
+    if not is_free(agents, i, people, robots, x, y):
         return
-    if not is_off_walls(people.radius[i], world, discs, x, y):
+    if not is_off_walls(people.traits[i].radius, world, discs, x, y):
         return
-    agents[i, TRIP] += 1.0
-    agents[i, JUMPS] += 1.0
-    agents[i, WAYPOINT] = agents[i, LAP_X] = agents[i, LAP_Y] = 0.0
-    agents[i, X], agents[i, Y] = x, y
+    agents[i].trip += 1.0
+    agents[i].jumps += 1.0
+    agents[i].route_point = agents[i].lap_x = agents[i].lap_y = 0.0
+    agents[i].x, agents[i].y = x, y
     head_for(agents, i, people, key)
-    enter(agents, i, x, y, people.preferred_speed[i], now)
+    enter(agents, i, x, y, people.traits[i].preferred_speed, now)
 
 
 @kernel
 def try_to_start(
-    agents: Array, i: int, people: AgentParameters, world: WorldParameters, robots: Array,
+    agents: People, i: int, people: AgentParameters, world: WorldParameters,
+    robots: Rows[RobotRecord],
     discs: Array, now: float,
 ) -> None:  # fmt: skip
     """Put agent i into the world where it starts, if nobody stands there.
 
     Who has an origin tries another point of it next time.
     """
-    x, y = agents[i, X], agents[i, Y]
-    choice = people.origin[i, 2] > 0.0
-    if choice and agents[i, ATTEMPT] > 0.0:
+    x, y = agents[i].x, agents[i].y
+    choice = people.traits[i].chooses_origin != 0.0
+    if choice and agents[i].attempt > 0.0:
         x, y = place_of_entry(agents, i, people, world.goal_key)
-    free = is_free(agents, i, people.radius, robots, x, y)
-    if not free or (choice and not is_off_walls(people.radius[i], world, discs, x, y)):
-        agents[i, ATTEMPT] += 1.0 if choice else 0.0
+    free = is_free(agents, i, people, robots, x, y)
+    if not free or (choice and not is_off_walls(people.traits[i].radius, world, discs, x, y)):
+        agents[i].attempt += 1.0 if choice else 0.0
         return
-    on_trip = agents[i, ON_TRIP]
-    enter(agents, i, x, y, people.preferred_speed[i], now)
-    agents[i, ON_TRIP] = on_trip
-    if people.stays[i] and on_trip == 0.0:
-        agents[i, ARRIVED] = now
+    on_trip = agents[i].on_trip
+    enter(agents, i, x, y, people.traits[i].preferred_speed, now)
+    agents[i].on_trip = on_trip
+    if people.traits[i].stays != 0.0 and on_trip == 0.0:
+        agents[i].arrived = now

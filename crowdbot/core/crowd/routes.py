@@ -5,90 +5,70 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import LOOP, ONWARD, REMOVE, RETURN
 from crowdbot.core.crowd.goal_areas import area_fraction, into_area, point_in_area
 from crowdbot.core.crowd.parameters import AgentParameters
 from crowdbot.core.crowd.state import (
-    ARRIVALS,
-    ARRIVED,
     AT_PORTAL,
-    ATTEMPT,
-    GOAL_X,
-    GOAL_Y,
     GONE,
-    LAP_X,
-    LAP_Y,
-    LAST_START,
-    ON_TRIP,
-    TRIP,
-    TRIP_START,
-    WAITING,
-    WAYPOINT,
-    X,
-    Y,
+    People,
 )
 from crowdbot.core.crowd.velocity_search import counter_rng
 from crowdbot.core.support.compile import kernel
-from crowdbot.core.types.arrays import Array
-
-Rows = NDArray[np.int64]
 
 
 @kernel
-def head_for(agents: Array, i: int, people: AgentParameters, key: np.uint64) -> None:
+def head_for(agents: People, i: int, people: AgentParameters, key: np.uint64) -> None:
     """Set the goal of agent i to the next point of its route; to where it is without one.
 
     In an area every agent has a point of its own; members of a group go to points beside each
     other.
     """
-    route, first = people.route, people.first
-    row = first[i] + int(agents[i, WAYPOINT])
-    if row < first[i + 1]:
-        x, y = route[row, 0], route[row, 1]
-        if people.goal_area[row, 0] > 0.0:
+    traits = people.traits[i]
+    row = int(traits.first) + int(agents[i].route_point)
+    if row < traits.end:
+        x, y = people.route[row].x, people.route[row].y
+        if people.route[row].width > 0.0:
             x, y = _own_point(agents, i, row, people, key)
-        agents[i, GOAL_X] = x + agents[i, LAP_X]
-        agents[i, GOAL_Y] = y + agents[i, LAP_Y]
-    elif first[i] == first[i + 1]:
-        agents[i, GOAL_X], agents[i, GOAL_Y] = agents[i, X], agents[i, Y]
+        agents[i].goal_x = x + agents[i].lap_x
+        agents[i].goal_y = y + agents[i].lap_y
+    elif traits.first == traits.end:
+        agents[i].goal_x, agents[i].goal_y = agents[i].x, agents[i].y
 
 
 @kernel
 def _own_point(
-    agents: Array, i: int, row: int, people: AgentParameters, key: np.uint64
+    agents: People, i: int, row: int, people: AgentParameters, key: np.uint64
 ) -> tuple[float, float]:
     """The point of the area around a goal that agent i goes to."""
-    trip, guide, radius = int(agents[i, TRIP]), people.guide[i], people.radius[i]
+    traits, place = people.traits[i], people.route[row]
+    trip, guide, radius = int(agents[i].trip), int(traits.guide), traits.radius
     u = counter_rng.uniform(key, guide, trip, counter_rng.GOAL, 0)
     v = counter_rng.uniform(key, guide, trip, counter_rng.GOAL, 1)
-    cx, cy = people.route[row, 0], people.route[row, 1]
-    size = people.goal_area[row]
-    x, y = point_in_area(cx, cy, size, radius, u, v)
-    if people.abreast[i] == 0.0:
+    x, y = point_in_area(place.x, place.y, place, radius, u, v)
+    if traits.abreast == 0.0:
         return x, y
-    dx = x + agents[i, LAP_X] - agents[i, X]
-    dy = y + agents[i, LAP_Y] - agents[i, Y]
+    dx = x + agents[i].lap_x - agents[i].x
+    dy = y + agents[i].lap_y - agents[i].y
     distance = math.hypot(dx, dy)
     if distance == 0.0:
         return x, y
-    x -= dy / distance * people.abreast[i]
-    y += dx / distance * people.abreast[i]
-    return into_area(x, y, cx, cy, size, radius)
+    x -= dy / distance * traits.abreast
+    y += dx / distance * traits.abreast
+    return into_area(x, y, place.x, place.y, place, radius)
 
 
 @kernel
-def goal_fraction(agents: Array, i: int, x: float, y: float, people: AgentParameters) -> float:
+def goal_fraction(agents: People, i: int, x: float, y: float, people: AgentParameters) -> float:
     """Fraction of the way from (x, y) at which agent i has reached its goal; above 1 if not."""
-    x1, y1 = agents[i, X], agents[i, Y]
-    fraction = reach_fraction(x, y, x1, y1, agents[i, GOAL_X], agents[i, GOAL_Y], people.radius[i])
-    row = people.first[i] + int(agents[i, WAYPOINT])
-    if fraction <= 1.0 or people.goal_area[row, 0] <= 0.0:
+    traits, x1, y1 = people.traits[i], agents[i].x, agents[i].y
+    fraction = reach_fraction(x, y, x1, y1, agents[i].goal_x, agents[i].goal_y, traits.radius)
+    place = people.route[int(traits.first) + int(agents[i].route_point)]
+    if fraction <= 1.0 or place.width <= 0.0:
         return fraction
-    cx, cy = people.route[row, 0] + agents[i, LAP_X], people.route[row, 1] + agents[i, LAP_Y]
-    size = people.goal_area[row]
-    return area_fraction(x, y, x1, y1, cx, cy, size)
+    cx, cy = place.x + agents[i].lap_x, place.y + agents[i].lap_y
+    return area_fraction(x, y, x1, y1, cx, cy, place)
 
 
 @kernel
@@ -108,75 +88,79 @@ def reach_fraction(
 
 
 @kernel
-def end_trip(agents: Array, i: int, when: float) -> None:
+def end_trip(agents: People, i: int, when: float) -> None:
     """Record the arrival of agent i; it is on no trip until it starts another."""
-    agents[i, ARRIVED], agents[i, LAST_START] = when, agents[i, TRIP_START]
-    agents[i, ARRIVALS] += 1.0
-    agents[i, ON_TRIP] = 0.0
+    agents[i].arrived, agents[i].last_start = when, agents[i].trip_start
+    agents[i].arrivals += 1.0
+    agents[i].on_trip = 0.0
 
 
 @kernel
-def start_trip(agents: Array, i: int, when: float) -> None:
+def start_trip(agents: People, i: int, when: float) -> None:
     """Let agent i's next trip begin; its goal must be set."""
-    agents[i, TRIP_START], agents[i, ON_TRIP] = when, 1.0
+    agents[i].trip_start, agents[i].on_trip = when, 1.0
 
 
 @kernel
-def arrive(agents: Array, i: int, people: AgentParameters, key: np.uint64, when: float) -> None:
+def arrive(agents: People, i: int, people: AgentParameters, key: np.uint64, when: float) -> None:
     """Agent i has reached its goal: it stays a while, or goes on."""
     end_trip(agents, i, when)
-    row = people.first[i] + int(agents[i, WAYPOINT])
-    if people.pause[row] == 0.0 and people.ahead[i] < 0:
+    row = int(people.traits[i].first) + int(agents[i].route_point)
+    if people.route[row].pause == 0.0 and people.traits[i].ahead < 0.0:
         next_goal(agents, i, people, key, when)
 
 
 @kernel
-def stays(agents: Array, i: int, people: AgentParameters, now: float) -> bool:
-    """Whether agent i, which is on no trip, has reason to stay where it is.
+def stays(agents: People, i: int, people: AgentParameters, now: float) -> bool:
+    """Return True if agent i, which is on no trip, has reason to stay where it is.
 
-    In a queue, who is not at its head stays until the place before it is left.
+    In a queue, a person who is not at its head stays until the place before it is left.
     """
-    row, end = people.first[i] + int(agents[i, WAYPOINT]), people.first[i + 1]
-    if row >= end or now - agents[i, ARRIVED] < people.pause[row]:
+    traits = people.traits[i]
+    row, end = int(traits.first) + int(agents[i].route_point), int(traits.end)
+    if row >= end or now - agents[i].arrived < people.route[row].pause:
         return True
-    j = people.ahead[i]
-    if j < 0 or end - row <= 2 or agents[j, WAITING] == GONE:
+    j = int(traits.ahead)
+    if j < 0 or end - row <= 2 or agents[j].waiting == GONE:
         return False
-    left = people.first[j + 1] - people.first[j] - int(agents[j, WAYPOINT])
+    left = int(people.traits[j].end - people.traits[j].first) - int(agents[j].route_point)
     return bool(left > end - row - 2)
 
 
 @kernel
-def next_goal(agents: Array, i: int, people: AgentParameters, key: np.uint64, when: float) -> None:
+def next_goal(agents: People, i: int, people: AgentParameters, key: np.uint64, when: float) -> None:
     """After an arrival: on to the next point, or what the agent does at the end of its route."""
-    route, first, at_goal = people.route, people.first, people.at_goal[i]
+    traits, route = people.traits[i], people.route
+    first, end, at_goal = int(traits.first), int(traits.end), traits.at_goal
     if at_goal == ONWARD:
-        agents[i, GOAL_X] += route[first[i] + 1, 0] - route[first[i], 0]
-        agents[i, GOAL_Y] += route[first[i] + 1, 1] - route[first[i], 1]
-        agents[i, TRIP] += 1.0
+        agents[i].goal_x += route[first + 1].x - route[first].x
+        agents[i].goal_y += route[first + 1].y - route[first].y
+        agents[i].trip += 1.0
         start_trip(agents, i, when)
         return
-    agents[i, WAYPOINT] += 1.0
-    if first[i] + int(agents[i, WAYPOINT]) >= first[i + 1]:
+    agents[i].route_point += 1.0
+    if first + int(agents[i].route_point) >= end:
         if at_goal == REMOVE:
-            agents[i, WAITING] = GONE
+            agents[i].waiting = GONE
             return
         if at_goal == RETURN:
-            agents[i, WAITING], agents[i, ATTEMPT] = AT_PORTAL, 0.0
+            agents[i].waiting, agents[i].attempt = AT_PORTAL, 0.0
             return
-        if at_goal != LOOP or _all_here(agents, i, route, first, people.radius[i]):
+        if at_goal != LOOP or _all_here(agents, i, people):
             return
         # Each lap is walked on the floor as it is drawn, whatever borders were crossed before.
-        agents[i, WAYPOINT] = agents[i, LAP_X] = agents[i, LAP_Y] = 0.0
-    agents[i, TRIP] += 1.0
+        agents[i].route_point = agents[i].lap_x = agents[i].lap_y = 0.0
+    agents[i].trip += 1.0
     head_for(agents, i, people, key)
     start_trip(agents, i, when)
 
 
 @kernel
-def _all_here(agents: Array, i: int, route: Array, first: Rows, radius: float) -> bool:
-    """Whether a lap would be over before it begins."""
-    for row in range(first[i], first[i + 1]):
-        if math.hypot(route[row, 0] - agents[i, X], route[row, 1] - agents[i, Y]) > radius:
+def _all_here(agents: People, i: int, people: AgentParameters) -> bool:
+    """Return True if a lap would be over before it begins."""
+    traits = people.traits[i]
+    for row in range(int(traits.first), int(traits.end)):
+        place = people.route[row]
+        if math.hypot(place.x - agents[i].x, place.y - agents[i].y) > traits.radius:
             return False
     return True

@@ -9,43 +9,36 @@ import numpy as np
 
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
-from crowdbot.core.crowd.contact.pedestrian_contact import push_apart
-from crowdbot.core.crowd.contact.robot_contact import robot_contacts
-from crowdbot.core.crowd.parameters import AgentParameters, WorldParameters
+from crowdbot.core.crowd.contact.pedestrian_contact import PlacedRecord, push_apart
+from crowdbot.core.crowd.contact.robot_contact import ROBOT, RobotRecord, robot_contacts
+from crowdbot.core.crowd.goal_areas import PlaceRecord
+from crowdbot.core.crowd.parameters import (
+    AgentParameters,
+    RulesRecord,
+    WorldParameters,
+)
 from crowdbot.core.crowd.periodic_boundary import wrap
 from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_re_enter, try_to_start
+from crowdbot.core.crowd.response.parameters import TickResponse
 from crowdbot.core.crowd.response.standing import stop_short
 from crowdbot.core.crowd.routes import arrive, goal_fraction, next_goal, stays
 from crowdbot.core.crowd.state import (
     AGENT_COLUMNS,
-    ARRIVALS,
     AT_PORTAL,
-    AX,
-    AY,
-    BESIDE,
-    DIR_X,
-    DIR_Y,
     FELT_SIZE,
+    HEADER,
     HEADER_SIZE,
     NOT_YET,
-    ON_TRIP,
+    PERSON,
     PRESENT,
-    PUSH_X,
-    PUSH_Y,
-    ROBOTS,
-    TICK,
     TOUCH_COLUMNS,
-    TRIP_START,
-    TRIPS,
-    VX,
-    VY,
-    WAITING,
-    WALKED,
-    X,
-    Y,
+    HeaderRecord,
+    People,
 )
+from crowdbot.core.crowd.traits import TraitsRecord
 from crowdbot.core.support.compile import inline_kernel, kernel
-from crowdbot.core.types.arrays import Array, Indices, Mask
+from crowdbot.core.support.records import Rows, as_record, as_rows
+from crowdbot.core.types.arrays import Array, Indices
 
 #: Slower people do not turn where they are pushed, m/s.
 _TURNS_ABOVE = 0.1
@@ -55,14 +48,11 @@ _TURNS_ABOVE = 0.1
 def tick(
     flat: Array, robots: Array, outlines: Array, numbers: Indices, stiffnesses: Array, discs: Array,
     dt: float,
-    ids: Indices, radius: Array, mass: Array, preferred_speed: Array, max_speed: Array,
-    start_time: Array, at_goal: Indices, flow: Indices, route: Array, first: Indices,
-    entry_order: Indices, heeds_robot: Mask, push: Array, goal_area: Array, pause: Array,
-    ahead: Indices, origin: Array, guide: Indices, abreast: Array, stays_at: Mask,
-    walls: Array, entrance: Array, out: Array, keep_offset: bool, goal_ahead: bool,
-    boundary: Array, goals_wrap: bool, response: Array, dissipation: float,
-    goal_key: np.uint64, solids: Array,
-    reaction: Array, placed: Array, order: Indices,
+    traits: Rows[TraitsRecord], route: Rows[PlaceRecord], origin: Rows[PlaceRecord],
+    entry_order: Indices,
+    walls: Array, entrance: Array, out: Array, boundary: Array, rules: Rows[RulesRecord],
+    response: Rows[TickResponse], goal_key: np.uint64, solids: Array,
+    reaction: Array, placed: Rows[PlacedRecord], order: Indices,
 ) -> None:  # fmt: skip
     """Advance from tick k to k + 1.
 
@@ -75,74 +65,71 @@ def tick(
         numbers, stiffnesses: of the robots, as in `robot_contacts`.
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
-        ids to stays_at: fields of `AgentParameters`.
+        traits to entry_order: fields of `AgentParameters`.
         walls to solids: fields of `WorldParameters`.
         reaction, placed, order: fields of `Scratch`.
     """
-    people = AgentParameters(
-        ids, radius, mass, preferred_speed, max_speed, start_time, at_goal, flow, route, first,
-        entry_order, heeds_robot, push, goal_area, pause, ahead, origin, guide, abreast, stays_at,
-    )  # fmt: skip
+    people = AgentParameters(traits, route, origin, entry_order)
     world = WorldParameters(
-        walls, entrance, out, keep_offset, goal_ahead, boundary, goals_wrap, response, dissipation,
-        goal_key, solids,
+        walls, entrance, out, boundary, rules, response, goal_key, solids,
     )  # fmt: skip
-    count = radius.shape[0]
+    count = traits.shape[0]
     end = HEADER_SIZE + count * AGENT_COLUMNS
-    header, agents = flat[:HEADER_SIZE], flat[HEADER_SIZE:end].reshape(count, AGENT_COLUMNS)
-    contacts = flat[end:].reshape(int(header[ROBOTS]), FELT_SIZE + count * TOUCH_COLUMNS)
-    now = header[TICK] * dt
-    push_apart(agents, radius, order, walls, discs, push, placed)
+    header, agents = as_record(flat, HEADER), as_rows(flat[HEADER_SIZE:end], PERSON)
+    contacts = flat[end:].reshape(int(header.robots), FELT_SIZE + count * TOUCH_COLUMNS)
+    machines = as_rows(robots, ROBOT)
+    now = header.tick * dt
+    push_apart(agents, traits, order, walls, discs, placed)
     robot_contacts(
-        contacts, agents, radius, robots, outlines, numbers, stiffnesses, dissipation, now, dt,
-        reaction,
+        contacts, agents, traits, machines, outlines, numbers, stiffnesses, rules[0].dissipation,
+        now, dt, reaction,
     )  # fmt: skip
     for i in range(agents.shape[0]):
-        if agents[i, WAITING] == PRESENT:
-            _advance(header, agents, i, people, world, robots, outlines, reaction, now, dt)
+        if agents[i].waiting == PRESENT:
+            _advance(header, agents, i, people, world, machines, outlines, reaction, now, dt)
     for i in entry_order:
-        if agents[i, WAITING] == AT_PORTAL:
-            try_to_re_enter(agents, i, people, world, robots, discs, now + dt)
-        elif agents[i, WAITING] == NOT_YET and start_time[i] <= now + dt:
-            try_to_start(agents, i, people, world, robots, discs, now + dt)
-    header[TICK] += 1.0
+        if agents[i].waiting == AT_PORTAL:
+            try_to_re_enter(agents, i, people, world, machines, discs, now + dt)
+        elif agents[i].waiting == NOT_YET and traits[i].start_time <= now + dt:
+            try_to_start(agents, i, people, world, machines, discs, now + dt)
+    header.tick += 1.0
 
 
 @inline_kernel
 def _advance(
-    header: Array,
-    agents: Array,
+    header: HeaderRecord,
+    agents: People,
     i: int,
     people: AgentParameters,
     world: WorldParameters,
-    robots: Array,
+    robots: Rows[RobotRecord],
     outlines: Array,
     reaction: Array,
     now: float,
     dt: float,
 ) -> None:
     """Move agent i, and let it arrive, leave or wrap."""
-    x, y, arrivals = agents[i, X], agents[i, Y], agents[i, ARRIVALS]
-    ax, ay = 0.0, 0.0
-    if agents[i, BESIDE] != 0.0:
-        ax, ay = stop_short(agents, i, people.radius, robots, outlines, world.response)
-    ax += agents[i, PUSH_X] + reaction[i, 0] / people.mass[i]
-    ay += agents[i, PUSH_Y] + reaction[i, 1] / people.mass[i]
-    _move(agents, i, people.max_speed[i], ax, ay, dt)
-    if people.at_goal[i] == PORTAL:
-        _through(agents, i, x, y, world.out[people.flow[i]], now, dt)
-    elif agents[i, ON_TRIP] != 0.0:
+    x, y, arrivals = agents[i].x, agents[i].y, agents[i].arrivals
+    traits, ax, ay = people.traits[i], 0.0, 0.0
+    if agents[i].beside != 0.0:
+        ax, ay = stop_short(agents, i, traits.radius, robots, outlines, world.response[0])
+    ax += agents[i].push_x + reaction[i, 0] / traits.mass
+    ay += agents[i].push_y + reaction[i, 1] / traits.mass
+    _move(agents, i, traits.max_speed, ax, ay, dt)
+    if traits.at_goal == PORTAL:
+        _through(agents, i, x, y, world.out[int(traits.flow)], now, dt)
+    elif agents[i].on_trip != 0.0:
         _along(agents, i, x, y, people, world.goal_key, now, dt)
-    elif people.stays[i] and not stays(agents, i, people, now):
+    elif traits.stays != 0.0 and not stays(agents, i, people, now):
         next_goal(agents, i, people, world.goal_key, now)
-    if agents[i, WAITING] == PRESENT:
-        wrap(agents, i, world.boundary, world.goals_wrap)
-    header[TRIPS] += agents[i, ARRIVALS] - arrivals
+    if agents[i].waiting == PRESENT:
+        wrap(agents, i, world.boundary, world.rules[0].goals_wrap != 0.0)
+    header.trips += agents[i].arrivals - arrivals
 
 
 @kernel
 def ticks_without_robots(count: int, flat: Array, *rest: Any) -> int:
-    """Several times `tick`; ends early after one in which somebody's trip ends.
+    """Several times `tick`; ends early after one in which a trip ends.
 
     Args:
         count: how many ticks at most.
@@ -151,25 +138,26 @@ def ticks_without_robots(count: int, flat: Array, *rest: Any) -> int:
     Returns:
         how many ticks it were.
     """
-    trips = flat[TRIPS]
+    header = as_record(flat, HEADER)
+    trips = header.trips
     for done in range(count):
         tick(flat, *rest)
-        if flat[TRIPS] != trips:
+        if header.trips != trips:
             return done + 1
     return count
 
 
 @kernel
-def _through(agents: Array, i: int, x: float, y: float, out: Array, now: float, dt: float) -> None:
+def _through(agents: People, i: int, x: float, y: float, out: Array, now: float, dt: float) -> None:
     """Agent i, which was at (x, y), leaves if it has entered its out-portal."""
-    fraction = entry_fraction(out, x, y, agents[i, X], agents[i, Y])
+    fraction = entry_fraction(out, x, y, agents[i].x, agents[i].y)
     if fraction <= 1.0:
         leave(agents, i, now + fraction * dt)
 
 
 @kernel
 def _along(
-    agents: Array,
+    agents: People,
     i: int,
     x: float,
     y: float,
@@ -181,22 +169,22 @@ def _along(
     """Agent i, which was at (x, y), goes on to its next goal if it has reached this one."""
     fraction = goal_fraction(agents, i, x, y, people)
     if fraction <= 1.0:
-        arrive(agents, i, people, key, max(now + fraction * dt, agents[i, TRIP_START]))
+        arrive(agents, i, people, key, max(now + fraction * dt, agents[i].trip_start))
 
 
 @kernel
-def _move(agents: Array, i: int, fastest: float, ax: float, ay: float, dt: float) -> None:
+def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: float) -> None:
     """The desired acceleration reaches at most the largest speed; pushes (ax, ay) may exceed it."""
-    vx = agents[i, VX] + agents[i, AX] * dt
-    vy = agents[i, VY] + agents[i, AY] * dt
+    vx = agents[i].vx + agents[i].ax * dt
+    vy = agents[i].vy + agents[i].ay * dt
     if not is_clearly_shorter(vx, vy, fastest):
         speed = math.hypot(vx, vy)
         if speed > fastest:
             vx, vy = vx / speed * fastest, vy / speed * fastest
-    agents[i, VX], agents[i, VY] = vx + ax * dt, vy + ay * dt
-    agents[i, X] += agents[i, VX] * dt
-    agents[i, Y] += agents[i, VY] * dt
-    speed = math.hypot(agents[i, VX], agents[i, VY])
-    agents[i, WALKED] += speed * dt
+    agents[i].vx, agents[i].vy = vx + ax * dt, vy + ay * dt
+    agents[i].x += agents[i].vx * dt
+    agents[i].y += agents[i].vy * dt
+    speed = math.hypot(agents[i].vx, agents[i].vy)
+    agents[i].walked += speed * dt
     if speed > _TURNS_ABOVE:
-        agents[i, DIR_X], agents[i, DIR_Y] = agents[i, VX] / speed, agents[i, VY] / speed
+        agents[i].dir_x, agents[i].dir_y = agents[i].vx / speed, agents[i].vy / speed

@@ -6,7 +6,7 @@ import numpy as np
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact.robot_contact import overlap
+from crowdbot.core.crowd.contact.robot_contact import R_YAW, overlap
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.geometry.polygon import inside
 from crowdbot.core.sim.control.kinematic import obstacles
@@ -49,7 +49,7 @@ def check_start(
     for i in np.flatnonzero(people[:, s.WAITING] == s.PRESENT):
         away = start.x - people[i, s.X], start.y - people[i, s.Y]
         reach = body.radius + engine.agents.radius[i]
-        if overlap(row, body.corners, *away, reach)[0] > _TOLERANCE:
+        if overlap(float(row[R_YAW]), body.corners, *away, reach)[0] > _TOLERANCE:
             raise InputError(
                 f"{where} would start in agent {engine.agents.id[i]}, who stands at "
                 f"x {people[i, s.X]:g} m, y {people[i, s.Y]:g} m; move one of them"

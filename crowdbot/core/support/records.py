@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar, cast, overloa
 
 import numpy as np
 from numba import types
+from numba.core import errors
 from numba.core.datamodel import models
 from numba.core.datamodel.registry import register_default
 from numba.extending import intrinsic, lower_builtin
@@ -56,6 +57,11 @@ class Rows(Protocol[T]):
 def rows_of(count: int, record: RecordType[T]) -> Rows[T]:
     """So many new records of zeros."""
     return cast(Rows[T], np.zeros(count, cast(Any, record)))
+
+
+def rows_in(numbers: NDArray[np.float64], record: RecordType[T]) -> Rows[T]:
+    """The records in a contiguous array, sharing its memory; `as_rows` outside compiled code."""
+    return cast(Rows[T], numbers.reshape(-1).view(cast(Any, record)))
 
 
 def record_type(declared: type[T], columns: int | None = None) -> RecordType[T]:
@@ -143,6 +149,8 @@ def _as_record(_: Any, source: Any, record: Any) -> tuple[Any, Any]:
 
 
 def _as_rows(_: Any, source: Any, record: Any) -> tuple[Any, Any]:
+    if isinstance(source, types.Array) and source.layout != "C":
+        raise errors.TypingError("records lie in contiguous arrays")
     rows = types.Array(record.dtype, 1, "C")
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:

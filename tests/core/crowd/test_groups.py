@@ -15,6 +15,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.groups import Cohesion, groups_of, hold_together
 from crowdbot.core.crowd.periodic_boundary import ENDLESS
 from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.support.records import rows_in
 from crowdbot.core.types.arrays import Array
 
 FORCES = Cohesion(limit=100.0)
@@ -32,7 +33,9 @@ def rows_at(places: list[tuple[float, float]], velocity: tuple[float, float] = (
 def pulled(rows: Array, forces: Cohesion = FORCES, boundary: Array = ENDLESS) -> Array:
     count = len(rows)
     everybody = np.arange(count), np.array([0, count])
-    hold_together(rows, *everybody, np.full(count, 100.0), boundary, forces.row)
+    hold_together(
+        rows_in(rows, s.PERSON), *everybody, np.full(count, 100.0), boundary, forces.forces
+    )
     return rows[:, s.AX : s.AY + 1]
 
 
@@ -77,8 +80,9 @@ def test_the_sum_keeps_to_the_limits() -> None:
     rows = rows_at([(0.0, 0.0), (7.0, 0.0)])
     rows[:, s.AX] = 5.0
     hold_together(
-        rows, np.array([0, 1]), np.array([0, 2]), np.array([5.0, 5.0]), ENDLESS, Cohesion().row
-    )
+        rows_in(rows, s.PERSON), np.array([0, 1]), np.array([0, 2]), np.array([5.0, 5.0]), ENDLESS,
+        Cohesion().forces,
+    )  # fmt: skip
     assert np.hypot(rows[:, s.AX], rows[:, s.AY]).max() <= 5.0 + 1e-9
 
 

@@ -51,11 +51,13 @@ def test_one_step(name: str) -> None:
 
 
 def _weaker_contact(people: AgentParameters) -> AgentParameters:
-    return people._replace(push=0.8 * people.push)
+    people.traits["push"][:] *= 0.8
+    return people
 
 
 def _slower(people: AgentParameters) -> AgentParameters:
-    return people._replace(max_speed=0.5 * people.max_speed)
+    people.traits["max_speed"][:] *= 0.5
+    return people
 
 
 @pytest.mark.parametrize(("name", "wrong"), [

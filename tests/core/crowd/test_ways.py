@@ -13,8 +13,15 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.agents import ONWARD, REMOVE, RETURN, STOP
-from crowdbot.core.crowd.goal_areas import area_fraction, into_area, point_in_area
+from crowdbot.core.crowd.goal_areas import (
+    PLACE,
+    PlaceRecord,
+    area_fraction,
+    into_area,
+    point_in_area,
+)
 from crowdbot.core.crowd.policy import CrowdView
+from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
 
 AREA = (2.0, 4.0, 0.0)
@@ -49,11 +56,17 @@ def states(crowd: CrowdEngine, seconds: float) -> list[Array]:
     return found
 
 
+def _area(width: float, height: float, turn: float) -> PlaceRecord:
+    places = rows_of(1, PLACE)
+    places["width"][:], places["height"][:], places["turn"][:] = width, height, turn
+    return places[0]
+
+
 @given(_SIDES, _UNIT, _UNIT, st.floats(0.0, 1.0))
 def test_points_of_an_area_lie_in_it(
     sides: tuple[float, float, float], u: float, v: float, margin: float
 ) -> None:
-    size = np.array(sides)
+    size = _area(*sides)
     x, y = point_in_area(3.0, -1.0, size, margin, u, v)
     assert into_area(x, y, 3.0, -1.0, size, margin) == pytest.approx((x, y))
     c, n = math.cos(sides[2]), math.sin(sides[2])
@@ -67,7 +80,7 @@ def test_points_of_an_area_lie_in_it(
 def test_where_an_area_is_entered(
     sides: tuple[float, float, float], x0: float, y0: float, x1: float
 ) -> None:
-    size, far = np.array(sides), 1e-6
+    size, far = _area(*sides), 1e-6
     fraction = area_fraction(x0, y0, x1, 0.0, 0.0, 0.0, size)
     inside = [
         math.dist(into_area(x, y, 0.0, 0.0, size, 0.0), (x, y)) < far
@@ -116,7 +129,7 @@ def test_who_returns_comes_in_at_the_origin_again() -> None:
     rows = states(crowd, 10.0)
     jumps = [i for i in range(1, len(rows)) if rows[i][0, s.JUMPS] > rows[i - 1][0, s.JUMPS]]
     assert len(jumps) >= 2
-    size = np.array([1.0, 2.0, 0.3])
+    size = _area(1.0, 2.0, 0.3)
     for i in jumps:
         at = rows[i][0, s.X], rows[i][0, s.Y]
         assert math.dist(into_area(*at, -2.0, 0.0, size, 0.0), at) < 0.02
@@ -143,7 +156,7 @@ def test_who_pauses_goes_on_afterwards() -> None:
     assert rows[0][0, s.ON_TRIP] == 0.0
     assert min(starts) == pytest.approx(2.0, abs=0.05)
     assert rows[-1][0, s.ARRIVALS] == 2.0
-    still = [r for r in rows if r[0, s.WAYPOINT] == 1.0 and r[0, s.ON_TRIP] == 0.0]
+    still = [r for r in rows if r[0, s.ROUTE_POINT] == 1.0 and r[0, s.ON_TRIP] == 0.0]
     assert len(still) / 128 == pytest.approx(1.0, abs=0.05)
 
 
@@ -156,7 +169,7 @@ def test_a_queue_is_served_one_after_the_other() -> None:
     )  # fmt: skip
     rows = states(crowd, 25.0)
     for before in rows:  # nobody passes anybody, and two are never at the counter
-        left = np.array([2.0, 3.0, 4.0]) - before[:, s.WAYPOINT]
+        left = np.array([2.0, 3.0, 4.0]) - before[:, s.ROUTE_POINT]
         assert np.all(np.diff(left) >= 0.0)
         at_counter = (np.hypot(before[:, s.X], before[:, s.Y]) < 0.3) & (before[:, s.WAITING] == 0)
         assert at_counter.sum() <= 1

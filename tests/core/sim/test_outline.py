@@ -11,9 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact.robot_contact import from_outline, robot_contact
+from crowdbot.core.crowd.contact.robot_contact import ROBOT, from_outline, robot_contact
+from crowdbot.core.crowd.traits import TRAITS
 from crowdbot.core.geometry.footprint import Footprint, body_side
 from crowdbot.core.sim.outline_gap import outline_gap, touched_at
+from crowdbot.core.support.records import rows_in, rows_of
 from tests.core.sim.sim_worlds import Array, Drive, alone, constant, person, rig, scenario
 
 pytestmark = pytest.mark.slow
@@ -51,12 +53,15 @@ class Bump:
         self.felt, self.touches = np.zeros(s.FELT_SIZE), np.zeros((1, s.TOUCH_COLUMNS))
         self.reaction = np.zeros((1, 2))
         self.tick, self.dt = 0, 1.0 / 128.0
+        self.traits = rows_of(1, TRAITS)
+        self.traits["radius"][:] = 0.33
 
     def step(self) -> float:
         self.reaction[:] = 0.0
         robot_contact(
-            self.felt, self.touches, self.agents, np.array([0.33]), self.robot, self.outline,
-            30000.0, 0.3, self.tick * self.dt, self.dt, self.reaction,
+            rows_in(self.felt, s.FELT)[0], rows_in(self.touches, s.TOUCH),
+            rows_in(self.agents, s.PERSON), self.traits, rows_in(self.robot, ROBOT)[0],
+            self.outline, 30000.0, 0.3, self.tick * self.dt, self.dt, self.reaction,
         )  # fmt: skip
         force = self.felt[s.ROBOT_FX : s.ROBOT_FY + 1]
         self.robot[2:4] += force / self.mass * self.dt

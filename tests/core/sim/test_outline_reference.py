@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact.robot_contact import robot_contact
+from crowdbot.core.crowd.contact.robot_contact import ROBOT, robot_contact
+from crowdbot.core.crowd.traits import TRAITS
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.sim.build_crowd import in_series
+from crowdbot.core.support.records import rows_in, rows_of
 from crowdbot.core.types.robot import RobotModel
 
 Array = NDArray[np.float64]
@@ -64,12 +66,14 @@ class Case:
         agents, reaction = np.zeros((1, s.AGENT_COLUMNS)), np.zeros((1, 2))
         agents[0, : s.VY + 1] = self.person
         felt, touches = np.zeros(s.FELT_SIZE), np.zeros((1, s.TOUCH_COLUMNS))
-        impulse, touched = 0.0, False
+        traits, impulse, touched = rows_of(1, TRAITS), 0.0, False
+        traits["radius"][:] = PERSON
         for tick in range(2000):
             reaction[:] = 0.0
             robot_contact(
-                felt, touches, agents, np.array([PERSON]), robot, self.body.corners,
-                self.stiffness, DISSIPATION, tick * DT, DT, reaction,
+                rows_in(felt, s.FELT)[0], rows_in(touches, s.TOUCH), rows_in(agents, s.PERSON),
+                traits, rows_in(robot, ROBOT)[0], self.body.corners, self.stiffness,
+                DISSIPATION, tick * DT, DT, reaction,
             )  # fmt: skip
             force = felt[s.ROBOT_FX : s.ROBOT_FY + 1]
             size = float(np.hypot(*force))

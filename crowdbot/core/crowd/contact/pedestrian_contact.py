@@ -8,72 +8,85 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
-from crowdbot.core.crowd.state import PUSH_X, PUSH_Y, WAITING, X, Y
+from crowdbot.core.crowd.state import (
+    People,
+)
+from crowdbot.core.crowd.traits import TraitsRecord
 from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.types.arrays import Array
 
-# Columns of `push_apart`'s scratch: those present in a row along x, close together in memory.
-_X, _Y, _RADIUS, _STIFFNESS, _PX, _PY, _ROW = range(7)
-PLACED_COLUMNS = 7
+
+class PlacedRecord:
+    """A person who is present, in `push_apart`'s scratch: along x, close together in memory."""
+
+    x: float
+    y: float
+    radius: float
+    stiffness: float
+    push_x: float
+    push_y: float
+    row: float
+
+
+PLACED = record_type(PlacedRecord)
 #: Who is farther than this from a wall's box, beside the radius, is not near it by rounding, m.
 _CLEAR = 1e-6
 
 
 @kernel
 def push_apart(
-    agents: Array,
-    radius: Array,
+    agents: People,
+    traits: Rows[TraitsRecord],
     order: NDArray[np.int64],
     walls: Array,
     discs: Array,
-    stiffness: Array,
-    placed: Array,
+    placed: Rows[PlacedRecord],
 ) -> None:
-    """Push of overlapping people, walls and fixed discs, m/s^2, into the PUSH columns.
+    """Push of overlapping people, walls and fixed discs, m/s^2, into ``push_x`` and ``push_y``.
 
     Args:
         order: (N,) all agents in any order; sorted by x afterwards.
         walls: (S, 4) segments.
         discs: (D, 3) x, y, radius: pillars, and people as they appear across a border.
-        stiffness: (N,) of what each agent feels, 1/s^2.
-        placed: (N, `PLACED_COLUMNS`) scratch.
+        placed: (N,) scratch.
     """
     largest = 0.0
     for i in range(agents.shape[0]):
-        largest = max(largest, radius[i])
+        largest = max(largest, traits[i].radius)
     _sort_along_x(agents, order)
-    count = _place(agents, radius, order, stiffness, placed)
+    count = _place(agents, traits, order, placed)
     for a in range(count):
         _push_by_walls(placed, a, walls)
         for d in range(discs.shape[0]):
-            reach = placed[a, _RADIUS] + discs[d, 2]
-            px, py = _push(placed[a, _X] - discs[d, 0], placed[a, _Y] - discs[d, 1], reach)
-            placed[a, _PX] += placed[a, _STIFFNESS] * px
-            placed[a, _PY] += placed[a, _STIFFNESS] * py
-        x, y, own = placed[a, _X], placed[a, _Y], placed[a, _RADIUS]
+            reach = placed[a].radius + discs[d, 2]
+            px, py = _push(placed[a].x - discs[d, 0], placed[a].y - discs[d, 1], reach)
+            placed[a].push_x += placed[a].stiffness * px
+            placed[a].push_y += placed[a].stiffness * py
+        x, y, own = placed[a].x, placed[a].y, placed[a].radius
         for b in range(a + 1, count):
-            if placed[b, _X] - x >= own + largest:
+            if placed[b].x - x >= own + largest:
                 break
-            reach = own + placed[b, _RADIUS]
-            if abs(placed[b, _Y] - y) < reach:
+            reach = own + placed[b].radius
+            if abs(placed[b].y - y) < reach:
                 _push_pair(placed, a, b, reach)
     for a in range(count):
-        i = int(placed[a, _ROW])
-        agents[i, PUSH_X], agents[i, PUSH_Y] = placed[a, _PX], placed[a, _PY]
+        i = int(placed[a].row)
+        agents[i].push_x, agents[i].push_y = placed[a].push_x, placed[a].push_y
 
 
 @kernel
-def _sort_along_x(agents: Array, order: NDArray[np.int64]) -> None:
+def _sort_along_x(agents: People, order: NDArray[np.int64]) -> None:
     """By x, then by row, so that the result does not depend on the order before.
 
     From one tick to the next hardly anybody changes places: few steps.
     """
     for a in range(1, order.shape[0]):
         i = order[a]
-        x, b = agents[i, X], a
+        x, b = agents[i].x, a
         while b > 0:
             j = order[b - 1]
-            if agents[j, X] < x or (agents[j, X] == x and j < i):
+            if agents[j].x < x or (agents[j].x == x and j < i):
                 break
             order[b] = j
             b -= 1
@@ -82,17 +95,20 @@ def _sort_along_x(agents: Array, order: NDArray[np.int64]) -> None:
 
 @kernel
 def _place(
-    agents: Array, radius: Array, order: NDArray[np.int64], stiffness: Array, placed: Array
+    agents: People,
+    traits: Rows[TraitsRecord],
+    order: NDArray[np.int64],
+    placed: Rows[PlacedRecord],
 ) -> int:
     """Write those present to ``placed``, in order; nobody is pushed yet. Returns how many."""
     count = 0
     for i in order:
-        if agents[i, WAITING] != 0.0:
-            agents[i, PUSH_X] = agents[i, PUSH_Y] = 0.0
+        if agents[i].waiting != 0.0:
+            agents[i].push_x = agents[i].push_y = 0.0
             continue
-        placed[count, _X], placed[count, _Y] = agents[i, X], agents[i, Y]
-        placed[count, _RADIUS], placed[count, _STIFFNESS] = radius[i], stiffness[i]
-        placed[count, _PX], placed[count, _PY], placed[count, _ROW] = 0.0, 0.0, i
+        placed[count].x, placed[count].y = agents[i].x, agents[i].y
+        placed[count].radius, placed[count].stiffness = traits[i].radius, traits[i].push
+        placed[count].push_x, placed[count].push_y, placed[count].row = 0.0, 0.0, i
         count += 1
     return count
 
@@ -109,17 +125,17 @@ def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
 
 
 @kernel
-def _push_pair(placed: Array, a: int, b: int, reach: float) -> None:
-    px, py = _push(placed[a, _X] - placed[b, _X], placed[a, _Y] - placed[b, _Y], reach)
-    placed[a, _PX] += placed[a, _STIFFNESS] * px
-    placed[a, _PY] += placed[a, _STIFFNESS] * py
-    placed[b, _PX] -= placed[b, _STIFFNESS] * px
-    placed[b, _PY] -= placed[b, _STIFFNESS] * py
+def _push_pair(placed: Rows[PlacedRecord], a: int, b: int, reach: float) -> None:
+    px, py = _push(placed[a].x - placed[b].x, placed[a].y - placed[b].y, reach)
+    placed[a].push_x += placed[a].stiffness * px
+    placed[a].push_y += placed[a].stiffness * py
+    placed[b].push_x -= placed[b].stiffness * px
+    placed[b].push_y -= placed[b].stiffness * py
 
 
 @inline_kernel
-def _push_by_walls(placed: Array, a: int, walls: Array) -> None:
-    x, y, radius = placed[a, _X], placed[a, _Y], placed[a, _RADIUS]
+def _push_by_walls(placed: Rows[PlacedRecord], a: int, walls: Array) -> None:
+    x, y, radius = placed[a].x, placed[a].y, placed[a].radius
     clear = radius + _CLEAR
     for s in range(walls.shape[0]):
         ax, ay, bx, by = walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3]
@@ -129,8 +145,8 @@ def _push_by_walls(placed: Array, a: int, walls: Array) -> None:
             continue
         nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
         px, py = _push(x - nx, y - ny, radius)
-        placed[a, _PX] += placed[a, _STIFFNESS] * px
-        placed[a, _PY] += placed[a, _STIFFNESS] * py
+        placed[a].push_x += placed[a].stiffness * px
+        placed[a].push_y += placed[a].stiffness * py
 
 
-__all__ = ["PLACED_COLUMNS", "push_apart"]
+__all__ = ["PLACED", "PlacedRecord", "push_apart"]

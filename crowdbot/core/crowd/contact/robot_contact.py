@@ -8,38 +8,44 @@ import numpy as np
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.state import (
-    CONTACTS,
+    FELT,
     FELT_SIZE,
-    PEOPLE_JX,
-    PEOPLE_JY,
-    ROBOT_FX,
-    ROBOT_FY,
-    ROBOT_JX,
-    ROBOT_JY,
-    ROBOT_TORQUE,
-    TOUCH_COLUMNS,
-    TOUCH_END,
-    TOUCH_IMPULSE,
-    TOUCH_PEAK,
-    TOUCH_SIDE,
-    TOUCH_SPEED,
-    TOUCH_START,
-    TOUCHES,
-    TOUCHING,
-    VX,
-    VY,
-    WAITING,
-    X,
-    Y,
+    TOUCH,
+    FeltRecord,
+    People,
+    TouchRecord,
 )
+from crowdbot.core.crowd.traits import TraitsRecord
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows, as_record, as_rows, record_type
 from crowdbot.core.types.arrays import Array, Indices
 
 #: A contact has ended when the surface gap exceeds this, m (metric specification, 3.10).
 RELEASE_GAP = 0.05
-#: Columns of a robot row: position, velocity, physical radius (of a polygon: 0), perceived radius,
-#: heading, yaw rate.
+#: Columns of a robot row for numpy, in the order of the fields of `RobotRecord`.
 RX, RY, RVX, RVY, R_BODY, R_SEEN, R_YAW, R_W = range(8)
+
+
+class RobotRecord:
+    """A robot as people feel it.
+
+    Attributes:
+        x, y, vx, vy: position, velocity.
+        body, seen: physical radius (of a polygon: 0), perceived radius.
+        yaw, turning: heading, yaw rate.
+    """
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    body: float
+    seen: float
+    yaw: float
+    turning: float
+
+
+ROBOT = record_type(RobotRecord)
 #: Outline of a robot that is a disc.
 DISC = np.zeros((0, 2))
 #: Nearer to an edge a point's direction from it is rounding: the edge's normal counts, m.
@@ -49,9 +55,9 @@ _ON_EDGE = 1e-12
 @kernel
 def robot_contacts(
     contacts: Array,
-    agents: Array,
-    radius: Array,
-    robots: Array,
+    agents: People,
+    traits: Rows[TraitsRecord],
+    robots: Rows[RobotRecord],
     outlines: Array,
     numbers: Indices,
     stiffnesses: Array,
@@ -72,21 +78,21 @@ def robot_contacts(
     reaction[:] = 0.0
     for r in range(robots.shape[0]):
         own = contacts[numbers[r]]
-        felt, touches = own[:FELT_SIZE], own[FELT_SIZE:].reshape(-1, TOUCH_COLUMNS)
+        felt, touches = as_record(own, FELT), as_rows(own[FELT_SIZE:], TOUCH)
         outline = outlines[r][: corners_of(outlines, r)]
         robot_contact(
-            felt, touches, agents, radius, robots[r], outline, stiffnesses[r], dissipation, now,
+            felt, touches, agents, traits, robots[r], outline, stiffnesses[r], dissipation, now,
             dt, reaction,
         )  # fmt: skip
 
 
 @kernel
 def robot_contact(
-    felt: Array,
-    touches: Array,
-    agents: Array,
-    radius: Array,
-    robot: Array,
+    felt: FeltRecord,
+    touches: Rows[TouchRecord],
+    agents: People,
+    traits: Rows[TraitsRecord],
+    robot: RobotRecord,
     outline: Array,
     stiffness: float,
     dissipation: float,
@@ -101,54 +107,53 @@ def robot_contact(
     to ``reaction`` (N, 2), and records the contacts in ``touches``.
 
     Args:
-        felt, touches: (F,), (N, T) as in `crowdbot.core.crowd.state`, of this robot.
-        robot: (8,) columns as above.
+        felt, touches: of this robot; (N,) of each person.
         outline: (K, 2) in the robot's frame, m: none (a disc), the ends of a capsule's axis, or
             the corners of a convex polygon, counter-clockwise.
     """
-    felt[ROBOT_FX] = felt[ROBOT_FY] = felt[ROBOT_TORQUE] = 0.0
+    felt.robot_fx = felt.robot_fy = felt.robot_torque = 0.0
     extent = extent_of(outline)
     for i in range(agents.shape[0]):
-        if agents[i, WAITING] != 0.0:
-            if touches[i, TOUCHING] != 0.0:
+        if agents[i].waiting != 0.0:
+            if touches[i].touching != 0.0:
                 _end_touch(felt, touches, i)
             continue
-        dx, dy = robot[RX] - agents[i, X], robot[RY] - agents[i, Y]
-        reach = robot[R_BODY] + radius[i]
+        dx, dy = robot.x - agents[i].x, robot.y - agents[i].y
+        reach = robot.body + traits[i].radius
         if dx * dx + dy * dy > (extent + reach + RELEASE_GAP) ** 2:
-            if touches[i, TOUCHING] != 0.0:
+            if touches[i].touching != 0.0:
                 _end_touch(felt, touches, i)
             continue
-        depth, nx, ny, px, py = overlap(robot, outline, dx, dy, reach)
+        depth, nx, ny, px, py = overlap(robot.yaw, outline, dx, dy, reach)
         if depth < 0.0:
-            if depth < -RELEASE_GAP and touches[i, TOUCHING] != 0.0:
+            if depth < -RELEASE_GAP and touches[i].touching != 0.0:
                 _end_touch(felt, touches, i)
             continue
-        vx = robot[RVX] - robot[R_W] * py - agents[i, VX]
-        vy = robot[RVY] + robot[R_W] * px - agents[i, VY]
+        vx = robot.vx - robot.turning * py - agents[i].vx
+        vy = robot.vy + robot.turning * px - agents[i].vy
         closing = -(vx * nx + vy * ny)
         force = max(0.0, stiffness * depth * (1.0 + dissipation * closing))
         fx, fy = force * nx, force * ny
-        felt[ROBOT_FX] += fx
-        felt[ROBOT_FY] += fy
-        felt[ROBOT_TORQUE] += px * fy - py * fx
+        felt.robot_fx += fx
+        felt.robot_fy += fy
+        felt.robot_torque += px * fy - py * fx
         reaction[i, 0] -= fx
         reaction[i, 1] -= fy
-        felt[ROBOT_JX] += fx * dt
-        felt[ROBOT_JY] += fy * dt
-        felt[PEOPLE_JX] -= fx * dt
-        felt[PEOPLE_JY] -= fy * dt
-        if touches[i, TOUCHING] == 0.0:
-            side = bearing(robot, px - robot[R_BODY] * nx, py - robot[R_BODY] * ny)
+        felt.robot_jx += fx * dt
+        felt.robot_jy += fy * dt
+        felt.people_jx -= fx * dt
+        felt.people_jy -= fy * dt
+        if touches[i].touching == 0.0:
+            side = bearing(robot, px - robot.body * nx, py - robot.body * ny)
             _begin_touch(touches, i, now, dt, depth, closing, math.hypot(vx, vy), side)
-        touches[i, TOUCH_END] = now
-        touches[i, TOUCH_IMPULSE] += force * dt
-        touches[i, TOUCH_PEAK] = max(touches[i, TOUCH_PEAK], force)
+        touches[i].end = now
+        touches[i].impulse += force * dt
+        touches[i].peak = max(touches[i].peak, force)
 
 
 @kernel
 def corners_of(outlines: Array, r: int) -> int:
-    """How many corners robot r has, of outlines (R, K, 2) whose shorter ones end with NaN."""
+    """Return how many corners robot r has; outlines (R, K, 2) with fewer end with NaN."""
     count = 0
     while count < outlines.shape[1] and outlines[r, count, 0] == outlines[r, count, 0]:
         count += 1
@@ -157,11 +162,12 @@ def corners_of(outlines: Array, r: int) -> int:
 
 @kernel
 def overlap(
-    robot: Array, outline: Array, dx: float, dy: float, reach: float
+    yaw: float, outline: Array, dx: float, dy: float, reach: float
 ) -> tuple[float, float, float, float, float]:
     """How a robot and a person's disc overlap.
 
     Args:
+        yaw: heading of the robot, rad.
         dx, dy: from the person to the robot, m.
         reach: radius of the person and of the robot's rounding together, m.
 
@@ -173,7 +179,7 @@ def overlap(
         distance = math.sqrt(dx * dx + dy * dy)
         nx, ny = (dx / distance, dy / distance) if distance > 0.0 else (1.0, 0.0)
         return reach - distance, nx, ny, 0.0, 0.0
-    c, s = math.cos(robot[R_YAW]), math.sin(robot[R_YAW])
+    c, s = math.cos(yaw), math.sin(yaw)
     gap, ux, uy, qx, qy = from_outline(outline, -c * dx - s * dy, s * dx - c * dy)
     return reach - gap, s * uy - c * ux, -s * ux - c * uy, c * qx - s * qy, s * qx + c * qy
 
@@ -215,15 +221,15 @@ def extent_of(outline: Array) -> float:
 
 
 @kernel
-def bearing(robot: Array, x: float, y: float) -> float:
+def bearing(robot: RobotRecord, x: float, y: float) -> float:
     """Direction of a vector (world frame) as the robot sees it, rad, counter-clockwise."""
-    angle = math.atan2(y, x) - robot[R_YAW]
+    angle = math.atan2(y, x) - robot.yaw
     return math.atan2(math.sin(angle), math.cos(angle))
 
 
 @kernel
 def _begin_touch(
-    touches: Array,
+    touches: Rows[TouchRecord],
     i: int,
     now: float,
     dt: float,
@@ -233,13 +239,13 @@ def _begin_touch(
     side: float,
 ) -> None:
     since = min(dt, depth / closing) if closing > 0.0 else 0.0
-    touches[i, TOUCHING], touches[i, TOUCH_START] = 1.0, max(0.0, now - since)
-    touches[i, TOUCH_SPEED], touches[i, TOUCH_IMPULSE], touches[i, TOUCH_PEAK] = speed, 0.0, 0.0
-    touches[i, TOUCH_SIDE] = side
+    touches[i].touching, touches[i].start = 1.0, max(0.0, now - since)
+    touches[i].speed, touches[i].impulse, touches[i].peak = speed, 0.0, 0.0
+    touches[i].side = side
 
 
 @kernel
-def _end_touch(felt: Array, touches: Array, i: int) -> None:
-    touches[i, TOUCHING] = 0.0
-    touches[i, TOUCHES] += 1.0
-    felt[CONTACTS] += 1.0
+def _end_touch(felt: FeltRecord, touches: Rows[TouchRecord], i: int) -> None:
+    touches[i].touching = 0.0
+    touches[i].finished += 1.0
+    felt.contacts += 1.0

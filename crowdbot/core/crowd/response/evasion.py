@@ -8,28 +8,18 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.contact.robot_contact import (
-    R_BODY,
-    R_YAW,
-    RVX,
-    RVY,
-    RX,
-    RY,
+    ROBOT,
+    RobotRecord,
     corners_of,
     overlap,
 )
 from crowdbot.core.crowd.response.notice import reacts
-from crowdbot.core.crowd.response.parameters import (
-    ALL_STOP,
-    BRAKING,
-    CLEARANCE,
-    DECISION,
-    HORIZON,
-    LATERAL,
-    STOP_GAP,
-    TOTAL,
+from crowdbot.core.crowd.response.parameters import DecisionResponse
+from crowdbot.core.crowd.state import (
+    People,
 )
-from crowdbot.core.crowd.state import AX, AY, VX, VY, X, Y
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows, as_rows
 from crowdbot.core.types.arrays import Array, Mask
 
 #: Nobody expects to be clear in less than this, s: one step.
@@ -42,63 +32,65 @@ _ROOM = 0.05
 
 @kernel
 def evade_robots(
-    agents: Array,
+    agents: People,
     radius: Array,
     heeds: Mask,
     late: Mask,
     robots: Array,
     outlines: Array,
-    response: Array,
+    response: Rows[DecisionResponse],
     now: float,
 ) -> None:
     """Change the accelerations that people desire to those that evade robots, in place.
 
     Args:
-        agents: (N, C) rows of the state; ``AX`` and ``AY`` hold what each wants without robots.
+        agents: (N,) of the state; ``ax`` and ``ay`` hold what each wants without robots.
         radius: (N,) of the agents, m.
         heeds, late: (N,) who takes notice of robots at all, and who does late.
-        robots, outlines: as people see them, see `crowdbot.core.crowd.contact.robot_contact`.
+        robots, outlines: (R, 8), (R, K, 2) as people see them, see
+            `crowdbot.core.crowd.contact.robot_contact`.
         response: `crowdbot.core.crowd.response.parameters.Human.by_decision`.
         now: time since the start, s.
     """
+    seen, own = as_rows(robots, ROBOT), response[0]
     for i in range(agents.shape[0]):
         if not heeds[i]:
-            if response[ALL_STOP] != 0.0:  # of no robot but one that stands
-                reacts(agents, i, radius[i], late[i], robots, outlines, response, now)
+            if own.all_stop != 0.0:  # of no robot but one that stands
+                reacts(agents, i, radius[i], late[i], seen, outlines, own, now)
             continue
-        if not reacts(agents, i, radius[i], late[i], robots, outlines, response, now):
+        if not reacts(agents, i, radius[i], late[i], seen, outlines, own, now):
             continue
         ex = ey = 0.0
-        for r in range(robots.shape[0]):
+        for r in range(seen.shape[0]):
             x, y = evasion(
-                agents, i, radius[i], robots[r], outlines[r][: corners_of(outlines, r)], response
+                agents, i, radius[i], seen[r], outlines[r][: corners_of(outlines, r)], own
             )
             ex += x
             ey += y
         if ex != 0.0 or ey != 0.0:
-            _put_first(agents, i, ex, ey, response[TOTAL])
+            _put_first(agents, i, ex, ey, own.total)
 
 
 @kernel
-def _put_first(agents: Array, i: int, ex: float, ey: float, most: float) -> None:
+def _put_first(agents: People, i: int, ex: float, ey: float, most: float) -> None:
     """Lay evasion over own will: what opposes it is dropped, and both keep within ``most``."""
-    wx, wy = agents[i, AX], agents[i, AY]
+    wx, wy = agents[i].ax, agents[i].ay
     against = min(0.0, wx * ex + wy * ey) / (ex * ex + ey * ey)
     wx += ex - against * ex
     wy += ey - against * ey
     size = math.hypot(wx, wy)
     share = most / size if size > most else 1.0
-    agents[i, AX], agents[i, AY] = wx * share, wy * share
+    agents[i].ax, agents[i].ay = wx * share, wy * share
 
 
 @kernel
 def evasion(
-    agents: Array,
+    agents: People,
     i: int,
     radius: float,
-    robot: Array,
+    robot: RobotRecord,
     outline: Array,
-    response: Array,
+    response: DecisionResponse,
 ) -> tuple[float, float]:
     """Acceleration with which agent i evades one robot that keeps its course, m/s^2.
 
@@ -106,20 +98,20 @@ def evasion(
     centre) lies at some place along it and across it. The agent has to shift by so much that the
     outline, grown by both radii and the clearance, lies beside the ray; it takes the shorter side.
     """
-    wx, wy = agents[i, VX] - robot[RVX], agents[i, VY] - robot[RVY]
+    wx, wy = agents[i].vx - robot.vx, agents[i].vy - robot.vy
     speed = math.hypot(wx, wy)
     if speed < _STILL:
         return 0.0, 0.0
     ux, uy = wx / speed, wy / speed
-    wanted = robot[R_BODY] + radius + response[CLEARANCE]
+    wanted = robot.body + radius + response.clearance
     shift, along, first, last, left = _way_round(agents, i, robot, outline, ux, uy, wanted)
-    if shift <= 0.0 or last <= 0.0 or first >= response[HORIZON] * speed:
+    if shift <= 0.0 or last <= 0.0 or first >= response.horizon * speed:
         return 0.0, 0.0
     time = max(along / speed, _SOONEST)
     need = 2.0 * shift / (time * time)
-    sideways = min(need, response[LATERAL]) * (1.0 if left else -1.0)
+    sideways = min(need, response.lateral) * (1.0 if left else -1.0)
     ex, ey = -sideways * uy, sideways * ux
-    if need > response[LATERAL]:
+    if need > response.lateral:
         bx, by = _braking(agents, i, radius, robot, outline, response)
         ex += bx
         ey += by
@@ -128,9 +120,9 @@ def evasion(
 
 @kernel
 def _way_round(
-    agents: Array,
+    agents: People,
     i: int,
-    robot: Array,
+    robot: RobotRecord,
     outline: Array,
     ux: float,
     uy: float,
@@ -146,8 +138,8 @@ def _way_round(
         by how much the agent has to shift; the place along the ray of the corner that decides;
         where the grown outline begins and where its last corner lies; whether to the left. m.
     """
-    c, s = math.cos(robot[R_YAW]), math.sin(robot[R_YAW])
-    dx, dy = robot[RX] - agents[i, X], robot[RY] - agents[i, Y]
+    c, s = math.cos(robot.yaw), math.sin(robot.yaw)
+    dx, dy = robot.x - agents[i].x, robot.y - agents[i].y
     left = right = last = -math.inf
     first = math.inf
     abreast_left = abreast_right = 0.0
@@ -170,20 +162,20 @@ def _way_round(
 
 @kernel
 def _braking(
-    agents: Array,
+    agents: People,
     i: int,
     radius: float,
-    robot: Array,
+    robot: RobotRecord,
     outline: Array,
-    response: Array,
+    response: DecisionResponse,
 ) -> tuple[float, float]:
     """What stops agent i in front of a robot that it walks towards, m/s^2; never a step back."""
-    dx, dy = robot[RX] - agents[i, X], robot[RY] - agents[i, Y]
-    depth, nx, ny, _, _ = overlap(robot, outline, dx, dy, robot[R_BODY] + radius)
-    own = agents[i, VX] * nx + agents[i, VY] * ny
+    dx, dy = robot.x - agents[i].x, robot.y - agents[i].y
+    depth, nx, ny, _, _ = overlap(robot.yaw, outline, dx, dy, robot.body + radius)
+    own = agents[i].vx * nx + agents[i].vy * ny
     if own <= 0.0:
         return 0.0, 0.0
-    closing = own + max(0.0, -(robot[RVX] * nx + robot[RVY] * ny))
-    need = 0.5 * closing * closing / max(-depth - response[STOP_GAP], _ROOM)
-    brake = min(response[BRAKING], need, own / response[DECISION])
+    closing = own + max(0.0, -(robot.vx * nx + robot.vy * ny))
+    need = 0.5 * closing * closing / max(-depth - response.stop_gap, _ROOM)
+    brake = min(response.braking, need, own / response.decision)
     return -brake * nx, -brake * ny

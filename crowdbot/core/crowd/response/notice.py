@@ -3,41 +3,20 @@
 from __future__ import annotations
 
 from crowdbot.core.crowd.contact.robot_contact import (
-    R_BODY,
-    RVX,
-    RVY,
-    RX,
-    RY,
+    RobotRecord,
     corners_of,
     extent_of,
     overlap,
 )
-from crowdbot.core.crowd.response.parameters import (
-    DECISION,
-    LATE_GAP,
-    LATE_TIME,
-    LATE_TIME_STANDING,
-    REACTION_TIME,
-    SEEN_MOVING,
-    SEEN_STANDING,
-    SIGHT,
-    VIEW_COSINE,
-)
+from crowdbot.core.crowd.response.parameters import DecisionResponse
 from crowdbot.core.crowd.response.standing import FAR, stands
 from crowdbot.core.crowd.state import (
-    BESIDE,
-    DIR_X,
-    DIR_Y,
-    NOTICED,
     PRESENT,
     UNAWARE,
-    VX,
-    VY,
-    WAITING,
-    X,
-    Y,
+    People,
 )
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
 #: Nobody comes nearer to a robot faster than this, m/s.
@@ -46,13 +25,13 @@ _FASTEST = 5.0
 
 @kernel
 def reacts(
-    agents: Array,
+    agents: People,
     i: int,
     radius: float,
     late: bool,
-    robots: Array,
+    robots: Rows[RobotRecord],
     outlines: Array,
-    response: Array,
+    response: DecisionResponse,
     now: float,
 ) -> bool:
     """Whether agent i has noticed robots for long enough to do something; keeps account of it.
@@ -67,47 +46,47 @@ def reacts(
         now: time since the start, s.
     """
     near, found = False, False
-    agents[i, BESIDE] = 0.0
-    if agents[i, WAITING] == PRESENT:
+    agents[i].beside = 0.0
+    if agents[i].waiting == PRESENT:
         for r in range(robots.shape[0]):
-            dx, dy = robots[r, RX] - agents[i, X], robots[r, RY] - agents[i, Y]
-            reach, outline = robots[r, R_BODY] + radius, outlines[r][: corners_of(outlines, r)]
+            dx, dy = robots[r].x - agents[i].x, robots[r].y - agents[i].y
+            reach, outline = robots[r].body + radius, outlines[r][: corners_of(outlines, r)]
             away2, around = dx * dx + dy * dy, extent_of(outline) + reach
-            if away2 < (FAR + _FASTEST * response[DECISION] + around) ** 2:
-                agents[i, BESIDE] = 1.0
-            if away2 > (response[SIGHT] + around) ** 2:
+            if away2 < (FAR + _FASTEST * response.decision + around) ** 2:
+                agents[i].beside = 1.0
+            if away2 > (response.sight + around) ** 2:
                 continue
-            depth, nx, ny, _, _ = overlap(robots[r], outline, dx, dy, reach)
-            if depth < -response[SIGHT]:
+            depth, nx, ny, _, _ = overlap(robots[r].yaw, outline, dx, dy, reach)
+            if depth < -response.sight:
                 continue
             near = True
-            if agents[i, NOTICED] == UNAWARE and not found:
+            if agents[i].noticed == UNAWARE and not found:
                 found = _sees(agents, i, late, robots[r], -depth, nx, ny, response)
     if not near:
-        agents[i, NOTICED] = UNAWARE
+        agents[i].noticed = UNAWARE
     elif found:
-        agents[i, NOTICED] = now
-    noticed: float = agents[i, NOTICED]
-    return noticed != UNAWARE and now - noticed >= float(response[REACTION_TIME])
+        agents[i].noticed = now
+    noticed: float = agents[i].noticed
+    return noticed != UNAWARE and now - noticed >= float(response.reaction_time)
 
 
 @kernel
 def _sees(
-    agents: Array,
+    agents: People,
     i: int,
     late: bool,
-    robot: Array,
+    robot: RobotRecord,
     gap: float,
     nx: float,
     ny: float,
-    response: Array,
+    response: DecisionResponse,
 ) -> bool:
     """Whether agent i notices a robot within sight, in the direction n, now."""
-    if nx * agents[i, DIR_X] + ny * agents[i, DIR_Y] < response[VIEW_COSINE]:
+    if nx * agents[i].dir_x + ny * agents[i].dir_y < response.view_cosine:
         return False  # nobody sees what is behind
     if not late:
         return True
-    closing = (agents[i, VX] - robot[RVX]) * nx + (agents[i, VY] - robot[RVY]) * ny
-    share = stands(robot, 0.0, response[SEEN_STANDING], response[SEEN_MOVING])
-    time = response[LATE_TIME] + share * (response[LATE_TIME_STANDING] - response[LATE_TIME])
-    return gap < max(float(response[LATE_GAP]), float(time * closing))
+    closing = (agents[i].vx - robot.vx) * nx + (agents[i].vy - robot.vy) * ny
+    share = stands(robot, 0.0, response.seen_standing, response.seen_moving)
+    time = response.late_time + share * (response.late_time_standing - response.late_time)
+    return gap < max(float(response.late_gap), float(time * closing))

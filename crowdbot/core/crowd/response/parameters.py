@@ -1,13 +1,53 @@
-"""Parameters of the response to robots, as an object and as the arrays that kernels take."""
+"""Parameters of the response to robots, as an object and as the records that kernels take."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-import numpy as np
+from crowdbot.core.support.records import Rows, record_type, record_values, rows_in
 
-from crowdbot.core.types.arrays import Array
+
+class DecisionResponse:
+    """What `crowdbot.core.crowd.response.evasion` takes; as of `Human`, where not said.
+
+    Attributes:
+        view_cosine: of half the field of view.
+        lateral, braking, total: largest accelerations.
+        decision: time between decisions, s.
+        seen_standing, seen_moving: `Human.standing_speed`, `Human.moving_speed`.
+        all_stop: 1 if all stop short.
+    """
+
+    sight: float
+    view_cosine: float
+    late_time: float
+    late_gap: float
+    reaction_time: float
+    horizon: float
+    clearance: float
+    lateral: float
+    braking: float
+    total: float
+    stop_gap: float
+    decision: float
+    late_time_standing: float
+    seen_standing: float
+    seen_moving: float
+    all_stop: float
+
+
+class TickResponse:
+    """What `crowdbot.core.crowd.step.tick` takes; as of `Human`."""
+
+    standing_speed: float
+    moving_speed: float
+    least_braking: float
+    standing_gap: float
+    standing_stiffness: float
+
+
+DECISION_RESPONSE, TICK_RESPONSE = record_type(DecisionResponse), record_type(TickResponse)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,29 +94,38 @@ class Human:
     shown_to_policies: bool = False
     all_stop_short: bool = False
 
-    def by_decision(self, dt: float) -> Array:
-        """What `crowdbot.core.crowd.response.evasion` takes; ``dt`` (s) between decisions."""
-        return np.array(
-            [
-                self.sight, math.cos(0.5 * self.field_of_view), self.late_time, self.late_gap,
-                self.reaction_time, self.horizon, self.clearance, self.lateral_acceleration,
-                self.braking, self.total_acceleration, self.stop_gap, dt,
-                self.late_time_standing, self.standing_speed, self.moving_speed,
-                self.all_stop_short,
-            ]
-        )  # fmt: skip
+    def by_decision(self, dt: float) -> Rows[DecisionResponse]:
+        """(1,) the numbers for decisions that come every ``dt`` seconds."""
+        numbers = record_values(
+            DECISION_RESPONSE,
+            sight=self.sight,
+            view_cosine=math.cos(0.5 * self.field_of_view),
+            late_time=self.late_time,
+            late_gap=self.late_gap,
+            reaction_time=self.reaction_time,
+            horizon=self.horizon,
+            clearance=self.clearance,
+            lateral=self.lateral_acceleration,
+            braking=self.braking,
+            total=self.total_acceleration,
+            stop_gap=self.stop_gap,
+            decision=dt,
+            late_time_standing=self.late_time_standing,
+            seen_standing=self.standing_speed,
+            seen_moving=self.moving_speed,
+            all_stop=self.all_stop_short,
+        )
+        return rows_in(numbers, DECISION_RESPONSE)
 
     @property
-    def by_tick(self) -> Array:
-        """What `crowdbot.core.crowd.step.tick` takes."""
-        near = self.braking, self.standing_gap, self.standing_stiffness
-        return np.array([self.standing_speed, self.moving_speed, *near])
-
-
-# Entries of `Human.by_decision`.
-(
-    SIGHT, VIEW_COSINE, LATE_TIME, LATE_GAP, REACTION_TIME, HORIZON, CLEARANCE, LATERAL, BRAKING,
-    TOTAL, STOP_GAP, DECISION, LATE_TIME_STANDING, SEEN_STANDING, SEEN_MOVING, ALL_STOP,
-) = range(16)  # fmt: skip
-# Entries of `Human.by_tick`.
-STANDING_SPEED, MOVING_SPEED, LEAST_BRAKING, STANDING_GAP, STANDING_STIFFNESS = range(5)
+    def by_tick(self) -> Rows[TickResponse]:
+        """(1,) the numbers for ticks."""
+        numbers = record_values(
+            TICK_RESPONSE,
+            standing_speed=self.standing_speed,
+            moving_speed=self.moving_speed,
+            least_braking=self.braking,
+            standing_gap=self.standing_gap,
+            standing_stiffness=self.standing_stiffness,
+        )
+        return rows_in(numbers, TICK_RESPONSE)

@@ -1,4 +1,4 @@
-"""Router: keeps the shortest ways to the goals of a crowd, and says where everybody walks next."""
+"""Router: keeps the shortest ways to the goals of a crowd, and says where people walk next."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.routing.packed_mesh import PackedMesh
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.route_map import RouteMap
-from crowdbot.core.crowd.routing.waypoints import Habits, find_aims
+from crowdbot.core.crowd.routing.waypoints import Habits, find_waypoints
 from crowdbot.core.types.arrays import Array
 
 #: Bodies are rounded up to a multiple of this, so that few maps are needed, m.
@@ -23,7 +23,7 @@ _SPARE_TREES = 64
 
 
 class Router:
-    """Finds the aims of everybody. What it keeps follows from goals: it is a cache, no state.
+    """Finds the waypoints of all people. What it keeps follows from goals: it is a cache, no state.
 
     Args:
         agents: everybody, present or to come.
@@ -46,20 +46,16 @@ class Router:
             for size in np.unique(rounded(agents.radius))
         ]
 
-    def find(self, rows: Array, dt: float, decision: int = -1) -> Array:
-        """Set the AIM columns of the crowd's state.
+    def find(self, people: s.People, dt: float, decision: int = -1) -> None:
+        """Set the waypoints of all people.
 
         Args:
-            rows: (N, C) of the crowd's state.
+            people: of the crowd's state.
             dt: since the last decision, s.
             decision: its number; below 0 everybody looks around, else one after the other.
-
-        Returns:
-            (N, 2) where everybody walks next, m: a view of these columns.
         """
         for one in self._classes:
-            one.find(rows, self._agents, self._habits, dt, decision)
-        return rows[:, s.AIM_X : s.AIM_Y + 1]
+            one.find(people, self._agents, self._habits, dt, decision)
 
     def way(self, row: int, start: tuple[float, float], goal: tuple[float, float]) -> Array:
         """The shortest way (K, 2) for agent ``row`` from a point to another, both included, m."""
@@ -87,29 +83,33 @@ class _BodyClass:
         self._left = np.zeros((0, routes.count))
         self._after = np.zeros((0, routes.count), np.int64)
 
-    def find(self, rows: Array, agents: Agents, habits: Habits, dt: float, decision: int) -> None:
+    def find(
+        self, people: s.People, agents: Agents, habits: Habits, dt: float, decision: int
+    ) -> None:
         for _ in range(len(self.members)):  # usually nobody has a new goal, now and then one
-            changed = self._aims(rows, agents, habits, dt, decision)
+            changed = self._waypoints(people, agents, habits, dt, decision)
             if not changed:
                 return
-            self._plan(rows, changed - 1)
-        self._aims(rows, agents, habits, dt, decision)
+            self._plan(people, changed - 1)
+        self._waypoints(people, agents, habits, dt, decision)
 
-    def _aims(self, rows: Array, agents: Agents, habits: Habits, dt: float, decision: int) -> int:
-        """1 + the first member with a new goal; if there is none, aims are found."""
+    def _waypoints(
+        self, people: s.People, agents: Agents, habits: Habits, dt: float, decision: int
+    ) -> int:
+        """Return 1 + the first member with a new goal; 0 after all waypoints are found."""
         fixed: tuple[Any, ...] = (*self._map, *habits)
-        return find_aims(
-            rows, decision, dt, self.members, agents.id, agents.preferred_speed, self._goal,
+        return find_waypoints(
+            people, decision, dt, self.members, agents.id, agents.preferred_speed, self._goal,
             self._tree_of, self._left, self._after, *fixed,
         )  # fmt: skip
 
-    def _plan(self, rows: Array, k: int) -> None:
+    def _plan(self, people: s.People, k: int) -> None:
         """Find the ways to a member's new goal."""
         row = self.members[k]
-        x, y = float(rows[row, s.GOAL_X]), float(rows[row, s.GOAL_Y])
+        x, y = float(people["goal_x"][row]), float(people["goal_y"][row])
         self._goal[k, 0], self._goal[k, 1] = x, y
         self._tree_of[row] = self._tree(x, y)
-        rows[row, s.AIM], rows[row, s.AIM_X] = 0.0, np.nan
+        people["corner"][row], people["waypoint_x"][row] = 0.0, np.nan
 
     def _tree(self, x: float, y: float) -> int:
         """The row of the ways to a goal, found or planned."""

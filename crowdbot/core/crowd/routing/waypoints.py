@@ -14,24 +14,9 @@ from crowdbot.core.crowd.routing.packed_mesh import sight_in, table_in
 from crowdbot.core.crowd.routing.sight import Sight, is_clear
 from crowdbot.core.crowd.routing.trees import TO_GOAL
 from crowdbot.core.crowd.state import (
-    AIM,
-    AIM_X,
-    AIM_Y,
-    ASIDE,
-    AX,
-    AY,
-    DETOURS,
-    GOAL_X,
-    GOAL_Y,
     GONE,
     PRESENT,
-    SLOW_FOR,
-    TRIP,
-    VX,
-    VY,
-    WAITING,
-    X,
-    Y,
+    People,
 )
 from crowdbot.core.crowd.velocity_search import counter_rng
 from crowdbot.core.support.compile import inline_kernel, kernel
@@ -41,7 +26,7 @@ from crowdbot.core.types.arrays import Array, Indices
 _SHARE_OF_ROOM = 0.8
 #: Who is nearer to the place aside of a corner, or to the corner, has reached it, m.
 _REACHED = 0.4
-#: Aims that are nearer are moved on, so that nobody brakes at them, m.
+#: Waypoints that are nearer are moved on, so that nobody brakes at them, m.
 _LEAST_AHEAD = 1.0
 #: Corners that are not farther from each other, beside the room at them, are one opening, m.
 _SAME_OPENING, _WIDEST_OPENING = 1.0, 3.0
@@ -76,12 +61,12 @@ class Habits(NamedTuple):
 
 
 @kernel
-def find_aims(
-    agents: Array, decision: int, dt: float, members: Indices, ids: Indices, preferred: Array,
+def find_waypoints(
+    agents: People, decision: int, dt: float, members: Indices, ids: Indices, preferred: Array,
     goals: Array, tree_of: Indices, left: Array, after: Indices,
     wholes: Indices, reals: Array, spread: float, patience: float, detour: float, key: np.uint64,
 ) -> int:  # fmt: skip
-    """Set the AIM columns of people who are in the world or will be.
+    """Set the waypoints of people who are in the world or will be.
 
     Args:
         decision: number of the decision; below 0 everybody looks around.
@@ -101,13 +86,13 @@ def find_aims(
     """
     for k in range(members.shape[0]):
         i = members[k]
-        if goals[k, 0] != agents[i, GOAL_X] or goals[k, 1] != agents[i, GOAL_Y]:
+        if goals[k, 0] != agents[i].goal_x or goals[k, 1] != agents[i].goal_y:
             return k + 1
     table = table_in(wholes, reals)
     sight, wider = sight_in(wholes, reals, 0), sight_in(wholes, reals, 1)
     habits = Habits(spread, patience, detour, key)
     for i in members:
-        if agents[i, WAITING] == GONE:
+        if agents[i].waiting == GONE:
             continue
         blocked = _no_headway(agents, i, preferred[i], patience, dt)
         turn = decision < 0 or (decision + ids[i]) % _LOOKS_EVERY == 0
@@ -118,29 +103,31 @@ def find_aims(
 
 
 @kernel
-def _looks(agents: Array, i: int, table: Array) -> bool:
-    """Whether agent i looks around before its turn: it has no aim yet, or is near a corner."""
-    v = int(agents[i, AIM]) - 1
+def _looks(agents: People, i: int, table: Array) -> bool:
+    """Return True if agent i looks around early: it has no waypoint, or is near a corner."""
+    v = int(agents[i].corner) - 1
     if v < 0:
-        return bool(agents[i, AIM_X] != agents[i, GOAL_X] or agents[i, AIM_Y] != agents[i, GOAL_Y])
-    dx, dy = table[v, CORNER_X] - agents[i, X], table[v, CORNER_Y] - agents[i, Y]
+        return bool(
+            agents[i].waypoint_x != agents[i].goal_x or agents[i].waypoint_y != agents[i].goal_y
+        )
+    dx, dy = table[v, CORNER_X] - agents[i].x, table[v, CORNER_Y] - agents[i].y
     return bool(dx * dx + dy * dy < _NEAR_CORNER * _NEAR_CORNER)
 
 
 @inline_kernel
 def _look(
-    agents: Array, i: int, number: int, left: Array, after: Indices, table: Array,
+    agents: People, i: int, number: int, left: Array, after: Indices, table: Array,
     sight: Sight, wider: Sight, blocked: bool, habits: Habits,
 ) -> None:  # fmt: skip
     """Agent i looks for its goal, or for the corner on the way to it."""
     if blocked:
-        agents[i, DETOURS] += 1.0
-    if agents[i, AIM] == _ASIDE_OF_ALL:
-        dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+        agents[i].detours += 1.0
+    if agents[i].corner == _ASIDE_OF_ALL:
+        dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
         if not blocked and math.hypot(dx, dy) > _STEPPED:
             return
-        agents[i, AIM] = 0.0
-    v = int(agents[i, AIM]) - 1
+        agents[i].corner = 0.0
+    v = int(agents[i].corner) - 1
     # Who aims at a corner after which others follow does not see the goal before these.
     last = v < 0 or after[v] == TO_GOAL or not math.isfinite(left[v])
     if (last or blocked) and _sees_goal(agents, i, sight):
@@ -150,92 +137,98 @@ def _look(
         return
     if blocked and v >= 0:
         _choose(agents, i, left, after, table, sight, v, habits)
-        _aim(agents, i, number, table, sight, habits)
-        if agents[i, AIM] == v + 1.0:  # there is no other way
+        _set_waypoint(agents, i, number, table, sight, habits)
+        if agents[i].corner == v + 1.0:  # there is no other way
             _step_aside(agents, i, number, sight, habits)
         return
     found = _follow(agents, i, number, after, left, table, sight, wider, habits)
-    w = int(agents[i, AIM]) - 1
+    w = int(agents[i].corner) - 1
     if w != v and (w < 0 or after[w] == TO_GOAL) and _sees_goal(agents, i, sight):
         _forget(agents, i)
         return
     if w < 0:
         _choose(agents, i, left, after, table, sight, -1, habits)
-    if agents[i, AIM] == 0.0:
+    if agents[i].corner == 0.0:
         _choose(agents, i, left, after, table, wider, -1, habits)
     if not found:
-        _aim(agents, i, number, table, sight, habits)
+        _set_waypoint(agents, i, number, table, sight, habits)
 
 
 @kernel
-def _step_aside(agents: Array, i: int, number: int, sight: Sight, habits: Habits) -> None:
+def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habits) -> None:
     """Agent i, who faces somebody that it cannot pass, walks a little to one side first."""
-    dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+    dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
     away = math.hypot(dx, dy)
     if away == 0.0:
         return
-    trip, draw = int(agents[i, TRIP]), int(agents[i, DETOURS])
+    trip, draw = int(agents[i].trip), int(agents[i].detours)
     for k in range(_SIDES):
         counter = _SIDE_DRAWS + _SIDES * draw + k
         u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, counter)
         turn = math.pi * (0.4 + 0.6 * u) if u < 0.5 else -math.pi * (0.4 + 0.6 * (u - 0.5))
         c, t = _STEP * math.cos(turn) / away, _STEP * math.sin(turn) / away
-        x, y = agents[i, X] + c * dx - t * dy, agents[i, Y] + t * dx + c * dy
-        if is_clear(agents[i, X], agents[i, Y], x, y, sight):
-            agents[i, AIM], agents[i, AIM_X], agents[i, AIM_Y] = _ASIDE_OF_ALL, x, y
+        x, y = agents[i].x + c * dx - t * dy, agents[i].y + t * dx + c * dy
+        if is_clear(agents[i].x, agents[i].y, x, y, sight):
+            agents[i].corner, agents[i].waypoint_x, agents[i].waypoint_y = _ASIDE_OF_ALL, x, y
             return
 
 
 @kernel
-def squeeze(agents: Array, max_acceleration: Array) -> None:
+def squeeze(agents: People, max_acceleration: Array) -> None:
     """Who steps aside does so slowly, whomever that touches: of these nobody gives way alone.
 
-    Sets the accelerations of who does; `find_aims` says who.
+    Sets the accelerations of who does; `find_waypoints` says who.
     """
     for i in range(agents.shape[0]):
-        if agents[i, AIM] != _ASIDE_OF_ALL or agents[i, WAITING] != PRESENT:
+        if agents[i].corner != _ASIDE_OF_ALL or agents[i].waiting != PRESENT:
             continue
-        dx, dy = agents[i, AIM_X] - agents[i, X], agents[i, AIM_Y] - agents[i, Y]
+        dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
         away = max(math.hypot(dx, dy), 1e-9)
-        ax = (_SQUEEZE * dx / away - agents[i, VX]) / _RELAXATION
-        ay = (_SQUEEZE * dy / away - agents[i, VY]) / _RELAXATION
+        ax = (_SQUEEZE * dx / away - agents[i].vx) / _RELAXATION
+        ay = (_SQUEEZE * dy / away - agents[i].vy) / _RELAXATION
         scale = min(1.0, max_acceleration[i] / max(math.hypot(ax, ay), 1e-9))
-        agents[i, AX], agents[i, AY] = scale * ax, scale * ay
+        agents[i].ax, agents[i].ay = scale * ax, scale * ay
 
 
 @kernel
-def _sees_goal(agents: Array, i: int, sight: Sight) -> bool:
-    return is_clear(agents[i, X], agents[i, Y], agents[i, GOAL_X], agents[i, GOAL_Y], sight)
+def _sees_goal(agents: People, i: int, sight: Sight) -> bool:
+    return is_clear(agents[i].x, agents[i].y, agents[i].goal_x, agents[i].goal_y, sight)
 
 
 @kernel
-def _no_headway(agents: Array, i: int, preferred: float, patience: float, dt: float) -> bool:
-    """Whether agent i, on its way, has been slow for longer than it likes; counts from then on."""
-    far = math.hypot(agents[i, GOAL_X] - agents[i, X], agents[i, GOAL_Y] - agents[i, Y])
-    slow = math.hypot(agents[i, VX], agents[i, VY]) < _SLOW * preferred
-    if agents[i, WAITING] != PRESENT or not slow or far < _NEAR_GOAL:
-        agents[i, SLOW_FOR] = 0.0
+def _no_headway(agents: People, i: int, preferred: float, patience: float, dt: float) -> bool:
+    """Return True if agent i, on its way, has been slow for longer than it likes; keep count."""
+    far = math.hypot(agents[i].goal_x - agents[i].x, agents[i].goal_y - agents[i].y)
+    slow = math.hypot(agents[i].vx, agents[i].vy) < _SLOW * preferred
+    if agents[i].waiting != PRESENT or not slow or far < _NEAR_GOAL:
+        agents[i].slow_for = 0.0
         return False
-    agents[i, SLOW_FOR] += dt
-    if agents[i, SLOW_FOR] <= patience:
+    agents[i].slow_for += dt
+    if agents[i].slow_for <= patience:
         return False
-    agents[i, SLOW_FOR] = 0.0
+    agents[i].slow_for = 0.0
     return True
 
 
 @kernel
-def _forget(agents: Array, i: int) -> None:
+def _forget(agents: People, i: int) -> None:
     """Agent i walks straight to its goal."""
-    agents[i, AIM], agents[i, ASIDE] = 0.0, 1.0
-    agents[i, AIM_X], agents[i, AIM_Y] = agents[i, GOAL_X], agents[i, GOAL_Y]
+    agents[i].corner, agents[i].aside = 0.0, 1.0
+    agents[i].waypoint_x, agents[i].waypoint_y = agents[i].goal_x, agents[i].goal_y
 
 
 @kernel
 def _beside(
-    agents: Array, i: int, number: int, v: int, aside: float, table: Array, habits: Habits
+    agents: People,
+    i: int,
+    number: int,
+    v: int,
+    aside: float,
+    table: Array,
+    habits: Habits,
 ) -> tuple[float, float]:
     """The place beside corner v at which agent i passes it on this trip."""
-    trip, draw = int(agents[i, TRIP]), int(agents[i, DETOURS])
+    trip, draw = int(agents[i].trip), int(agents[i].detours)
     u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, (v << 16) + draw)
     corner = table[v]
     away = aside * u * u * min(habits.spread, _SHARE_OF_ROOM * corner[ROOM])
@@ -244,7 +237,7 @@ def _beside(
 
 @kernel
 def _follow(
-    agents: Array, i: int, number: int, after: Indices, left: Array, table: Array,
+    agents: People, i: int, number: int, after: Indices, left: Array, table: Array,
     sight: Sight, wider: Sight, habits: Habits,
 ) -> bool:  # fmt: skip
     """Go on to the corner after the one aimed at, where that is seen; drop one out of sight.
@@ -252,48 +245,48 @@ def _follow(
     Returns:
         whether the point to walk to has been set.
     """
-    v = int(agents[i, AIM]) - 1
+    v = int(agents[i].corner) - 1
     if v < 0 or not math.isfinite(left[v]):
-        agents[i, AIM] = 0.0
+        agents[i].corner = 0.0
         return False
-    x, y = agents[i, X], agents[i, Y]
+    x, y = agents[i].x, agents[i].y
     cx, cy = table[v, CORNER_X], table[v, CORNER_Y]
     near = math.hypot(cx - x, cy - y) < _REACHED
     w = after[v]
     if w != TO_GOAL:
         bx, by = _beside(agents, i, number, w, 1.0, table, habits)
         if is_clear(x, y, bx, by, sight):
-            agents[i, AIM], agents[i, ASIDE] = w + 1.0, 1.0
+            agents[i].corner, agents[i].aside = w + 1.0, 1.0
             _head_for(agents, i, bx, by)
             return True
         ox, oy = table[w, CORNER_X], table[w, CORNER_Y]
         if near and is_clear(x, y, ox, oy, wider):
-            agents[i, AIM], agents[i, ASIDE] = w + 1.0, 1.0
+            agents[i].corner, agents[i].aside = w + 1.0, 1.0
             return False
-    bx, by = _beside(agents, i, number, v, agents[i, ASIDE], table, habits)
+    bx, by = _beside(agents, i, number, v, agents[i].aside, table, habits)
     if not near and math.hypot(bx - x, by - y) < _REACHED:
-        agents[i, ASIDE] = 0.0  # there, and what comes after is out of sight: to the corner itself
+        agents[i].aside = 0.0  # there, and what comes after is out of sight: to the corner itself
         return False
     if is_clear(x, y, bx, by, sight):
         _head_for(agents, i, bx, by)
         return True
     if not is_clear(x, y, cx, cy, wider):
-        agents[i, AIM] = 0.0
+        agents[i].corner = 0.0
     return False
 
 
 @kernel
 def _choose(
-    agents: Array, i: int, left: Array, after: Indices, table: Array, sight: Sight,
+    agents: People, i: int, left: Array, after: Indices, table: Array, sight: Sight,
     avoided: int, habits: Habits,
 ) -> None:  # fmt: skip
-    """The corner in sight from which the whole way is shortest; none leaves no aim.
+    """The corner in sight from which the whole way is shortest; 0 where there is none.
 
     Args:
         avoided: a corner through whose opening the way must not lead, unless every other one is
             too long; -1 for none.
     """
-    x, y = agents[i, X], agents[i, Y]
+    x, y = agents[i].x, agents[i].y
     best, limit = -1, math.inf
     if avoided >= 0:
         away = math.hypot(table[avoided, CORNER_X] - x, table[avoided, CORNER_Y] - y)
@@ -308,12 +301,12 @@ def _choose(
             continue
         if is_clear(x, y, cx, cy, sight):
             best, limit = v, length
-    agents[i, AIM], agents[i, ASIDE] = best + 1.0, 1.0
+    agents[i].corner, agents[i].aside = best + 1.0, 1.0
 
 
 @kernel
 def _leads_past(v: int, avoided: int, table: Array, after: Indices) -> bool:
-    """Whether the way from corner v on leads through the opening at a corner to be avoided."""
+    """Return True if the way from corner v on leads through an opening to be avoided."""
     near = _SAME_OPENING + min(table[avoided, ROOM], _WIDEST_OPENING)
     while v != TO_GOAL:
         dx = table[v, CORNER_X] - table[avoided, CORNER_X]
@@ -325,25 +318,27 @@ def _leads_past(v: int, avoided: int, table: Array, after: Indices) -> bool:
 
 
 @kernel
-def _aim(agents: Array, i: int, number: int, table: Array, sight: Sight, habits: Habits) -> None:
+def _set_waypoint(
+    agents: People, i: int, number: int, table: Array, sight: Sight, habits: Habits
+) -> None:
     """Set the point that agent i walks to."""
-    v = int(agents[i, AIM]) - 1
+    v = int(agents[i].corner) - 1
     if v < 0:  # nothing is in sight, as in the thick of a wall
         _forget(agents, i)
         return
-    x, y = agents[i, X], agents[i, Y]
-    ax, ay = _beside(agents, i, number, v, agents[i, ASIDE], table, habits)
+    x, y = agents[i].x, agents[i].y
+    ax, ay = _beside(agents, i, number, v, agents[i].aside, table, habits)
     if not is_clear(x, y, ax, ay, sight):
         ax, ay = table[v, CORNER_X], table[v, CORNER_Y]
     _head_for(agents, i, ax, ay)
 
 
 @kernel
-def _head_for(agents: Array, i: int, x: float, y: float) -> None:
+def _head_for(agents: People, i: int, x: float, y: float) -> None:
     """Agent i walks to a point; towards one that is too near, beyond it."""
-    dx, dy = x - agents[i, X], y - agents[i, Y]
+    dx, dy = x - agents[i].x, y - agents[i].y
     away = math.hypot(dx, dy)
     if 0.0 < away < _LEAST_AHEAD:
-        x = agents[i, X] + dx * _LEAST_AHEAD / away
-        y = agents[i, Y] + dy * _LEAST_AHEAD / away
-    agents[i, AIM_X], agents[i, AIM_Y] = x, y
+        x = agents[i].x + dx * _LEAST_AHEAD / away
+        y = agents[i].y + dy * _LEAST_AHEAD / away
+    agents[i].waypoint_x, agents[i].waypoint_y = x, y

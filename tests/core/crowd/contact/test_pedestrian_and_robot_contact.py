@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.contact.pedestrian_contact import PLACED_COLUMNS, push_apart
+from crowdbot.core.crowd.contact.pedestrian_contact import PLACED, push_apart
+from crowdbot.core.crowd.traits import TRAITS
+from crowdbot.core.support.records import rows_in, rows_of
 from tests.core.crowd.crowd_reference import Array, agents_of
 from tests.core.crowd.crowd_worlds import TICKS, rows, unmoved, walkers
 
@@ -25,12 +28,24 @@ def _people(position: list[tuple[float, float]]) -> Array:
     return found
 
 
+def _push_apart(
+    people: Array,
+    radius: ArrayLike,
+    order: NDArray[np.int64],
+    walls: Array,
+    discs: Array,
+    stiffness: ArrayLike,
+) -> None:
+    traits = rows_of(len(people), TRAITS)
+    traits["radius"][:], traits["push"][:] = radius, stiffness
+    placed = rows_of(len(people), PLACED)
+    push_apart(rows_in(people, s.PERSON), traits, order, walls, discs, placed)
+
+
 def _push(people: Array, radius: float = 0.33, walls: Array | None = None) -> Array:
     order = np.argsort(people[:, s.X], kind="stable")
     segments = NO_WALLS if walls is None else walls
-    count = len(people)
-    stiffness, placed = np.full(count, 62.5), np.zeros((count, PLACED_COLUMNS))
-    push_apart(people, np.full(count, radius), order, segments, NO_DISCS, stiffness, placed)
+    _push_apart(people, radius, order, segments, NO_DISCS, 62.5)
     return people[:, s.PUSH_X : s.PUSH_Y + 1]
 
 
@@ -60,8 +75,7 @@ def test_pushes_balance_and_match_all_pairs(position: list[tuple[float, float]])
 def test_people_of_different_size_are_found() -> None:
     people = _people([(0.0, 0.0), (0.9, 0.0), (0.2, 3.0)])
     order = np.argsort(people[:, s.X], kind="stable")
-    radius, placed = np.array([0.2, 0.8, 0.2]), np.zeros((3, PLACED_COLUMNS))
-    push_apart(people, radius, order, NO_WALLS, NO_DISCS, np.full(3, 10.0), placed)
+    _push_apart(people, [0.2, 0.8, 0.2], order, NO_WALLS, NO_DISCS, 10.0)
     assert people[0, s.PUSH_X] == pytest.approx(-1.0)
     assert people[1, s.PUSH_X] == pytest.approx(1.0)
 
@@ -75,10 +89,7 @@ def test_a_wall_pushes_back() -> None:
 def test_a_pillar_pushes_by_each_agents_own_stiffness() -> None:
     people = _people([(1.0, 0.0), (-1.0, 0.0), (0.0, 3.0)])
     pillar = np.array([[0.0, 0.0, 0.8]])
-    push_apart(
-        people, np.full(3, 0.33), np.array([1, 2, 0]), NO_WALLS, pillar, np.array([10.0, 20, 30]),
-        np.zeros((3, PLACED_COLUMNS)),
-    )  # fmt: skip
+    _push_apart(people, 0.33, np.array([1, 2, 0]), NO_WALLS, pillar, [10.0, 20.0, 30.0])
     assert people[:, s.PUSH_X] == pytest.approx([1.3, -2.6, 0.0])
     assert people[:, s.PUSH_Y] == pytest.approx([0.0, 0.0, 0.0])
 

@@ -40,7 +40,7 @@ def _engine(
 
 def _aims(engine: CrowdEngine) -> Array:
     _, rows = s.view(engine.initial_state())
-    return rows[:, [s.AIM_X, s.AIM_Y]]
+    return rows[:, [s.WAYPOINT_X, s.WAYPOINT_Y]]
 
 
 def test_they_aim_beside_the_corner_each_at_a_place_of_its_own() -> None:
@@ -68,10 +68,10 @@ def test_who_is_moved_finds_another_way() -> None:
     engine = _engine(DOOR, np.array([[-4.0, -4.0]]), np.array([[4.0, -4.0]]))
     flat = engine.initial_state()
     _, rows = s.view(flat)
-    assert rows[0, s.AIM_Y] > 2.0
+    assert rows[0, s.WAYPOINT_Y] > 2.0
     rows[0, [s.X, s.Y]] = 3.0, 0.0  # pushed to the other side
     engine.advance(flat)
-    assert rows[0, [s.AIM_X, s.AIM_Y]].tolist() == [4.0, -4.0]
+    assert rows[0, [s.WAYPOINT_X, s.WAYPOINT_Y]].tolist() == [4.0, -4.0]
 
 
 def test_who_makes_no_headway_takes_the_other_door() -> None:
@@ -87,12 +87,12 @@ def test_who_makes_no_headway_takes_the_other_door() -> None:
     engine = _engine(walls, start, goal, WayFinding(patience=1.0, detour=1.5))
     flat = engine.initial_state()
     _, rows = s.view(flat)
-    assert rows[0, s.AIM_Y] < 0.0
+    assert rows[0, s.WAYPOINT_Y] < 0.0
     for _ in range(20):  # somebody holds it for 1.25 s
         rows[0, [s.X, s.Y, s.VX, s.VY]] = -4.0, 0.2, 0.0, 0.0
         for _ in range(8):
             engine.advance(flat)
-    assert rows[0, s.AIM_Y] > 1.0
+    assert rows[0, s.WAYPOINT_Y] > 1.0
     assert rows[0, s.DETOURS] == 1.0
     stubborn = _engine(walls, start, goal, WayFinding(patience=1.0, detour=1.0))
     flat = stubborn.initial_state()
@@ -101,13 +101,13 @@ def test_who_makes_no_headway_takes_the_other_door() -> None:
         rows[0, [s.X, s.Y, s.VX, s.VY]] = -4.0, 0.2, 0.0, 0.0
         for _ in range(8):
             stubborn.advance(flat)
-    assert rows[0, s.AIM] == -1.0  # no other way is short enough: it steps aside
-    aim = rows[0, [s.AIM_X, s.AIM_Y]]
+    assert rows[0, s.CORNER] == -1.0  # no other way is short enough: it steps aside
+    aim = rows[0, [s.WAYPOINT_X, s.WAYPOINT_Y]]
     assert np.hypot(*(aim - [-4.0, 0.2])) == pytest.approx(1.0)
     rows[0, [s.X, s.Y]] = aim
     for _ in range(32):
         stubborn.advance(flat)
-    assert rows[0, s.AIM] > 0.0  # there: on to a door
+    assert rows[0, s.CORNER] > 0.0  # there: on to a door
 
 
 def test_straight_ways_are_what_they_were() -> None:

@@ -1,0 +1,36 @@
+"""Traits: what a person keeps for the whole run, as compiled code reads it."""
+
+from __future__ import annotations
+
+from crowdbot.core.support.records import record_type
+
+
+class TraitsRecord:
+    """Traits of a person; as of `crowdbot.core.crowd.agents.Agents`, where not said.
+
+    Attributes:
+        first, end: the rows of its route.
+        push: stiffness of contacts with people, walls and pillars, 1/s^2.
+        chooses_origin: 1 if its origin is an area.
+        stays: 1 if it may have reason to stay at a goal for a while.
+    """
+
+    id: float
+    radius: float
+    mass: float
+    preferred_speed: float
+    max_speed: float
+    start_time: float
+    at_goal: float
+    flow: float
+    first: float
+    end: float
+    push: float
+    ahead: float
+    guide: float
+    abreast: float
+    chooses_origin: float
+    stays: float
+
+
+TRAITS = record_type(TraitsRecord)
