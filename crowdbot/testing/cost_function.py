@@ -1,4 +1,4 @@
-"""What every cost function must keep to, compiled or not."""
+"""Checks that every cost function has to pass, compiled or not."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _ABREAST = 0.75
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Agents:
-    """What an agent keeps for the whole run; SI units.
+    """Agents, as they stay for the whole run; SI units.
 
     Attributes:
         id, x, y, preferred_speed, radius, max_speed, max_acceleration, mass: (N,).

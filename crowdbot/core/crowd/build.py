@@ -48,7 +48,7 @@ def build_policy(
 
     Args:
         costs: what it minimises, built.
-        agents: everybody of the crowd.
+        agents: all of the crowd.
 
     Raises:
         PluginError: it cannot be built, or is not a policy.

@@ -1,7 +1,8 @@
 """The crowd's dearest functions, compiled by a second process while a first run compiles the rest.
 
 A run calls them late: first it prepares robot, planner and cost functions. They are compiled by
-calling them for next to nobody, the dearest first, so that two processes seldom want the same one.
+calling them for one person at most, the dearest first, so that two processes seldom want the same
+one.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class _Chooses:
 def compile_ahead() -> None:
     """Ticks of a crowd without robots, then a decision, then what a robot adds.
 
-    Types alone matter: those of a run are the same, whoever walks in it.
+    Types alone matter: those of a run are the same.
     """
     nobody = CrowdEngine(Agents.of(x=[], y=[]), CrowdWorld(), _Chooses)
     state = nobody.initial_state()

@@ -1,4 +1,4 @@
-"""What people want: a policy's answer, checked and as accelerations."""
+"""Desired accelerations of people: a policy's answer, checked."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def candidates_of(policy: CrowdPolicy) -> VelocityCandidates | None:
 
 
 def relaxation_time_of(policy: CrowdPolicy) -> float:
-    """How long a policy takes to approach the velocity that it chooses, s; 0 where it says nothing.
+    """Time in which a policy approaches the velocity that it chooses, s; 0 where it says nothing.
 
     Raises:
         PluginError: its ``relaxation_time`` raised, or is not a time.

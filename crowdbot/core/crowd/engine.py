@@ -57,7 +57,7 @@ class CrowdEngine:
     """Advances a flat state vector in place; keeps no state of its own.
 
     Args:
-        agents: everybody, present or to come.
+        agents: all, present or to come.
         world: where they walk.
         policies: how they decide: a policy, a function that makes one for the agents, or a list
             of these to which `Agents.policy` refers.
@@ -203,7 +203,7 @@ class CrowdEngine:
     def advance_alone(self, flat: Array, most: int) -> int:
         """Ticks without robots, in place, as `advance` makes them one by one.
 
-        Ends after a tick in which somebody's trip ends, and before the next decision.
+        Ends after a tick in which a trip ends, and before the next decision.
 
         Args:
             flat: state vector.
@@ -345,7 +345,7 @@ def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
 def _groups(
     policies: Sequence[CrowdPolicy], agents: Agents, sees_robot: NDArray[np.bool_]
 ) -> list[_Group]:
-    """Everybody, by policy and by whether it is shown robots."""
+    """Groups of agents, by policy and by whether it is shown robots."""
     found = []
     for number, policy in enumerate(policies):
         for sees in (True, False):

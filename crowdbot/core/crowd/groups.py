@@ -1,4 +1,4 @@
-"""What holds groups together: gaze, cohesion and repulsion, laid over what any policy wants.
+"""Forces that hold groups together: gaze, cohesion and repulsion, on top of any policy.
 
 Source: Moussaïd, Perozo, Garnier, Helbing, Theraulaz, "The walking behaviour of pedestrian social
 groups and its impact on crowd dynamics", PLoS ONE 5(4), 2010, e10047, equations 5 to 7.
@@ -25,7 +25,7 @@ SIGHT = 8.0
 
 
 class GroupForces:
-    """What `hold_together` takes, see `Cohesion`; half_view: half the field of view, rad."""
+    """Parameters of `hold_together`, see `Cohesion`; half_view: half the field of view, rad."""
 
     gaze: float
     cohesion: float
@@ -151,7 +151,7 @@ def _pull(
 
 @kernel
 def _nearest(step: float, width: float) -> float:
-    """The shortest of the ways to somebody on a torus of a width, which may be infinite."""
+    """The shortest of the ways to a person on a torus of a width, which may be infinite."""
     if math.isinf(width):
         return step
     return step - width * math.floor(step / width + 0.5)
@@ -159,7 +159,7 @@ def _nearest(step: float, width: float) -> float:
 
 @kernel
 def _within(x: float, y: float, limit: float) -> float:
-    """What a vector is to be multiplied by to be no longer than a limit."""
+    """Factor by which a vector is no longer than a limit."""
     norm = math.hypot(x, y)
     return limit / norm if norm > limit else 1.0
 

@@ -1,4 +1,4 @@
-"""What stays the same in all ticks of a run, in the form that `crowdbot.core.crowd.step` takes.
+"""Parameters of all ticks of a run, in the form that `crowdbot.core.crowd.step` takes.
 
 `tick` takes the fields one by one, in this order, and packs them itself: numba would need some
 3 us to unpack a named tuple that comes from Python.
@@ -24,7 +24,7 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
 class AgentParameters(NamedTuple):
-    """What people keep for the whole run.
+    """Traits and routes of people.
 
     Attributes:
         traits: (N,) of each.
@@ -74,7 +74,7 @@ def _may_stay(agents: Agents) -> Mask:
 
 
 class RulesRecord:
-    """What holds for all people.
+    """Rules for all people.
 
     Attributes:
         keep_offset: 1 if people come out of the in-portal opposite to where they went in.

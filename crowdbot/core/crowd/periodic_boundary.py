@@ -16,7 +16,7 @@ from crowdbot.core.types.arrays import Array
 #: x0, x1, y0, y1, m.
 Box = tuple[float, float, float, float]
 
-#: A floor that nobody can leave.
+#: A floor without borders.
 ENDLESS = np.array([-math.inf, math.inf, -math.inf, math.inf])
 
 
@@ -77,7 +77,7 @@ def wrap(agents: People, i: int, box: Array, goals_wrap: bool) -> None:
 
 @kernel
 def _shift(at: float, low: float, high: float) -> float:
-    """How far a coordinate has to move to be within its borders."""
+    """Shift that brings a coordinate within its borders."""
     if low <= at <= high:
         return 0.0
     return low - high if at > high else high - low

@@ -1,4 +1,4 @@
-"""What a crowd policy sees and returns."""
+"""Crowd policies: what they see and return."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class CrowdView:
         radius that others avoid.
 
         Args:
-            reach: distance beyond which nobody sees a centre, m.
+            reach: distance beyond which no centre is seen, m.
         """
         if not len(self.pillars) and self.periodic_boundary is None:
             return self.robot

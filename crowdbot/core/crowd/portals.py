@@ -20,9 +20,9 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
-#: Nobody re-enters closer to a robot than this, centre to centre, m.
+#: No person re-enters closer to a robot than this, centre to centre, m.
 CLEAR_OF_ROBOT = 1.0
-#: Who stays farther than this from a box does not enter it by rounding, m.
+#: A person farther than this from a box does not enter it by rounding, m.
 _CLEAR = 1e-6
 
 
@@ -88,14 +88,14 @@ def leave(agents: People, i: int, when: float) -> None:
 
 @kernel
 def _share(at: float, low: float, high: float, margin: float) -> float:
-    """Where a coordinate lies between the sides of a box shrunk by a margin, 0 to 1."""
+    """Place of a coordinate between the sides of a box shrunk by a margin, 0 to 1."""
     room = high - low - 2.0 * margin
     return min(1.0, max(0.0, (at - low - margin) / room)) if room > 0.0 else 0.5
 
 
 @kernel
 def _shares(box: Array, margin: float, x: float, y: float) -> tuple[float, float]:
-    """Where a point lies between the sides of a box shrunk by a margin, each 0 to 1."""
+    """Place of a point between the sides of a box shrunk by a margin, each 0 to 1."""
     return _share(x, box[0], box[1], margin), _share(y, box[2], box[3], margin)
 
 
@@ -169,7 +169,7 @@ def try_to_re_enter(
     """Try one point of the in-portal; start a new trip there if it is free.
 
     The point lies in the in-portal as the agent left the out-portal (`RulesRecord.keep_offset`), or
-    is drawn anew in each attempt.
+    is drawn again in each attempt.
     """
     traits = people.traits[i]
     if traits.at_goal == RETURN:
@@ -197,7 +197,7 @@ def try_to_re_enter(
 def place_of_entry(
     agents: People, i: int, people: AgentParameters, key: np.uint64
 ) -> tuple[float, float]:
-    """A point of the area in which agent i comes in, drawn anew in each attempt."""
+    """A point of the area in which agent i comes in, drawn again in each attempt."""
     trip, attempt = int(agents[i].trip), int(agents[i].attempt)
     traits, origin = people.traits[i], people.origin[i]
     u = counter_rng.uniform(key, int(traits.id), trip, counter_rng.ENTRY, 2 * attempt)
@@ -211,7 +211,7 @@ def _try_to_come_back(
     robots: Rows[RobotRecord],
     discs: Array, now: float,
 ) -> None:  # fmt: skip
-    """Try one point of the origin; begin the way anew there if it is free."""
+    """Try one point of the origin; begin the way again there if it is free."""
     key = world.goal_key
     x, y = place_of_entry(agents, i, people, key)
     agents[i].attempt += 1.0
@@ -233,9 +233,9 @@ def try_to_start(
     robots: Rows[RobotRecord],
     discs: Array, now: float,
 ) -> None:  # fmt: skip
-    """Put agent i into the world where it starts, if nobody stands there.
+    """Put agent i into the world where it starts, if there is room.
 
-    Who has an origin tries another point of it next time.
+    One that has an origin tries another point of it next time.
     """
     x, y = agents[i].x, agents[i].y
     choice = people.traits[i].chooses_origin != 0.0

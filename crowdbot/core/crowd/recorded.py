@@ -20,7 +20,7 @@ COLUMNS = ("t", "id", "x", "y")
 
 @dataclass(frozen=True, slots=True)
 class RecordedCrowd:
-    """Where recorded people were.
+    """Places of recorded people.
 
     Attributes:
         time: id -> (K,) rising times, s.

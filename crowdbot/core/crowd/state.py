@@ -91,7 +91,7 @@ class PersonRecord:
 
 
 class FeltRecord:
-    """What one robot feels of people.
+    """Forces of people on one robot.
 
     Attributes:
         robot_jx, robot_jy, people_jx, people_jy: sums of impulses on the robot and on people, N s.
@@ -181,7 +181,7 @@ def people_in(flat: Array) -> People:
 
 
 def contact_with(flat: Array, robot: int = 0) -> tuple[Array, Array]:
-    """What a robot feels (F,), and its contact with each agent (N, T), sharing the memory."""
+    """The forces on a robot (F,), and its contact with each agent (N, T), sharing memory."""
     start = _contacts_start(flat)
     size = (len(flat) - start) // int(flat[ROBOTS])
     own = flat[start + robot * size : start + (robot + 1) * size]
@@ -189,7 +189,7 @@ def contact_with(flat: Array, robot: int = 0) -> tuple[Array, Array]:
 
 
 def felt_at(flat: Array, robot: int, entry: int) -> int:
-    """Where an entry of what a robot feels lies in the flat vector."""
+    """Place in the flat vector of an entry of what a robot feels."""
     start = _contacts_start(flat)
     return start + robot * ((len(flat) - start) // int(flat[ROBOTS])) + entry
 

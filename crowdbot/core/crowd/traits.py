@@ -1,4 +1,4 @@
-"""Traits: what a person keeps for the whole run, as compiled code reads it."""
+"""Traits of a person that stay for the whole run, for compiled code."""
 
 from __future__ import annotations
 

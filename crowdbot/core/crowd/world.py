@@ -20,14 +20,14 @@ _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdWorld:
-    """Where a crowd walks and how it responds to robots; by default an endless empty floor.
+    """The floor of a crowd and its response to robots; by default an endless empty floor.
 
     A single row stands for a table of one.
 
     Attributes:
         walls: (S, 4) segments that people avoid, m.
         pillars: (P, 3) x, y and radius of round obstacles, m.
-        solids: convex, counter-clockwise outlines (K, 2), m, in which nobody comes in; their sides
+        solids: convex, counter-clockwise outlines (K, 2), m, where no person comes in; their sides
             are walls, too.
         periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m; infinite
             where it has no border.

@@ -11,13 +11,13 @@ from crowdbot.core.support.compile import kernel
 
 @kernel
 def is_clearly_shorter(x: float, y: float, length: float) -> bool:
-    """Whether a vector is shorter than ``length`` whatever the rounding; cheaper than `hypot`."""
+    """Return True if a vector is shorter than ``length`` in spite of rounding."""
     return x * x + y * y < (1.0 - 1e-12) * length * length
 
 
 @kernel
 def is_clearly_longer(x: float, y: float, length: float) -> bool:
-    """Whether a vector is longer than ``length`` whatever the rounding."""
+    """Return True if a vector is longer than ``length`` in spite of rounding."""
     return x * x + y * y > (1.0 + 1e-12) * length * length
 
 
@@ -116,5 +116,5 @@ def single_angle(ax: float, ay: float, bx: float, by: float) -> float:
 
 @kernel
 def opposite_taken_for_parallel(ax: float, ay: float, bx: float, by: float) -> bool:
-    """Whether the original takes the angle between two opposite vectors for 0."""
+    """Return True if the original takes the angle between two opposite vectors for 0."""
     return ax * bx + ay * by < 0.0 and single_angle(ax, ay, bx, by) == 0.0

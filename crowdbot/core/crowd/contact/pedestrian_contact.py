@@ -30,7 +30,7 @@ class PlacedRecord:
 
 
 PLACED = record_type(PlacedRecord)
-#: Who is farther than this from a wall's box, beside the radius, is not near it by rounding, m.
+#: A person farther than this from a wall's box, beside the radius, is not near it by rounding, m.
 _CLEAR = 1e-6
 
 
@@ -79,7 +79,7 @@ def push_apart(
 def _sort_along_x(agents: People, order: NDArray[np.int64]) -> None:
     """By x, then by row, so that the result does not depend on the order before.
 
-    From one tick to the next hardly anybody changes places: few steps.
+    From one tick to the next hardly any change places: few steps.
     """
     for a in range(1, order.shape[0]):
         i = order[a]
@@ -100,7 +100,7 @@ def _place(
     order: NDArray[np.int64],
     placed: Rows[PlacedRecord],
 ) -> int:
-    """Write those present to ``placed``, in order; nobody is pushed yet. Returns how many."""
+    """Write those present to ``placed``, in order, not pushed yet. Returns how many."""
     count = 0
     for i in order:
         if agents[i].waiting != 0.0:
@@ -115,7 +115,7 @@ def _place(
 
 @kernel
 def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
-    """How far discs overlap (m), away from the other; zero for centres on each other."""
+    """Overlap of discs (m), away from the other; zero for centres on each other."""
     d2 = dx * dx + dy * dy
     if d2 >= reach * reach or d2 == 0.0:
         return 0.0, 0.0

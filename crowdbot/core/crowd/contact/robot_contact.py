@@ -164,7 +164,7 @@ def corners_of(outlines: Array, r: int) -> int:
 def overlap(
     yaw: float, outline: Array, dx: float, dy: float, reach: float
 ) -> tuple[float, float, float, float, float]:
-    """How a robot and a person's disc overlap.
+    """Overlap of a robot and a person's disc.
 
     Args:
         yaw: heading of the robot, rad.
@@ -186,7 +186,7 @@ def overlap(
 
 @kernel
 def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, float, float, float]:
-    """Where a point lies beside a segment (K = 2) or a convex polygon, counter-clockwise.
+    """Place of a point beside a segment (K = 2) or a convex polygon, counter-clockwise.
 
     Returns:
         distance (m), negative inside a polygon; unit vector outwards; nearest point.

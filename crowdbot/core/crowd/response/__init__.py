@@ -1,4 +1,4 @@
-"""How people behave towards robots, contact apart.
+"""Responses of people to robots, contact apart.
 
 - `parameters`: what of a response can be chosen; `from_spec` takes it from a scenario.
 - `notice`: who has noticed a robot.

@@ -1,4 +1,4 @@
-"""How people who have noticed a robot evade it: sideways in time, and by braking.
+"""Evasion of robots that people have noticed: sideways in time, and by braking.
 
 Decided with their way, so that own will and evasion together stay within what legs can do.
 """
@@ -22,11 +22,11 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows, as_rows
 from crowdbot.core.types.arrays import Array, Mask
 
-#: Nobody expects to be clear in less than this, s: one step.
+#: No person expects to be clear in less than this, s: one step.
 _SOONEST = 0.25
 #: Relative speed below which nothing happens, m/s.
 _STILL = 1e-3
-#: The gap in which somebody has to stop is never taken for less than this, m.
+#: The gap in which a person has to stop is never taken for less than this, m.
 _ROOM = 0.05
 
 
@@ -46,7 +46,7 @@ def evade_robots(
     Args:
         agents: (N,) of the state; ``ax`` and ``ay`` hold what each wants without robots.
         radius: (N,) of the agents, m.
-        heeds, late: (N,) who takes notice of robots at all, and who does late.
+        heeds, late: (N,) True for people who notice robots at all, and for those who do late.
         robots, outlines: (R, 8), (R, K, 2) as people see them, see
             `crowdbot.core.crowd.contact.robot_contact`.
         response: `crowdbot.core.crowd.response.parameters.Human.by_decision`.
@@ -128,7 +128,7 @@ def _way_round(
     uy: float,
     wanted: float,
 ) -> tuple[float, float, float, float, bool]:
-    """Where an outline lies beside the ray of agent i.
+    """Place of an outline beside the ray of agent i.
 
     Args:
         ux, uy: direction of the ray.
@@ -169,7 +169,7 @@ def _braking(
     outline: Array,
     response: DecisionResponse,
 ) -> tuple[float, float]:
-    """What stops agent i in front of a robot that it walks towards, m/s^2; never a step back."""
+    """Braking of agent i in front of a robot that it walks towards, m/s^2; never a step back."""
     dx, dy = robot.x - agents[i].x, robot.y - agents[i].y
     depth, nx, ny, _, _ = overlap(robot.yaw, outline, dx, dy, robot.body + radius)
     own = agents[i].vx * nx + agents[i].vy * ny

@@ -1,4 +1,4 @@
-"""Who has noticed a robot, and since when."""
+"""Notice: people who have noticed a robot, and since when."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
-#: Nobody comes nearer to a robot faster than this, m/s.
+#: No person comes nearer to a robot faster than this, m/s.
 _FASTEST = 5.0
 
 
@@ -34,13 +34,13 @@ def reacts(
     response: DecisionResponse,
     now: float,
 ) -> bool:
-    """Whether agent i has noticed robots for long enough to do something; keeps account of it.
+    """Return True if agent i has noticed robots for long enough to react; keep account of it.
 
-    Who has noticed one robot looks out for all, until none is within sight.
+    An agent that has noticed one robot looks out for all, until none is within sight.
 
     Args:
         radius: of the agent, m.
-        late: whether the agent notices late.
+        late: True if the agent notices late.
         robots, outlines: as in `crowdbot.core.crowd.contact.robot_contact`.
         response: `crowdbot.core.crowd.response.parameters.Human.by_decision`.
         now: time since the start, s.
@@ -81,9 +81,9 @@ def _sees(
     ny: float,
     response: DecisionResponse,
 ) -> bool:
-    """Whether agent i notices a robot within sight, in the direction n, now."""
+    """Return True if agent i notices a robot within sight, in the direction n, now."""
     if nx * agents[i].dir_x + ny * agents[i].dir_y < response.view_cosine:
-        return False  # nobody sees what is behind
+        return False  # what is behind is not seen
     if not late:
         return True
     closing = (agents[i].vx - robot.vx) * nx + (agents[i].vy - robot.vy) * ny

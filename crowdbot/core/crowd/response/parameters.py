@@ -9,7 +9,7 @@ from crowdbot.core.support.records import Rows, record_type, record_values, rows
 
 
 class DecisionResponse:
-    """What `crowdbot.core.crowd.response.evasion` takes; as of `Human`, where not said.
+    """Parameters of `crowdbot.core.crowd.response.evasion`; as of `Human`, where not said.
 
     Attributes:
         view_cosine: of half the field of view.
@@ -38,7 +38,7 @@ class DecisionResponse:
 
 
 class TickResponse:
-    """What `crowdbot.core.crowd.step.tick` takes; as of `Human`."""
+    """Parameters of `crowdbot.core.crowd.step.tick`; as of `Human`."""
 
     standing_speed: float
     moving_speed: float

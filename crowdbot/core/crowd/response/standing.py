@@ -1,7 +1,8 @@
-"""How people stop short of a robot that stands, whether they have looked at it or not.
+"""Stops short of a robot that stands, whether people have looked at it or not.
 
-Who would have to brake harder than people do by choice is braked as hard as it takes, no harder:
-a last step. Who is pushed against the robot by others leans back, the harder the nearer.
+A person who would have to brake harder than people do by choice is braked as hard as it takes, no
+harder: a last step. One who is pushed against the robot by others leans back, the harder the
+nearer.
 """
 
 from __future__ import annotations
@@ -22,9 +23,9 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
-#: Farther from the outline nobody has to brake yet, m: 2.4 m/s at 3 m/s^2.
+#: Farther from the outline no one has to brake yet, m: 2.4 m/s at 3 m/s^2.
 FAR = 1.0
-#: The gap in which somebody has to stop is never taken for less than this, m.
+#: The gap in which a person has to stop is never taken for less than this, m.
 _ROOM = 0.02
 
 
@@ -37,7 +38,7 @@ def stop_short(
     outlines: Array,
     response: TickResponse,
 ) -> tuple[float, float]:
-    """What agent i adds to its own will beside robots that stand, m/s^2.
+    """Acceleration that agent i adds to its own will beside robots that stand, m/s^2.
 
     Args:
         robots, outlines: as in `crowdbot.core.crowd.contact.robot_contact`.

@@ -86,7 +86,7 @@ def _look_out(table: Array, sight: Sight) -> None:
 
 @kernel
 def bends_past(table: Array, v: int, x: float, y: float) -> bool:
-    """Whether a path to or from a point can bend at corner v: its outline is on one side."""
+    """Return True if a path to or from a point can bend at corner v, its outline on one side."""
     dx, dy = x - table[v, X], y - table[v, Y]
     before = dx * (table[v, BEFORE_Y] - table[v, Y]) - dy * (table[v, BEFORE_X] - table[v, X])
     after = dx * (table[v, AFTER_Y] - table[v, Y]) - dy * (table[v, AFTER_X] - table[v, X])

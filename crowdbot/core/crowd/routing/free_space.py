@@ -1,4 +1,4 @@
-"""Where the centre of a person can be: the floor without a margin around walls and pillars."""
+"""Free space for the centre of a person: the floor without a margin around walls and pillars."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class FreeSpace:
 
     @classmethod
     def of(cls, walls: Array, pillars: Array, radius: float, points: Array) -> FreeSpace:
-        """What a body of a radius can reach.
+        """The space that a body of a radius can reach.
 
         Args:
             walls: (S, 4) segments, m.
@@ -71,7 +71,7 @@ class FreeSpace:
         return FreeSpace(self.taken, tuple(self.parts[n] for n in numbers))
 
     def holds(self, points: Array) -> NDArray[np.bool_]:
-        """Whether each of (M, 2) points is in one of the parts or on its border."""
+        """True for each of (M, 2) points that is in one of the parts or on its border."""
         whole = shapely.union_all([shapely.buffer(part, _BESIDE) for part in self.parts])
         shapely.prepare(whole)
         inside: NDArray[np.bool_] = shapely.intersects_xy(whole, points[:, 0], points[:, 1])
@@ -97,7 +97,7 @@ class FreeSpace:
 
 
 def taken_by(walls: Array, pillars: Array, margin: float) -> Any:
-    """What lies within a margin of walls and pillars, as a (multi)polygon.
+    """The space within a margin of walls and pillars, as a (multi)polygon.
 
     Corners stand out by at most a tenth of the margin: round ones would have more corners.
     """

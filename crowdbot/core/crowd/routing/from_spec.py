@@ -9,7 +9,7 @@ from crowdbot.dsl.scenario.seeds import stream_seed
 
 
 def routing_of(crowd: Crowd) -> WayFinding | None:
-    """How a crowd finds its way; None straight to its goals. Draws are the stream's "routing"."""
+    """Way finding; None: straight to the goals. Draws are those of the stream "routing"."""
     spec = crowd.routing
     if not isinstance(spec, dsl.MeshRouting):
         return None

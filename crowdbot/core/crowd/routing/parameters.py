@@ -1,4 +1,4 @@
-"""How people find their way, in numbers."""
+"""Parameters of finding a way."""
 
 from __future__ import annotations
 

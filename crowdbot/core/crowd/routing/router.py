@@ -18,7 +18,7 @@ from crowdbot.core.types.arrays import Array
 #: Bodies are rounded up to a multiple of this, so that few maps are needed, m.
 _RADIUS_STEP = 0.05
 _SLACK = 1e-9
-#: Trees of goals that nobody has any more are kept as long as there are not more than this.
+#: Trees of goals that no person has any more are kept as long as there are not more.
 _SPARE_TREES = 64
 
 
@@ -26,7 +26,7 @@ class Router:
     """Finds the waypoints of all people. What it keeps follows from goals: it is a cache, no state.
 
     Args:
-        agents: everybody, present or to come.
+        agents: all, present or to come.
         walls, pillars: (S, 4), (P, 3) what people walk around, m.
         routing: how they choose.
     """
@@ -52,7 +52,7 @@ class Router:
         Args:
             people: of the crowd's state.
             dt: since the last decision, s.
-            decision: its number; below 0 everybody looks around, else one after the other.
+            decision: its number; below 0 all look around, else one after the other.
         """
         for one in self._classes:
             one.find(people, self._agents, self._habits, dt, decision)
@@ -86,7 +86,7 @@ class _BodyClass:
     def find(
         self, people: s.People, agents: Agents, habits: Habits, dt: float, decision: int
     ) -> None:
-        for _ in range(len(self.members)):  # usually nobody has a new goal, now and then one
+        for _ in range(len(self.members)):  # usually none has a new goal, now and then one
             changed = self._waypoints(people, agents, habits, dt, decision)
             if not changed:
                 return
@@ -130,7 +130,7 @@ class _BodyClass:
         return row
 
     def _drop(self) -> None:
-        """Give up trees that lead to nobody's goal, if they are many."""
+        """Give up trees that lead to no one's goal, if they are many."""
         used = {(x, y) for x, y in self._goal.tolist()}
         if len(self._rows) > len(used) + _SPARE_TREES:
             self._free = [row for goal, row in self._rows.items() if goal not in used]

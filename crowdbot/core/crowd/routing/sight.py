@@ -1,4 +1,4 @@
-"""Whether one can walk straight from a point to another: edges in the cells of a grid."""
+"""Sight between points, along which people can walk straight: edges in the cells of a grid."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _list(edges: Array, frame: Array, shape: Indices, at: Indices, listed: Indic
 
 @kernel
 def crosses(px: float, py: float, qx: float, qy: float, edge: Array) -> bool:
-    """Whether the segment p-q crosses an edge; each end of an edge belongs to one side of p-q."""
+    """Return True if segment p-q crosses an edge; each end of an edge is on one side of p-q."""
     dx, dy = qx - px, qy - py
     one = dx * (edge[1] - py) - dy * (edge[0] - px) > 0.0
     if one == (dx * (edge[3] - py) - dy * (edge[2] - px) > 0.0):
@@ -96,7 +96,7 @@ def crosses(px: float, py: float, qx: float, qy: float, edge: Array) -> bool:
 
 @kernel
 def is_clear(px: float, py: float, qx: float, qy: float, sight: Sight) -> bool:
-    """Whether nothing is crossed on the straight way from p to q.
+    """Return True if the straight way from p to q crosses nothing.
 
     Cells are visited in the order of the way, as by Amanatides and Woo (Eurographics 1987).
     """

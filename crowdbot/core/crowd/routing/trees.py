@@ -21,7 +21,7 @@ def plan_tree(
     """Dijkstra's algorithm, from the goal outwards.
 
     Args:
-        sight: edges at the margin of a body; where nobody sees the goal so, it is looked for
+        sight: edges at the margin of a body; where the goal is not seen so, it is looked for
             past ``wider`` ones, nearer to the walls.
         left: (V,) length of the way to the goal, m, inf without one; written.
         after: (V,) the corner after each, `TO_GOAL` before the goal; written.

@@ -1,4 +1,4 @@
-"""Where each person walks next: straight to the goal, or to a place beside the next corner."""
+"""Waypoints: each person walks straight to the goal, or to a place beside the next corner."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from crowdbot.core.types.arrays import Array, Indices
 
 #: Of the room at a corner, how much of it people spread over.
 _SHARE_OF_ROOM = 0.8
-#: Who is nearer to the place aside of a corner, or to the corner, has reached it, m.
+#: A person nearer to the place aside of a corner, or to the corner, has reached it, m.
 _REACHED = 0.4
-#: Waypoints that are nearer are moved on, so that nobody brakes at them, m.
+#: Waypoints that are nearer are moved on, so that people do not brake at them, m.
 _LEAST_AHEAD = 1.0
 #: Corners that are not farther from each other, beside the room at them, are one opening, m.
 _SAME_OPENING, _WIDEST_OPENING = 1.0, 3.0
-#: Below this share of the preferred speed somebody makes no headway.
+#: Below this share of the preferred speed a person makes no headway.
 _SLOW = 0.25
 #: People look around at every so manieth decision, at each one when a corner is near, m.
 _LOOKS_EVERY, _NEAR_CORNER = 4, 1.0
@@ -40,12 +40,12 @@ _ASIDE_OF_ALL = -1.0
 _STEP, _STEPPED, _SIDES, _SIDE_DRAWS = 1.0, 0.4, 4, 1 << 40
 #: On the way there: speed, m/s, and the time in which it is reached, s.
 _SQUEEZE, _RELAXATION = 0.4, 0.5
-#: Nearer to the goal than this nobody looks for another way, m.
+#: Nearer to the goal than this people look for no other way, m.
 _NEAR_GOAL = 1.5
 
 
 class Habits(NamedTuple):
-    """How people choose among ways.
+    """Habits of people who choose among ways.
 
     Attributes:
         spread: how far aside of a corner they pass at most, m.
@@ -69,7 +69,7 @@ def find_waypoints(
     """Set the waypoints of people who are in the world or will be.
 
     Args:
-        decision: number of the decision; below 0 everybody looks around.
+        decision: number of the decision; below 0 all look around.
         dt: since the last decision, s.
         members: (K,) rows of those whose bodies these corners fit.
         ids, preferred: (N,) numbers and preferred speeds (m/s) of all.
@@ -128,7 +128,7 @@ def _look(
             return
         agents[i].corner = 0.0
     v = int(agents[i].corner) - 1
-    # Who aims at a corner after which others follow does not see the goal before these.
+    # A person on the way to a corner after which others follow does not see the goal before them.
     last = v < 0 or after[v] == TO_GOAL or not math.isfinite(left[v])
     if (last or blocked) and _sees_goal(agents, i, sight):
         _forget(agents, i)
@@ -156,7 +156,7 @@ def _look(
 
 @kernel
 def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habits) -> None:
-    """Agent i, who faces somebody that it cannot pass, walks a little to one side first."""
+    """Agent i, who faces a person that it cannot pass, walks a little to one side first."""
     dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
     away = math.hypot(dx, dy)
     if away == 0.0:
@@ -175,9 +175,9 @@ def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habit
 
 @kernel
 def squeeze(agents: People, max_acceleration: Array) -> None:
-    """Who steps aside does so slowly, whomever that touches: of these nobody gives way alone.
+    """Set the accelerations of people who step aside, as `find_waypoints` has decided.
 
-    Sets the accelerations of who does; `find_waypoints` says who.
+    They do so slowly, and into others: none of those gives way without it.
     """
     for i in range(agents.shape[0]):
         if agents[i].corner != _ASIDE_OF_ALL or agents[i].waiting != PRESENT:

@@ -1,4 +1,4 @@
-"""What a world takes as steering, from the field ``crowd.steering``."""
+"""Steering of a world, from the field ``crowd.steering``."""
 
 from __future__ import annotations
 

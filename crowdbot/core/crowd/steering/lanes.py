@@ -11,12 +11,12 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
-#: Who moves slower than this along one's heading, or against it, stands, m/s.
+#: A person slower than this along one's heading, or against it, stands, m/s.
 _STANDS = 0.2
 
 
 def keep_lane(part: LaneKeeping, near: SortedDiscs, wanted: Array) -> None:
-    """Add everybody's step aside to accelerations (N, 2), m/s^2, in place."""
+    """Add the steps aside of all to accelerations (N, 2), m/s^2, in place."""
     _keep_all(*near, part.strength, part.reach, part.half_width, part.follow, wanted)
 
 
@@ -44,7 +44,7 @@ def aside_of(
     half_width: float,
     follow: float,
 ) -> float:
-    """How much row a is drawn to its left, -1 to 1."""
+    """Share by which row a is drawn to its left, -1 to 1."""
     away, towards, comers, all_ = 0.0, 0.0, 0.0, 0.0
     for b in range(first_within(discs, a, REACH), discs.shape[0]):
         dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y

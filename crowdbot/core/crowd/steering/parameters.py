@@ -1,4 +1,4 @@
-"""What of steering parts can be chosen; units are those of `crowdbot.dsl.scenario.steering`."""
+"""Parameters of steering parts; units are those of `crowdbot.dsl.scenario.steering`."""
 
 from __future__ import annotations
 

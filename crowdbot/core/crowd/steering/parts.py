@@ -21,7 +21,7 @@ Part = Callable[[CrowdView, SortedDiscs, float, Array], None]
 
 
 def parts_of(steering: Steering) -> list[Part]:
-    """What is done to accelerations, one after the other: first limits, then pushes."""
+    """The parts that change accelerations, one after the other: first limits, then pushes."""
     found: list[Part] = []
     gap, space = steering.time_gap, steering.personal_space
     lanes, walls, drift = steering.lanes, steering.wall_push, steering.wander

@@ -11,9 +11,9 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
-#: Nobody is pushed harder by one other, m/s^2.
+#: Largest push by one other, m/s^2.
 HARDEST = 8.0
-#: Who would be inside another counts as at this share of the present distance.
+#: A person who would be inside another counts as at this share of the present distance.
 _THROUGH = 0.05
 
 
@@ -55,7 +55,7 @@ def push_by(
     anticipation: float,
     behind: float,
 ) -> tuple[float, float]:
-    """What row b pushes row a by, m/s^2; none where it would be below 1 % of ``strength``."""
+    """Push of row b on row a, m/s^2; none where it would be below 1 % of ``strength``."""
     dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
     qx = dx + (discs[b].vx - discs[a].vx) * anticipation
     qy = dy + (discs[b].vy - discs[a].vy) * anticipation

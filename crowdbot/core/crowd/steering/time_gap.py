@@ -1,7 +1,7 @@
-"""Time gap: nobody walks faster than the room ahead allows.
+"""Time gap: people walk no faster than the room ahead allows.
 
-Without it no model here slows down in a dense crowd. Who comes towards one is stepped around
-rather than followed, so that the gap to them is nearly off.
+Without it no model here slows down in a dense crowd. Oncoming people are stepped around rather
+than followed, so the gap to them is nearly off.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
-#: Who moves faster than this against one's heading comes towards one, m/s.
+#: A person faster than this against one's heading is oncoming, m/s.
 _ONCOMING = 0.2
 
 

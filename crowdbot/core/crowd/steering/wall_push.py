@@ -11,7 +11,7 @@ from crowdbot.core.crowd.steering.sorted_discs import SortedDiscs
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Mask
 
-#: Nobody is pushed harder by one wall, m/s^2.
+#: Largest push by one wall, m/s^2.
 HARDEST = 8.0
 #: Below this share of its strength the push is left out.
 _LEAST = 4.6  # e-folds: 1 %

@@ -23,7 +23,7 @@ E_FOLD = 0.93929
 
 
 def wander(part: Wander, view: CrowdView, near: SortedDiscs, wanted: Array) -> None:
-    """Add everybody's random acceleration to accelerations (N, 2), m/s^2, in place."""
+    """Add the random acceleration of each to accelerations (N, 2), m/s^2, in place."""
     knots = view.t * E_FOLD / part.time
     _wander(near.decides, view.agents.id, knots, part.deviation, np.uint64(part.key), wanted)
 

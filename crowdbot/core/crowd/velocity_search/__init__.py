@@ -3,7 +3,7 @@
 - `cost`: the contract of cost functions; `cost_calls` calls them by address, `collision` is what
   many of them share, `minstd` their random numbers.
 - `neighbour_discs`, `neighbours`: everything that people see as a disc, and who is near whom.
-- `surroundings`, `weighted_costs`, `agent_costs`: one decision of everybody, the costs of a
+- `surroundings`, `weighted_costs`, `agent_costs`: one decision of all agents, the costs of a
   policy, and the costs of one agent, in the forms that compiled loops take.
 - `sampling` (with `candidates`, `search`, and `single` for parity), `gradient`, `optimum`: the
   methods; `evaluate` gives the cost of any velocity.

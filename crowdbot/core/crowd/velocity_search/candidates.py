@@ -105,7 +105,7 @@ def radius_of(agent: AgentRecord, kind: int) -> float:
 def direction_of(agent: AgentRecord, kind: int) -> tuple[float, float]:
     """Base direction of an agent's fan, of length 1.
 
-    Somebody at rest has no direction: the preferred one is taken instead. The original takes the
+    An agent at rest has no direction: the preferred one is taken instead. The original takes the
     zero vector, so that all candidates are the base.
     """
     if kind == UNIT:
@@ -121,7 +121,7 @@ def direction_of(agent: AgentRecord, kind: int) -> tuple[float, float]:
 
 @kernel
 def frame_of(agent: AgentRecord, options: FanOptions, frame: Array) -> float:
-    """Where an agent's candidates are; notes it in ``agent``, too; returns the radius.
+    """Write the frame of an agent's candidates, and note it in ``agent``; return the radius.
 
     Args:
         frame: (4,) output: base, and base direction times radius, m/s.

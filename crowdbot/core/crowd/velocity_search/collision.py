@@ -238,7 +238,7 @@ def soonest_disc(
 def first_contact(ux: float, uy: float, agent: AgentRecord, work: Pointer) -> float:
     """As `first_collision`, but 0 where something touches the agent already.
 
-    Under parity also 0 beside somebody with exactly the velocity u: the original takes a
+    Under parity also 0 beside a disc with exactly the velocity u: the original takes a
     vanishing discriminant for a touch.
     """
     header, rows, segments = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _SEGMENT)

@@ -104,7 +104,7 @@ class CompiledCost:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AgentView:
-    """What a vectorised cost function sees of its agent; SI units.
+    """The agent as a vectorised cost function sees it; SI units.
 
     Attributes:
         position, velocity, preferred_velocity, goal: (2,).
@@ -125,7 +125,7 @@ class AgentView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Neighbours:
-    """What a vectorised cost function sees of the others within its range; SI units.
+    """The others within its range, as a vectorised cost function sees them; SI units.
 
     Attributes:
         offset, velocity, preferred_velocity: (M, 2), positions relative to the agent.

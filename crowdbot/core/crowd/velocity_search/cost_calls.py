@@ -1,7 +1,7 @@
 """Calls from compiled code into cost functions, by address.
 
-Numba can also pass functions as arguments, but types them anew in each call from Python, and
-compiles the caller anew for each number of them. An address is a number: one compiled search
+Numba can also pass functions as arguments, but types them in each call from Python, and
+compiles the caller for each number of them. An address is a number: one compiled search
 serves all combinations of costs.
 """
 # Numba reads the arguments of intrinsics from their definitions.

@@ -71,7 +71,7 @@ class Sampler:
         # Whether bounds are the same at each decision.
         self._tabulated = not s.random and s.base == ZERO and s.direction == ALONG_PREFERRED
         self._table_dt = math.nan
-        # For each agent, or for one that is filled anew for each: bounds, and x and y of their
+        # For each agent, or for one that is filled again for each: bounds, and x and y of their
         # candidates; the numbers of these.
         self._ranked = np.zeros((1, 3, len(self._candidates)))
         self._index = np.arange(len(self._candidates))[np.newaxis]
@@ -100,7 +100,7 @@ class Sampler:
         return chosen
 
     def candidates(self, view: CrowdView) -> Array:
-        """The regular candidates (N, S, 2) of everybody, or new random ones, world frame, m/s."""
+        """The regular candidates (N, S, 2) of all agents, or new random ones, world frame, m/s."""
         found = np.zeros((len(view.position), *self._candidates.shape))
         _candidates_of(
             *self.costs.surroundings(view), *self._options, self._candidates, self._polar,
@@ -178,7 +178,7 @@ def _choose(
     indices: Indices, first: Indices, frame: Array, world: Array, active: Indices, tried: Array,
     chosen: Array,
 ) -> None:  # fmt: skip
-    """Everybody's choice.
+    """Write the choices of all agents.
 
     Args:
         table to deciding: fields of `Surroundings`.
@@ -248,7 +248,7 @@ def _candidates_of(
     base: int, direction: int, radius: int, half: float, drawn: bool,
     candidates: Array, regular: Array, frame: Array, result: Array,
 ) -> None:  # fmt: skip
-    """Everybody's candidates (N, S, 2), m/s; arguments as of `_choose`."""
+    """Write the candidates of all agents (N, S, 2), m/s; arguments as of `_choose`."""
     around = Surroundings(
         table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
         found, deciding,

@@ -122,7 +122,7 @@ def _whole_steps(count: int, most: int) -> int:
 def _possible(
     frame: Array, x: Array, y: Array, bound: Array, is_sorted: bool, best: float, tried: Array
 ) -> int:
-    """Write who may be as good as ``best`` to ``tried``; return how many.
+    """Write candidates that may be as good as ``best`` to ``tried``; return how many.
 
     Rows 0, 1, 2 and 4: velocity in the world frame, bound, place.
     """
@@ -169,7 +169,7 @@ def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCost
 
 @inline_kernel
 def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
-    """Leave out who is above ``best`` by what the functions know; return how many stay.
+    """Leave out candidates whose bound is above ``best``; return how many stay.
 
     The widest function is asked first: it has most neighbours, and rules out most.
     """
@@ -184,7 +184,7 @@ def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
             costs.agent, functions[k, WORK], functions[k, PARAMS], out,
         )  # fmt: skip
         stay = 0
-        for c in range(count):  # whoever goes is overwritten by the next
+        for c in range(count):  # one that goes is overwritten by the next
             bound = least[c] + costs.weights[k] * out[c]
             ux[stay], uy[stay], least[stay], place[stay] = ux[c], uy[c], bound, place[c]
             stay += int(not bound > most)

@@ -41,7 +41,7 @@ def polar(sampling: Sampling) -> Array:
 def single_candidates(
     agent: AgentRecord, options: FanOptions, regular: Array, world: Array
 ) -> None:
-    """Fill ``world`` (S, 2) with candidates in the world frame; draws random ones anew.
+    """Fill ``world`` (S, 2) with candidates in the world frame; draws random ones again.
 
     Args:
         regular: (S, 2) of `polar`, not used for random ones.

@@ -1,4 +1,4 @@
-"""What surrounds everybody at one decision, in the form that compiled loops take.
+"""Surroundings of all agents at one decision, in the form that compiled loops take.
 
 Numba needs some 3 us to unpack a named tuple that comes from Python, and none for one that
 compiled code packs. So the loops over agents (in `sampling`, `gradient`, `optimum`, `evaluate`)
@@ -25,7 +25,7 @@ from crowdbot.core.types.arrays import Array, Mask
 
 
 class TraitsRecord:
-    """What an agent is by nature; fields as of `AgentRecord`."""
+    """Traits of an agent for the search; fields as of `AgentRecord`."""
 
     preferred: float
     max_speed: float
@@ -34,7 +34,7 @@ class TraitsRecord:
 
 
 class SettingsRecord:
-    """What is the same for all agents; fields as of `AgentRecord`."""
+    """Settings for all agents; fields as of `AgentRecord`."""
 
     time_step: float
     relaxation: float
@@ -46,18 +46,18 @@ SETTINGS = record_type(SettingsRecord)
 
 
 class Surroundings(NamedTuple):
-    """Everybody and everything at one decision.
+    """All agents and their surroundings at one decision.
 
     Attributes:
         table: (B,) all discs, as `neighbours.sort_discs` sorts them into strips.
         starts: (strips + 1, 2) of the same function.
         low, height: lower border of the first strip, and height of a strip, m.
-        who: (N,) whose choice is wanted.
+        who: (N,) True for agents whose choice is wanted.
         goal: (N, 2), m.
         walls: (S, 4) both ends of segments, m.
         reach: largest centre distance at which a neighbour may count, m.
-        traits: (N,) what the agents are by nature.
-        settings: (1,) what is the same for all.
+        traits: (N,) of the agents.
+        settings: (1,) for all.
         random: (N,) states of the agents' random numbers, changed in place.
         near, found: (>= B,), (>= S,) scratch for one agent's neighbours and walls.
         deciding: (1,) scratch: the agent that decides.

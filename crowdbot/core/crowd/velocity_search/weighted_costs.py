@@ -115,7 +115,7 @@ class WeightedCosts:
         self._make_room(1, 0)
 
     def reach(self, view: CrowdView) -> float:
-        """Centre distance beyond which nobody matters to anybody, m."""
+        """Centre distance beyond which no one matters to another, m."""
         largest = self.largest
         for discs in (view.robot, view.pillars):
             if len(discs):
