@@ -16,6 +16,7 @@ from crowdbot.core.crowd.engine import NO_STIFFNESSES, NONE
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdView
 from crowdbot.core.crowd.step import tick
+from crowdbot.core.support.records import numbers_of
 
 Array = NDArray[np.float64]
 
@@ -77,7 +78,7 @@ def whole_step(
         rows[:, s.AX : s.AY + 1] = desired_acceleration(chosen, view)
         given: tuple[Any, ...] = (
             flat, robots, DISC[None], NONE, NO_STIFFNESSES, world.pillars, DT,
-            *people, *place, *scratch,
+            *numbers_of(*people, *place, *scratch),
         )  # fmt: skip
         tick(*given)
 

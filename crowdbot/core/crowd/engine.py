@@ -26,6 +26,7 @@ from crowdbot.core.crowd.steering.parts import parts_of, steer
 from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.support.immutable import immutable, immutable_fields
+from crowdbot.core.support.records import numbers_of
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array, Indices
 
@@ -107,7 +108,8 @@ class CrowdEngine:
         self.aim = s.GOAL_X if self._router is None else s.WAYPOINT_X
         self._members, self._ends = groups_of(agents)
         self._cohesion = None if world.cohesion is None else world.cohesion.forces
-        self._scratch = Scratch.of(len(agents))
+        self._parameters = numbers_of(*self._people, *self._place, *Scratch.of(len(agents)))
+        self._usual: dict[int, tuple[Indices, Array]] = {}
 
     def initial_state(self, robots: int = 1) -> Array:
         """The state at t = 0, with room for the contacts of some robots.
@@ -195,10 +197,16 @@ class CrowdEngine:
         outlines = outline if outline.ndim == 3 else _alike(outline, len(robots))
         if int(flat[s.TICK]) % self._ticks_per_decision == 0:
             self._decide(flat, robots, outlines)
-        numbers = np.arange(len(robots)) if numbers is None else numbers
-        if stiffnesses is None:
-            stiffnesses = np.full(len(robots), self.world.stiffness)
+        usual = self._usual_robots(len(robots))
+        numbers = usual[0] if numbers is None else numbers
+        stiffnesses = usual[1] if stiffnesses is None else stiffnesses
         tick(*self._given(flat, robots, outlines, dt, numbers, stiffnesses))
+
+    def _usual_robots(self, count: int) -> tuple[Indices, Array]:
+        """Numbers and stiffnesses of so many robots, where not given."""
+        if count not in self._usual:
+            self._usual[count] = np.arange(count), np.full(count, self.world.stiffness)
+        return self._usual[count]
 
     def advance_alone(self, flat: Array, most: int) -> int:
         """Ticks without robots, in place, as `advance` makes them one by one.
@@ -235,8 +243,7 @@ class CrowdEngine:
     ) -> tuple[Any, ...]:
         """All that `tick` is given."""
         return (
-            flat, robots, outlines, numbers, stiffnesses, self._fixed(flat), dt,
-            *self._people, *self._place, *self._scratch,
+            flat, robots, outlines, numbers, stiffnesses, self._fixed(flat), dt, *self._parameters,
         )  # fmt: skip
 
     def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:

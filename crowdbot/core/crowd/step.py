@@ -9,33 +9,31 @@ import numpy as np
 
 from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
-from crowdbot.core.crowd.contact.pedestrian_contact import PlacedRecord, push_apart
+from crowdbot.core.crowd.contact.pedestrian_contact import PLACED, push_apart
 from crowdbot.core.crowd.contact.robot_contact import ROBOT, RobotRecord, robot_contacts
-from crowdbot.core.crowd.goal_areas import PlaceRecord
+from crowdbot.core.crowd.goal_areas import PLACE
 from crowdbot.core.crowd.parameters import (
+    RULES,
     AgentParameters,
-    RulesRecord,
     WorldParameters,
 )
 from crowdbot.core.crowd.periodic_boundary import wrap
 from crowdbot.core.crowd.portals import entry_fraction, leave, try_to_re_enter, try_to_start
-from crowdbot.core.crowd.response.parameters import TickResponse
+from crowdbot.core.crowd.response.parameters import TICK_RESPONSE
 from crowdbot.core.crowd.response.standing import stop_short
 from crowdbot.core.crowd.routes import arrive, goal_fraction, next_goal, stays
 from crowdbot.core.crowd.state import (
     AGENT_COLUMNS,
     AT_PORTAL,
-    FELT_SIZE,
     HEADER,
     HEADER_SIZE,
     NOT_YET,
     PERSON,
     PRESENT,
-    TOUCH_COLUMNS,
     HeaderRecord,
     People,
 )
-from crowdbot.core.crowd.traits import TraitsRecord
+from crowdbot.core.crowd.traits import TRAITS
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows, as_record, as_rows
 from crowdbot.core.types.arrays import Array, Indices
@@ -48,11 +46,10 @@ _TURNS_ABOVE = 0.1
 def tick(
     flat: Array, robots: Array, outlines: Array, numbers: Indices, stiffnesses: Array, discs: Array,
     dt: float,
-    traits: Rows[TraitsRecord], route: Rows[PlaceRecord], origin: Rows[PlaceRecord],
-    entry_order: Indices,
-    walls: Array, entrance: Array, out: Array, boundary: Array, rules: Rows[RulesRecord],
-    response: Rows[TickResponse], goal_key: np.uint64, solids: Array,
-    reaction: Array, placed: Rows[PlacedRecord], order: Indices,
+    traits: Array, route: Array, origin: Array, entry_order: Indices,
+    walls: Array, entrance: Array, out: Array, boundary: Array, rules: Array, response: Array,
+    goal_key: np.uint64, solids: Array,
+    reaction: Array, placed: Array, order: Indices,
 ) -> None:  # fmt: skip
     """Advance from tick k to k + 1.
 
@@ -65,24 +62,26 @@ def tick(
         numbers, stiffnesses: of the robots, as in `robot_contacts`.
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
-        traits to entry_order: fields of `AgentParameters`.
-        walls to solids: fields of `WorldParameters`.
-        reaction, placed, order: fields of `Scratch`.
+        traits to entry_order: fields of `AgentParameters`, as numbers.
+        walls to solids: fields of `WorldParameters`, as numbers.
+        reaction, placed, order: fields of `Scratch`, as numbers.
     """
-    people = AgentParameters(traits, route, origin, entry_order)
+    people = AgentParameters(
+        as_rows(traits, TRAITS), as_rows(route, PLACE), as_rows(origin, PLACE), entry_order
+    )
     world = WorldParameters(
-        walls, entrance, out, boundary, rules, response, goal_key, solids,
+        walls, entrance, out, boundary, as_rows(rules, RULES), as_rows(response, TICK_RESPONSE),
+        goal_key, solids,
     )  # fmt: skip
-    count = traits.shape[0]
+    count = people.traits.shape[0]
     end = HEADER_SIZE + count * AGENT_COLUMNS
     header, agents = as_record(flat, HEADER), as_rows(flat[HEADER_SIZE:end], PERSON)
-    contacts = flat[end:].reshape(int(header.robots), FELT_SIZE + count * TOUCH_COLUMNS)
     machines = as_rows(robots, ROBOT)
     now = header.tick * dt
-    push_apart(agents, traits, order, walls, discs, placed)
+    push_apart(agents, people.traits, order, walls, discs, as_rows(placed, PLACED))
     robot_contacts(
-        contacts, agents, traits, machines, outlines, numbers, stiffnesses, rules[0].dissipation,
-        now, dt, reaction,
+        flat[end:], agents, people.traits, machines, outlines, numbers, stiffnesses,
+        world.rules[0].dissipation, now, dt, reaction,
     )  # fmt: skip
     for i in range(agents.shape[0]):
         if agents[i].waiting == PRESENT:
@@ -90,7 +89,7 @@ def tick(
     for i in entry_order:
         if agents[i].waiting == AT_PORTAL:
             try_to_re_enter(agents, i, people, world, machines, discs, now + dt)
-        elif agents[i].waiting == NOT_YET and traits[i].start_time <= now + dt:
+        elif agents[i].waiting == NOT_YET and people.traits[i].start_time <= now + dt:
             try_to_start(agents, i, people, world, machines, discs, now + dt)
     header.tick += 1.0
 

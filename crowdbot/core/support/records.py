@@ -64,6 +64,16 @@ def rows_in(numbers: NDArray[np.float64], record: RecordType[T]) -> Rows[T]:
     return cast(Rows[T], numbers.reshape(-1).view(cast(Any, record)))
 
 
+def numbers_of(*arguments: Any) -> tuple[Any, ...]:
+    """Arguments with the float64 of records in place of these, sharing their memory.
+
+    Numba takes plain arrays 0.1 us faster from Python.
+    """
+    return tuple(
+        a.view(np.float64) if isinstance(a, np.ndarray) and a.dtype.names else a for a in arguments
+    )
+
+
 def record_type(declared: type[T], columns: int | None = None) -> RecordType[T]:
     """The dtype of a record with the annotated fields of a class and of its bases.
 

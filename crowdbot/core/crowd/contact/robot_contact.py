@@ -11,6 +11,7 @@ from crowdbot.core.crowd.state import (
     FELT,
     FELT_SIZE,
     TOUCH,
+    TOUCH_COLUMNS,
     FeltRecord,
     People,
     TouchRecord,
@@ -69,15 +70,16 @@ def robot_contacts(
     """`robot_contact` with each robot that is there.
 
     Args:
-        contacts: (A, F + T N) what each of all robots feels, changed in place: the last part of
-            the crowd's state.
+        contacts: what each of all robots feels, changed in place: the last part of the crowd's
+            state.
         numbers: (R,) which of them are there.
         stiffnesses: (R,) of the contact with each, N/m.
         reaction: (N, 2) the sum of their forces on each agent, N; written.
     """
+    size = FELT_SIZE + agents.shape[0] * TOUCH_COLUMNS
     reaction[:] = 0.0
     for r in range(robots.shape[0]):
-        own = contacts[numbers[r]]
+        own = contacts[numbers[r] * size : (numbers[r] + 1) * size]
         felt, touches = as_record(own, FELT), as_rows(own[FELT_SIZE:], TOUCH)
         outline = outlines[r][: corners_of(outlines, r)]
         robot_contact(
