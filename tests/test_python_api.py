@@ -16,7 +16,7 @@ from crowdbot.core.planning.given_planner import choose_planner
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.registry.registry import discover
 from crowdbot.plugin import Command, Observation
-from crowdbot.plugins.planners.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa.dwa import DwaSpec
 from tests.paths import ROOT
 
 FILE = ROOT / "docs" / "tutorial" / "files" / "my_scenario.yaml"

@@ -16,8 +16,8 @@ from crowdbot.plugins.metrics.risk import RiskSpec
 from crowdbot.plugins.metrics.risk_build import Risk
 from crowdbot.plugins.noise.offset import OffsetSpec
 from crowdbot.plugins.noise.offset_build import build as build_noise
-from crowdbot.plugins.planners.dwa import DwaSpec
-from crowdbot.plugins.planners.dwa_build import build as build_planner
+from crowdbot.plugins.planners.dwa.dwa import DwaSpec
+from crowdbot.plugins.planners.dwa.dwa_build import build as build_planner
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build as build_robot
 from crowdbot.plugins.sensors.bumper import BumperSpec

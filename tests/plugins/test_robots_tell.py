@@ -23,7 +23,7 @@ from crowdbot.core.types.robot import (
 )
 from crowdbot.core.view.build import field_of_view
 from crowdbot.plugin import Mount, RobotSpec, SensorSpec
-from crowdbot.plugins.planners.robot_outline_build import disc_radius, half_width_and_front
+from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius, half_width_and_front
 from crowdbot.plugins.sensors.infrared import InfraredSpec
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.people_tracker import PeopleTrackerSpec

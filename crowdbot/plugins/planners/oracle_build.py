@@ -18,11 +18,11 @@ from crowdbot.plugin import (
     Task,
     Truth,
 )
-from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
-from crowdbot.plugins.planners.dwa_rollout_build import candidates
+from crowdbot.plugins.planners.dwa.window_build import candidates
 from crowdbot.plugins.planners.goal_seek_build import braking_speed
 from crowdbot.plugins.planners.oracle import OracleSpec
-from crowdbot.plugins.planners.robot_outline_build import core_of
+from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
+from crowdbot.plugins.planners.shared.robot_outline_build import core_of
 
 #: Walls farther away play no part, m; nor people, beyond that and what they may walk.
 _REACH = 4.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from crowdbot.plugin import Array, kernel
-from crowdbot.plugins.planners.robot_outline_build import core_gap
+from crowdbot.plugins.planners.shared.robot_outline_build import core_gap
 
 #: Steps of a rollout, s.
 STEP = 0.125

@@ -9,7 +9,7 @@ from dataclasses import replace
 from crowdbot.plugin import Command, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek
-from crowdbot.plugins.planners.robot_outline_build import swept_half_width
+from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.wall_hug import WallHugSpec
 
 #: From the border to the middle of a robot that is not wide, and beside one that is, m.

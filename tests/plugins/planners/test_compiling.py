@@ -36,7 +36,7 @@ class Watched:
         self.planner.reset(*given)
         self.compiled = self.compiled or compiled()
 
-component = importlib.import_module("crowdbot.plugins.planners.KIND").NAME
+component = importlib.import_module("crowdbot.plugins.planners.KIND.KIND").NAME
 planner = Watched(load_build(component)(component.spec()))
 around = [[2.5 + 1.2 * math.cos(a), 1.2 * math.sin(a), 0.0, 0.0] for a in range(12)]
 World(crowd(1, 50, (0.8, 1.6), (1, -1))).run(planner, time_limit=4.0)

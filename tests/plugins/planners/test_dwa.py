@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.plugin import Pose
-from crowdbot.plugins.planners.dwa import DWA, DwaSpec
-from crowdbot.plugins.planners.dwa_build import build
+from crowdbot.plugins.planners.dwa.dwa import DWA, DwaSpec
+from crowdbot.plugins.planners.dwa.dwa_build import build
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import build as build_goal_seek
 from tests.plugins.planners.world import CORRIDOR, LIMITS, Outcome, World, crowd

@@ -8,14 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.plugins.planners import dwa_rollout_build as rollout
-from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
-from crowdbot.plugins.planners.dwa_map_build import remembered, way_out
-from crowdbot.plugins.planners.dwa_points_build import (
+import crowdbot.plugins.planners.dwa.parameters_build as entries
+import crowdbot.plugins.planners.dwa.rollouts_build as rollout
+import crowdbot.plugins.planners.dwa.window_build as window
+from crowdbot.plugins.planners.dwa.cost_build import evaluate
+from crowdbot.plugins.planners.dwa.dead_ends.map_build import remembered, way_out
+from crowdbot.plugins.planners.dwa.direction_build import choose_direction, free_time
+from crowdbot.plugins.planners.shared.points_build import (
     apart,
     apparent_velocity,
-    choose_direction,
-    free_time,
     minimum,
     nearest_per_sector,
 )
@@ -121,7 +122,7 @@ def test_it_holds_to_its_last_direction() -> None:
 
 # -------------------------------------------------------------------------- rollouts
 def parameters(**changed: float) -> Array:
-    p = np.zeros(rollout.PARAMETERS)
+    p = np.zeros(entries.PARAMETERS)
     values = {
         "A_MAX": 1.0, "ALPHA_MAX": 2.0, "HORIZON": 2.5, "TURN_TIME": 1.0, "RADIUS": 0.2,
         "MARGIN": 0.05, "COMFORT": 0.4, "GROWTH": 0.0, "PERIOD": 0.0625, "PROGRESS": 1.0,
@@ -129,7 +130,7 @@ def parameters(**changed: float) -> Array:
         "W_MAX": 3.0, "REACH": 0.2, **changed,
     }  # fmt: skip
     for name, value in values.items():
-        p[getattr(rollout, name)] = value
+        p[getattr(entries, name)] = value
     return p
 
 
@@ -145,8 +146,8 @@ def roll(
 
 
 def test_every_parameter_has_its_own_place() -> None:
-    places = sorted(v for k, v in vars(rollout).items() if k.isupper() and type(v) is int)
-    assert places == [*range(rollout.PARAMETERS), rollout.PARAMETERS]
+    places = sorted(v for k, v in vars(entries).items() if k.isupper() and type(v) is int)
+    assert places == [*range(entries.PARAMETERS), entries.PARAMETERS]
 
 
 def test_a_straight_rollout_with_a_ramp() -> None:
@@ -180,7 +181,7 @@ def test_candidates_are_every_speed_with_every_rate(
     high = low + more
     v = np.unique(np.append(np.linspace(low, high, speeds), max(low, min(0.0, high))))
     w = np.append(np.linspace(-1.5, 0.7, rates), (0.3, 0.0))
-    found = rollout.candidates(low, high, speeds, -1.5, 0.7, rates, 0.3)
+    found = window.candidates(low, high, speeds, -1.5, 0.7, rates, 0.3)
     np.testing.assert_array_equal(found[:, 0], np.repeat(v, len(w)))
     np.testing.assert_array_equal(found[:, 1], np.tile(w, len(v)))
 

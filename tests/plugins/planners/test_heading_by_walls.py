@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.plugin import Array, LidarPoints, Pose
-from crowdbot.plugins.planners.heading_by_walls_build import (
+from crowdbot.plugins.planners.shared.heading_by_walls_build import (
     BINS,
     HeadingByWalls,
     directions,

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import crowdbot.plugins.planners.dwa.parameters_build as entries
 from crowdbot.plugin import Array, Observation, Pose, Reading, RobotLimits, SensorInfo
-from crowdbot.plugins.planners import dwa_rollout_build as rollout
-from crowdbot.plugins.planners.lidar_views_build import LidarViews
-from crowdbot.plugins.planners.manoeuvring_build import Manoeuvring
+from crowdbot.plugins.planners.dwa.dead_ends.lidar_views_build import LidarViews
+from crowdbot.plugins.planners.dwa.dead_ends.manoeuvring_build import Manoeuvring
 from tests.plugins.planners.test_outlines import BOX, REACH, parameters, wall_with_door
 
 LIMITS = RobotLimits(v_min=-1.5, v_max=1.5, w_max=1.5, a_max=1.0, alpha_max=2.0)
@@ -73,7 +73,7 @@ def test_sensors_that_tell_nothing_see_past_nothing() -> None:
 @pytest.fixture
 def chair() -> Manoeuvring:
     p = parameters()
-    p[rollout.PERIOD] = 1.0 / 16.0
+    p[entries.PERIOD] = 1.0 / 16.0
     return Manoeuvring(BOX, p, LIMITS, LidarViews({}), 0.33, 6.0)
 
 

@@ -13,17 +13,19 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate  # type: ignore[import-untyped]
 from shapely.geometry import LineString, MultiPoint, Point, Polygon  # type: ignore[import-untyped]
 
+import crowdbot.plugins.planners.dwa.parameters_build as entries
+import crowdbot.plugins.planners.dwa.rollouts_build as rollout
+import crowdbot.plugins.planners.dwa.window_build as window
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.plugin import Array, Pose, RobotBody, RobotLimits
-from crowdbot.plugins.planners import dwa_rollout_build as rollout
-from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
-from crowdbot.plugins.planners.dwa_map_build import islands
-from crowdbot.plugins.planners.legs_build import Legs
-from crowdbot.plugins.planners.manoeuvre_build import manoeuvre
-from crowdbot.plugins.planners.robot_outline_build import (
+from crowdbot.plugins.planners.dwa.cost_build import evaluate
+from crowdbot.plugins.planners.dwa.dead_ends.legs_build import Legs
+from crowdbot.plugins.planners.dwa.dead_ends.manoeuvre_build import manoeuvre
+from crowdbot.plugins.planners.dwa.dead_ends.map_build import islands
+from crowdbot.plugins.planners.shared.robot_outline_build import (
     core_gap,
     core_of,
     nearest_to_core,
@@ -70,10 +72,10 @@ def test_gaps_are_those_of_shapely(
 
 
 def parameters() -> Array:
-    p = np.zeros(rollout.PARAMETERS)
-    p[rollout.A_MAX], p[rollout.ALPHA_MAX], p[rollout.HORIZON] = 1.0, 2.0, 2.5
-    p[rollout.TURN_TIME], p[rollout.MARGIN], p[rollout.COMFORT] = 1.0, 0.06, 0.4
-    p[rollout.V_MAX], p[rollout.W_MAX], p[rollout.PERIOD], p[rollout.REACH] = (
+    p = np.zeros(entries.PARAMETERS)
+    p[entries.A_MAX], p[entries.ALPHA_MAX], p[entries.HORIZON] = 1.0, 2.0, 2.5
+    p[entries.TURN_TIME], p[entries.MARGIN], p[entries.COMFORT] = 1.0, 0.06, 0.4
+    p[entries.V_MAX], p[entries.W_MAX], p[entries.PERIOD], p[entries.REACH] = (
         1.5,
         1.5,
         0.0625,
@@ -110,7 +112,7 @@ def test_ways_aside_keep_to_what_the_drive_can(
     v: float, vy: float, top: float, direction: float
 ) -> None:
     rates = np.array([0.3, 0.0])
-    found = rollout.candidates_aside((v, vy), 0.275, top, 6, direction, rates)
+    found = window.candidates_aside((v, vy), 0.275, top, 6, direction, rates)
     assert np.all(np.hypot(found[:, 0] - v, found[:, 2] - vy) <= 0.275 + 1e-12)
     assert np.all(np.hypot(found[:, 0], found[:, 2]) <= max(top, math.hypot(v, vy)) + 1e-12)
     assert set(found[:, 1]) == {0.3, 0.0}

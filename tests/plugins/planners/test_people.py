@@ -12,7 +12,7 @@ from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugin import Pose, Reading, RobotState
-from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
+from crowdbot.plugins.planners.shared.people_build import carry, people_in, with_discs
 from tests.plugins.planners.world import lidars
 
 Array = NDArray[np.float64]

@@ -6,8 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.registry.build_reference import load_build
-from crowdbot.plugins.planners.stop_and_go import STOP_AND_GO, StopAndGoSpec
-from crowdbot.plugins.planners.stop_and_go_build import build, safe_speed, time_to_contact
+from crowdbot.plugins.planners.stop_and_go.stop_and_go import STOP_AND_GO, StopAndGoSpec
+from crowdbot.plugins.planners.stop_and_go.stop_and_go_build import (
+    build,
+    safe_speed,
+    time_to_contact,
+)
 from tests.plugins.planners.world import LIMITS, PERSON, RADIUS, Outcome, World
 
 SPEC = StopAndGoSpec(person_radius=PERSON)

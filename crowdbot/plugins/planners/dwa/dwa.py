@@ -91,6 +91,6 @@ class DwaSpec(PlannerSpec):
 
 DWA = Component(
     spec=DwaSpec,
-    build="crowdbot.plugins.planners.dwa_build:build",
+    build="crowdbot.plugins.planners.dwa.dwa_build:build",
     summary="dynamic window approach on lidar points (Fox, Burgard, Thrun 1997)",
 )

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import Array, kernel
-from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
+from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.
 _GAP, _GAP_SHARE = 0.1, 0.015

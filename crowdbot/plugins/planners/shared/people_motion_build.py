@@ -8,7 +8,7 @@ from collections import deque
 import numpy as np
 
 from crowdbot.plugin import Array, Pose
-from crowdbot.plugins.planners.dwa_points_build import apparent_velocity
+from crowdbot.plugins.planners.shared.points_build import apparent_velocity
 
 #: Apparent motion below this is that of legs, above that a person who was hidden, m/s.
 _STILL, _FASTEST = 0.3, 2.5

@@ -12,8 +12,7 @@ import numpy as np
 
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import Array, kernel
-from crowdbot.plugins.planners.dwa_points_build import unsigned
-from crowdbot.plugins.planners.dwa_rollout_build import (
+from crowdbot.plugins.planners.dwa.parameters_build import (
     A_MAX,
     ALPHA_MAX,
     CLEARANCE,
@@ -22,11 +21,13 @@ from crowdbot.plugins.planners.dwa_rollout_build import (
     IMPACT,
     PERIOD,
     PROGRESS,
-    ROUNDING,
     SMOOTHNESS,
-    STEP,
     V_MAX,
     W_MAX,
+)
+from crowdbot.plugins.planners.dwa.rollouts_build import (
+    ROUNDING,
+    STEP,
     foreseen,
     reachable,
     roll,
@@ -34,6 +35,7 @@ from crowdbot.plugins.planners.dwa_rollout_build import (
     slewed_planar,
     turn_of,
 )
+from crowdbot.plugins.planners.shared.points_build import unsigned
 
 
 @array_kernel
@@ -57,7 +59,7 @@ def evaluate(
     Args:
         points: (K, 2) base frame, m.
         velocities: (K, 2) base frame, m/s.
-        p: (17,) parameters, in the order of the constants of `dwa_rollout_build`.
+        p: (17,) parameters, in the order of the constants of `parameters_build`.
         core: of the robot's outline, as `robot_outline_build.core_of`.
         now: present v, w, vy: m/s forward, rad/s, m/s to the left.
         candidates: (C, 3) targets v, w, vy; or (C, 2), which go straight ahead.

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import Array
-from crowdbot.plugins.planners.robot_outline_build import core_gap
+from crowdbot.plugins.planners.shared.robot_outline_build import core_gap
 
 #: Side of a cell (m), and cells from the middle of the map to its border.
 CELL, HALF = 0.1, 45

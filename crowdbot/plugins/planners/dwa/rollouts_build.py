@@ -1,4 +1,4 @@
-"""Rollouts of the dynamic window: time × points; and the candidates; compiled."""
+"""Rollouts of the dynamic window: how a robot moves, and how near it comes to points; compiled."""
 
 from __future__ import annotations
 
@@ -8,19 +8,23 @@ import numpy as np
 
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import Array, kernel
-from crowdbot.plugins.planners.dwa_points_build import minimum
-from crowdbot.plugins.planners.robot_outline_build import nearest_to_core
+from crowdbot.plugins.planners.dwa.parameters_build import (
+    A_MAX,
+    ALPHA_MAX,
+    COMFORT,
+    GROWTH,
+    HORIZON,
+    MARGIN,
+    RADIUS,
+    REACH,
+    TURN_TIME,
+    V_MAX,
+)
+from crowdbot.plugins.planners.shared.points_build import minimum
+from crowdbot.plugins.planners.shared.robot_outline_build import nearest_to_core
 
 #: Steps of a rollout, s.
 STEP = 0.125
-
-#: Indices into the vector of parameters that the kernel takes.
-A_MAX, ALPHA_MAX, HORIZON, TURN_TIME, RADIUS, MARGIN, COMFORT, GROWTH, PERIOD = range(9)
-PROGRESS, HEADING, CLEARANCE, IMPACT, SMOOTHNESS, V_MAX, W_MAX, REACH = range(9, 17)
-PARAMETERS = 17
-
-#: Directions that a robot which goes sideways tries, from the wanted one, rad.
-_ASIDE = tuple(math.radians(a) for a in (0.0, 20.0, -20.0, 45.0, -45.0, 90.0, -90.0, 180.0))
 
 #: A rollout may come this much closer to a point that is within the margin already, m.
 _SLACK = 1e-3
@@ -192,74 +196,3 @@ def _closeness(gap: float, t: float, p: Array) -> float:
     """How much a gap (m) at a time (s) counts; falls as the gap grows."""
     doubt = 1.0 - (gap - p[GROWTH] * t) / p[COMFORT]
     return float(min(1.0, doubt) * (1.0 - 0.5 * t / p[HORIZON]))
-
-
-@kernel
-def _evenly(first: float, last: float, values: Array) -> None:
-    """Fill (N,) with even steps from the first to the last, N > 1."""
-    steps = values.shape[0] - 1
-    for k in range(steps):
-        values[k] = k * ((last - first) / steps) + first
-    values[steps] = last
-
-
-@array_kernel
-def candidates(
-    low: float, high: float, speeds: int, left: float, right: float, rates: int, wish: float
-) -> Array:
-    """Target velocities (C, 2): every speed with every yaw rate, slow to fast.
-
-    Args:
-        low, high: borders of the speeds, m/s; 0, or what is next to it, is one of them.
-        speeds, rates: how many are tried of each, > 1.
-        left, right: borders of the yaw rates, rad/s; 0, or what is next to it, is tried too.
-        wish: one more yaw rate, rad/s.
-    """
-    v, w = np.empty(speeds + 1), np.empty(rates + 2)
-    _evenly(low, high, v[:speeds])
-    v[speeds] = max(low, min(0.0, high))
-    for k in range(speeds, 0, -1):  # to its place; v.sort() takes a second to compile
-        if v[k - 1] <= v[k]:
-            break
-        v[k - 1], v[k] = v[k], v[k - 1]
-    _evenly(left, right, w[:rates])
-    w[rates], w[rates + 1] = wish, max(left, min(right, 0.0))
-    out = np.empty((len(v) * len(w), 2))
-    count = 0
-    for k in range(len(v)):
-        if k > 0 and v[k] == v[k - 1]:
-            continue
-        for j in range(len(w)):
-            out[count, 0], out[count, 1] = v[k], w[j]
-            count += 1
-    return out[:count]
-
-
-@array_kernel
-def candidates_aside(
-    now: tuple[float, float], change: float, top: float, speeds: int, direction: float, rates: Array
-) -> Array:
-    """Target velocities (C, 3), v, w and vy, of a robot that goes in every direction.
-
-    Every speed in the wanted direction, aside from it and away from it, with every yaw rate, each
-    as far as the change allows.
-
-    Args:
-        now: present v and vy, m/s.
-        change: largest change of that vector, m/s.
-        top: highest speed, m/s.
-        speeds: how many are tried, > 1; the lowest is 0.
-        direction: that is wanted, rad.
-        rates: (R,) yaw rates, rad/s.
-    """
-    out = np.empty((((speeds - 1) * len(_ASIDE) + 1) * rates.shape[0], 3))
-    count = 0
-    for k in range(speeds):
-        for j in range(len(_ASIDE) if k > 0 else 1):
-            speed, angle = top * k / (speeds - 1), direction + _ASIDE[j]
-            v, vy = speed * math.cos(angle), speed * math.sin(angle)
-            v, vy = slewed_planar(now[0], now[1], v, vy, change)
-            for i in range(rates.shape[0]):
-                out[count, 0], out[count, 1], out[count, 2] = v, rates[i], vy
-                count += 1
-    return out

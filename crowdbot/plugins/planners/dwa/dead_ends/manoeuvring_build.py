@@ -7,15 +7,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-import crowdbot.plugins.planners.dwa_rollout_build as rollout
+import crowdbot.plugins.planners.dwa.parameters_build as parameters
 from crowdbot.plugin import Array, Observation, Pose, Reading, RobotLimits
-from crowdbot.plugins.planners.dwa_evaluate_build import evaluate
-from crowdbot.plugins.planners.dwa_map_build import islands
-from crowdbot.plugins.planners.dwa_points_build import nearest_per_sector
-from crowdbot.plugins.planners.legs_build import Legs
-from crowdbot.plugins.planners.lidar_views_build import LidarViews
-from crowdbot.plugins.planners.manoeuvre_build import manoeuvre
-from crowdbot.plugins.planners.people_build import carry, with_discs
+from crowdbot.plugins.planners.dwa.cost_build import evaluate
+from crowdbot.plugins.planners.dwa.dead_ends.legs_build import Legs
+from crowdbot.plugins.planners.dwa.dead_ends.lidar_views_build import LidarViews
+from crowdbot.plugins.planners.dwa.dead_ends.manoeuvre_build import manoeuvre
+from crowdbot.plugins.planners.dwa.dead_ends.map_build import islands
+from crowdbot.plugins.planners.shared.people_build import carry, with_discs
+from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
 
 #: The map is renewed so often, s; its cells, and how far beside the robot what it remembers is in
 #: the way, m: that may be where no lidar looks.
@@ -41,7 +41,7 @@ class Manoeuvring:
 
     Args:
         core: of the robot's outline, as `robot_outline_build.core_of`.
-        p: parameters of `dwa_rollout_build`.
+        p: parameters of `parameters_build`.
         limits: the robot's.
         lidars: what they look at.
         person_radius: disc that is kept clear around people, m.
@@ -59,7 +59,7 @@ class Manoeuvring:
     ) -> None:
         self._core, self._p, self._limits, self._lidars = core, p, limits, lidars
         self._person, self._reach = person_radius, reach
-        self._beside = float(p[rollout.REACH]) + _BESIDE
+        self._beside = float(p[parameters.REACH]) + _BESIDE
         self.forget()
         self._plan(np.ones((1, 2)), Pose(0.0, 0.0, 0.0), (9.0, 0.0))  # compiles
         islands(np.ones((1, 2)), _LINK, _SMALL)
@@ -112,7 +112,7 @@ class Manoeuvring:
 
     def _plan(self, around: Array, pose: Pose, goal: tuple[float, float]) -> Array:
         """Legs of a manoeuvre among points (N, 2), world frame; none if there is no way."""
-        rounding, reach = float(self._p[rollout.RADIUS]), float(self._p[rollout.REACH])
+        rounding, reach = float(self._p[parameters.RADIUS]), float(self._p[parameters.REACH])
         found = manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHT)
         if len(found) == 0:  # what is remembered has become blurred, as odometry drifts
             found = manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHTEST)
@@ -125,8 +125,8 @@ class Manoeuvring:
         wishes += [(_BACK_OFF, 0.0)] if self._held > _HELD else []
         points, velocities = self._around(obs.pose, stands, walkers)
         tight, now = self._p.copy(), (*obs.twist, obs.vy)
-        tight[rollout.MARGIN] = _TIGHTEST
-        self._held += float(self._p[rollout.PERIOD])
+        tight[parameters.MARGIN] = _TIGHTEST
+        self._held += float(self._p[parameters.PERIOD])
         for k, (v, w) in enumerate(wishes):
             index, _ = evaluate(
                 points, velocities, tight, self._core, now, np.array([[v, w]]), 0.0, 0.0, now

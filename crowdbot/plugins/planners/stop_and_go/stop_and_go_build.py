@@ -32,11 +32,11 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 from crowdbot.plugins.planners.goal_seek_build import GoalSeek, bearing
-from crowdbot.plugins.planners.heading_by_walls_build import HeadingByWalls, compile_heading
-from crowdbot.plugins.planners.people_build import carry, people_in, with_discs
-from crowdbot.plugins.planners.people_motion_build import PeopleMotion
-from crowdbot.plugins.planners.robot_outline_build import half_width_and_front
-from crowdbot.plugins.planners.stop_and_go import StopAndGoSpec
+from crowdbot.plugins.planners.shared.heading_by_walls_build import HeadingByWalls, compile_heading
+from crowdbot.plugins.planners.shared.people_build import carry, people_in, with_discs
+from crowdbot.plugins.planners.shared.people_motion_build import PeopleMotion
+from crowdbot.plugins.planners.shared.robot_outline_build import half_width_and_front
+from crowdbot.plugins.planners.stop_and_go.stop_and_go import StopAndGoSpec
 
 #: People farther away do not matter yet, m.
 _REACH = 6.0

@@ -1,0 +1,1 @@
+"""Parts of several planners: points, people and their motion, the robot's size and heading."""

@@ -1,0 +1,1 @@
+"""Goal seek that stops for people."""
