@@ -8,6 +8,7 @@
 #   make coverage  run all tests, then write docs/reference/coverage.md
 #   make docs    the site of the documentation, in build/site; fails on a dead link
 #   make pictures  draw the pictures of README and documents anew, with the figures beside them
+#   make generate renew all pages, tables and pictures that are made from the code
 #   make changelog show the entries since the last release, as they will be printed
 #   make check-js  lint the JavaScript of the pages (needs node and npm)
 #   make lock    rewrite requirements.lock (needs uv)
@@ -28,7 +29,7 @@ BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/'
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test tests tests-as-they-go test-all durations lint types style kernels coverage docs pictures changelog check-js js-where-node-is setup lock clean
+.PHONY: demo check test tests tests-as-they-go test-all durations lint types style kernels coverage docs generate pictures changelog check-js js-where-node-is setup lock clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
@@ -80,6 +81,9 @@ coverage: setup
 docs: setup
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet -b html docs build/site
 	@echo "build/site/index.html"
+
+generate: setup
+	$(BIN)/python scripts/generate.py
 
 pictures: setup
 	$(BIN)/python scripts/make_pictures.py

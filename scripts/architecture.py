@@ -6,7 +6,6 @@ the layers contracts in pyproject.toml. Ends with 1 when something is out of pla
 Examples:
     .venv/bin/python scripts/architecture.py
     .venv/bin/python scripts/architecture.py --json
-    .venv/bin/python scripts/architecture.py --write   # renews the table of decision 0002
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from scipy.sparse.csgraph import connected_components
 ROOT = Path(__file__).parent.parent
 CORE = ROOT / "crowdbot" / "core"
 PAGE = ROOT / "docs" / "decisions" / "0002-floors.md"
-BEGIN = "<!-- Written by scripts/architecture.py --write: -->\n"
+BEGIN = "<!-- Written by make generate: -->\n"
 END = "<!-- end -->\n"
 
 #: Typing-only imports that may go up: the words of messages and hooks, which nothing executes.
@@ -225,12 +224,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="everything, for programs")
     form.add_argument("--markdown", action="store_true", help="the table of decision 0002")
-    form.add_argument("--write", action="store_true", help="renew the table in decision 0002")
     asked, found = parser.parse_args(arguments), measure()
-    if asked.write:
-        text = PAGE.read_text("utf-8")
-        PAGE.write_text(page_with_table(text, found), encoding="utf-8")
-    elif asked.json:
+    if asked.json:
         print(json.dumps({"counts": found.counts(), **asdict(found)}, indent=2))
     else:
         print(markdown(found) if asked.markdown else plain(found), end="")

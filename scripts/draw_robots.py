@@ -1,8 +1,7 @@
-"""Draws each robot from above, with the outline that others touch: docs/images/robots/KIND.svg."""
+"""Pictures of each robot from above, with the outline that others touch: docs/images/robots."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,6 @@ from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.look import seen_from_above
-from crowdbot.core.support.atomic_write import atomic_write
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images" / "robots"
 KINDS = ("turtlebot2", "pepper", "qolo", "cuybot", "smart_wheelchair")
@@ -63,21 +61,6 @@ def _outline(axis: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
     return np.concatenate([front + half, rear - half])
 
 
-def main() -> int:
-    """Write all pictures; with ``--check`` only say which are not up to date."""
-    stale = []
-    for kind in KINDS:
-        file, text = FOLDER / f"{kind}.svg", picture(kind)
-        if not file.exists() or file.read_text(encoding="utf-8") != text:
-            stale.append(file.name)
-            if "--check" not in sys.argv[1:]:
-                FOLDER.mkdir(parents=True, exist_ok=True)
-                atomic_write(file, text)
-    if "--check" in sys.argv[1:] and stale:
-        print(f"not up to date: {', '.join(stale)}; run scripts/draw_robots.py")
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+def pictures() -> dict[Path, str]:
+    """Return file -> picture of every robot."""
+    return {FOLDER / f"{kind}.svg": picture(kind) for kind in KINDS}

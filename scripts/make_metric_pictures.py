@@ -1,4 +1,4 @@
-"""Draws docs/images/metrics: what each metric measures, from one run; and the page of them all.
+"""Draws docs/images/metrics: what each metric measures, from one run.
 
 The scenario is scripts/metric_pictures/metrics.yaml, the planner drives beside it. Equal runs give
 equal pictures, except for those of the time that planner steps take.
@@ -14,6 +14,7 @@ import argparse
 import re
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import crowdbot
@@ -42,7 +43,7 @@ steered. [Metrics by category](metrics_by_category.md) lists symbols and directi
 
 
 def main() -> int:
-    """Make the run, draw all pictures, write the page."""
+    """Make the run and draw all pictures."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=Path, help="folder that keeps the run")
     given = parser.parse_args()
@@ -51,19 +52,33 @@ def main() -> int:
     return 0
 
 
-def draw(runs: Path) -> None:
-    """Everything from a run below ``runs``, which is made if it is not there."""
+def draw_missing() -> None:
+    """Draw the metrics that have no picture yet."""
+    missing = [metric for metric in DRAWINGS if not (IMAGES / f"{metric}.svg").is_file()]
+    if missing:
+        with tempfile.TemporaryDirectory() as folder:
+            draw(Path(folder), missing)
+
+
+def draw(runs: Path, metrics: Sequence[str] = tuple(DRAWINGS)) -> None:
+    """Draw pictures from a run below ``runs``, which is made if it is not there."""
     scenario = crowdbot.load(HERE / "metrics.yaml", "metric-pictures")
     planner = f"{HERE / 'sidestep.py'}:Sidestep"
     made = crowdbot.simulate(scenario, planner=planner, seed=0, out=runs)
     world = World.of(made)
     IMAGES.mkdir(parents=True, exist_ok=True)
-    for metric, drawing in DRAWINGS.items():
-        figure = drawing.draw(world, metric)
+    for metric in metrics:
+        figure = DRAWINGS[metric].draw(world, metric)
         (IMAGES / f"{metric}.svg").write_text(figure.svg(), encoding="utf-8")
+
+
+def pages() -> dict[Path, str]:
+    """Return file -> text of the gallery, and of each metric's page with its picture."""
+    found = {GALLERY: gallery()}
+    for metric in DRAWINGS:
         page = PAGES / f"{metric}.md"
-        page.write_text(with_picture(page.read_text(encoding="utf-8"), metric), encoding="utf-8")
-    GALLERY.write_text(gallery(), encoding="utf-8")
+        found[page] = with_picture(page.read_text(encoding="utf-8"), metric)
+    return found
 
 
 def with_picture(page: str, metric: str) -> str:

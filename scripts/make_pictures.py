@@ -40,7 +40,7 @@ GALLERY = {
     "floor": ("docs/howto/files/my_floor.yaml", "heeded"),
 }
 #: Scripts that draw what needs no run.
-WITHOUT_RUNS = ("write_world_pictures.py", "stream_pictures.py", "draw_robots.py")
+WITHOUT_RUNS = ("write_world_pictures.py", "stream_pictures.py")
 #: Metrics that the README shows, each with its line.
 SHOWN = (
     "safe_efficiency", "contacts_per_km", "push_work", "intrusion", "effect_on_velocity",

@@ -1,7 +1,4 @@
-"""Write docs/reference/author_surface.md from the module that plugins import.
-
-Example: .venv/bin/python scripts/write_author_surface.py
-"""
+"""The page docs/reference/author_surface.md, made from the module that plugins import."""
 
 from __future__ import annotations
 
@@ -19,7 +16,7 @@ PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
 _HEAD = """\
 # What plugins import
 
-<!-- Written by scripts/write_author_surface.py: change the modules, not this page. -->
+<!-- Written by make generate: change the modules, not this page. -->
 
 `crowdbot.plugin` holds all that a package of components needs: specs and components, which are
 imported to list and to validate, and contracts, values and tools for the modules with build
@@ -145,7 +142,3 @@ def _line(name: str) -> str:
     value: Any = getattr(plugin, name)
     text = inspect.getdoc(getattr(value, "py_func", value)) or ""
     return " ".join(text.partition("\n\n")[0].replace("``", "`").replace("|", "\\|").split())
-
-
-if __name__ == "__main__":
-    PAGE.write_text(author_surface_page(), encoding="utf-8")

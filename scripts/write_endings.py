@@ -1,7 +1,4 @@
-"""Writes the table of endings in docs/reference/run_directory.md; a test compares the page with it.
-
-Example: .venv/bin/python scripts/write_endings.py
-"""
+"""The table of endings in docs/reference/run_directory.md; scripts/generate.py writes it."""
 
 from __future__ import annotations
 
@@ -10,8 +7,8 @@ from pathlib import Path
 from crowdbot.core.types.ending import Ending
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "run_directory.md"
-BEGIN = "<!-- Written by scripts/write_endings.py: change core/types/ending.py, not this. -->"
-END = "<!-- End of what scripts/write_endings.py writes. -->"
+BEGIN = "<!-- Written by make generate: change core/types/ending.py, not this. -->"
+END = "<!-- End of what make generate writes. -->"
 
 
 def page(text: str) -> str:
@@ -34,7 +31,3 @@ def _place(ending: Ending) -> str:
     if ending.complete:
         return "`run.json`, results, reports, recordings"
     return "results, reports" if ending == Ending.NO_RUN else "recordings (`.partial`)"
-
-
-if __name__ == "__main__":
-    PAGE.write_text(page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")

@@ -1,14 +1,7 @@
-"""Writes docs/reference/metrics_by_category.md: every metric with its symbol and its question.
-
-Examples:
-    .venv/bin/python scripts/write_metric_index.py
-    .venv/bin/python scripts/write_metric_index.py --check
-"""
+"""The page docs/reference/metrics_by_category.md: every metric with its symbol and question."""
 
 from __future__ import annotations
 
-import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -53,18 +46,3 @@ def _row(component: Any) -> str:
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("*", "\\*")
-
-
-def main() -> int:
-    """Write the page, or say whether it is current."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if stale")
-    text = page()
-    if parser.parse_args().check:
-        return int(not PAGE.is_file() or PAGE.read_text(encoding="utf-8") != text)
-    PAGE.write_text(text, encoding="utf-8")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,4 @@
-"""Writes docs/reference/scenario.md from the models; a test compares the page with them.
-
-Example: .venv/bin/python scripts/write_reference.py
-"""
+"""The page docs/reference/scenario.md, made from the models; scripts/generate.py writes it."""
 
 from __future__ import annotations
 
@@ -36,7 +33,7 @@ PAGE = Path(__file__).parent.parent / "docs" / "reference" / "scenario.md"
 _HEAD = """\
 # Scenarios and suites: every field
 
-<!-- Written by scripts/write_reference.py: change the models, not this page. -->
+<!-- Written by make generate: change the models, not this page. -->
 
 A *scenario* holds everything the robot meets; the planner is never part of it. A *suite* expands
 to a list of scenarios; [Change a scenario](../howto/change_a_scenario.md) shows one. What each
@@ -263,7 +260,3 @@ def _default(info: FieldInfo) -> str:
     if isinstance(value, list | tuple | dict):
         return f"`[{', '.join(map(str, value))}]`" if value else "empty"
     return f"{value:.6g}"
-
-
-if __name__ == "__main__":
-    PAGE.write_text(scenario_page(), encoding="utf-8")

@@ -1,6 +1,6 @@
 """Write the JSON Schemas of the built-in components into scenario_specs/schema, for editors.
 
-The folder is not committed: ``make setup`` and the build of a wheel run this.
+The folder is not committed: ``make setup``, ``make generate`` and the build of a wheel write it.
 
 Example: .venv/bin/python scripts/write_schemas.py
 """
@@ -22,7 +22,12 @@ def schema_texts() -> dict[str, str]:
     return {f"{d}.v1.schema.json": to_text(build(d, registry)) for d in DocumentKind}
 
 
-if __name__ == "__main__":
+def write() -> None:
+    """Write every schema."""
     FOLDER.mkdir(exist_ok=True)
     for name, text in schema_texts().items():
         atomic_write(FOLDER / name, text.encode())
+
+
+if __name__ == "__main__":
+    write()

@@ -35,13 +35,6 @@ def test_no_files_import_in_a_circle_not_even_for_types(found: architecture.Arch
     assert found.room_circles == []
 
 
-def test_the_table_of_the_decision_is_current(found: architecture.Architecture) -> None:
-    text = architecture.PAGE.read_text("utf-8")
-    assert architecture.page_with_table(text, found) == text, (
-        ".venv/bin/python scripts/architecture.py --write"
-    )
-
-
 def test_circles_are_found_through_others_and_chains_are_none() -> None:
     chain = [("a", "b"), ("b", "c"), ("d", "c")]
     assert architecture.circles(chain) == []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import runpy
 import subprocess
 import sys
 import tomllib
@@ -183,18 +182,6 @@ def test_people_get_through_the_floor_of_the_howto() -> None:
     assert np.nanmax(np.abs(place[..., 1])) < 6.0
     back = np.diff(place[..., 0], axis=0) < -10.0  # through the portal
     assert np.sum(back) >= 0.9 * len(engine.agents)
-
-
-def test_the_page_of_all_fields_is_fresh() -> None:
-    script = runpy.run_path(str(ROOT / "scripts" / "write_reference.py"))
-    text: str = script["scenario_page"]()
-    assert read("reference/scenario.md") == text, "run scripts/write_reference.py"
-
-
-def test_the_table_of_endings_is_fresh() -> None:
-    script = runpy.run_path(str(ROOT / "scripts" / "write_endings.py"))
-    text = read("reference/run_directory.md")
-    assert script["page"](text) == text, "run scripts/write_endings.py"
 
 
 def test_decisions_are_numbered_and_whole() -> None:

@@ -30,12 +30,7 @@ def test_every_metric_is_drawn_and_no_other() -> None:
 @pytest.mark.parametrize("metric", DRAWINGS)
 def test_every_page_shows_its_picture(metric: str) -> None:
     page = read(f"reference/metrics/{metric}.md")
-    assert page == pictures.with_picture(page, metric), "run scripts/make_metric_pictures.py"
     assert f"](../../images/metrics/{metric}.svg)" in page
-
-
-def test_the_gallery_is_current() -> None:
-    assert read("reference/gallery_of_metrics.md") == pictures.gallery()
 
 
 def _track(t: Array, way: float) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import crowdbot
-from scripts import make_pictures, write_metric_index
+from scripts import make_pictures
 from tests.docs.doc_pages import read
 from tests.paths import ROOT
 
@@ -65,11 +65,6 @@ def test_the_page_leaves_no_public_member_out(name: str) -> None:
     inherited = {"index", "count", "cached"}  # of every sequence; for metrics
     public = {m for m in dir(getattr(crowdbot, name)) if not m.startswith("_")}
     assert public - fields - inherited <= shown
-
-
-def test_the_metrics_by_category_are_current() -> None:
-    text = write_metric_index.PAGE.read_text(encoding="utf-8")
-    assert text == write_metric_index.page(), "run scripts/write_metric_index.py"
 
 
 def test_figures_of_a_run_are_written_into_the_readme() -> None:

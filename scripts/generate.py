@@ -1,0 +1,95 @@
+"""Write everything that is made from the code and committed; ``make generate`` runs this.
+
+Pages, tables and pictures come from models, metrics, robots and imports. JSON Schemas are written,
+too, though not committed. A metric without a picture gets one. What is measured instead has
+commands of its own: ``make pictures``, ``make coverage``, scripts/write_crowd_validation.py,
+scripts/write_flow_validation.py and scripts/write_realism_reference.py.
+
+Examples:
+    .venv/bin/python scripts/generate.py
+    .venv/bin/python scripts/generate.py --check   # write nothing; 1 if something is stale
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))  # as a script, too
+
+from crowdbot.core.support.atomic_write import atomic_write  # noqa: E402
+from scripts import (  # noqa: E402
+    architecture,
+    draw_robots,
+    make_metric_pictures,
+    write_author_surface,
+    write_endings,
+    write_metric_index,
+    write_reference,
+    write_schemas,
+)
+
+Texts = dict[Path, str]
+
+
+def _page(path: Path, text: str) -> Texts:
+    return {path: text}
+
+
+def _rooms() -> Texts:
+    page = architecture.PAGE
+    text = page.read_text(encoding="utf-8")
+    return _page(page, architecture.page_with_table(text, architecture.measure()))
+
+
+def _endings() -> Texts:
+    page = write_endings.PAGE
+    return _page(page, write_endings.page(page.read_text(encoding="utf-8")))
+
+
+#: What is made -> the texts of its files.
+GENERATED: dict[str, Callable[[], Texts]] = {
+    "fields of scenarios": lambda: _page(write_reference.PAGE, write_reference.scenario_page()),
+    "names for plugins": lambda: _page(
+        write_author_surface.PAGE, write_author_surface.author_surface_page()
+    ),
+    "metrics by category": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
+    "gallery of metrics": make_metric_pictures.pages,
+    "endings": _endings,
+    "rooms": _rooms,
+    "robots from above": draw_robots.pictures,
+}
+
+
+def stale(what: str) -> Iterator[tuple[Path, str]]:
+    """Yield each file of one kind that is not as it would be written, with its text."""
+    for path, text in GENERATED[what]().items():
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            yield path, text
+
+
+def main() -> int:
+    """Write what is stale, or say it."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if stale")
+    check = parser.parse_args().check
+    found = False
+    for what in GENERATED:
+        for path, text in stale(what):
+            found = True
+            print(f"{'stale' if check else 'wrote'}: {path.relative_to(ROOT)}")
+            if not check:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                atomic_write(path, text)
+    if check:
+        return int(found)
+    make_metric_pictures.draw_missing()
+    write_schemas.write()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
