@@ -70,7 +70,7 @@ def measure(every: bool, ahead: bool) -> None:
     with tempfile.TemporaryDirectory() as folder:
         run = crowdbot.simulate(scenario, planner="dwa", out=folder)
         cpu, wall = time.process_time() - before, time.perf_counter() - begin
-        print(f"trajectories {run.record['hashes']['trajectory']}")
+        print(f"trajectories {run.record.hashes.trajectory}")
     files: defaultdict[str, float] = defaultdict(float)
     numbers: Counter[str] = Counter()
     for key, seconds in heard.seconds.items():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -17,6 +16,7 @@ from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.registry.registry import discover
 from crowdbot.plugin import Command, Observation
 from crowdbot.plugins.planners.dwa.dwa import DwaSpec
+from tests.core.results.made_up_record import made_up_record
 from tests.paths import ROOT
 
 FILE = ROOT / "docs" / "tutorial" / "files" / "my_scenario.yaml"
@@ -165,7 +165,7 @@ def test_class_object_and_function_drive_alike(tmp_path: Path) -> None:
         short(), planner=creep, out=tmp_path, progress=told.append, **options
     )
     by_function = crowdbot.simulate(short(), planner=ahead, out=tmp_path, **options)
-    hashes = {r.record["hashes"]["trajectory"] for r in (by_class, by_object, by_function)}
+    hashes = {r.record.hashes.trajectory for r in (by_class, by_object, by_function)}
     assert len(hashes) == 1
     assert creep.seen[:2] == [0.0, 0.0625]
     assert told[-1].t == 1.0
@@ -209,11 +209,7 @@ def test_a_scenario_draws_itself() -> None:
 
 
 def test_a_run_shows_its_replay(tmp_path: Path) -> None:
-    record = {
-        "scenario": "a", "planner": {"label": "dwa"}, "seed": 1, "status": "arrived",
-        "references": {},
-    }  # fmt: skip
-    (tmp_path / "run.json").write_text(json.dumps(record))
+    made_up_record(scenario="a", planner="dwa", seed=1).write(tmp_path)
     run = crowdbot.Run.open(tmp_path)
     assert run._repr_html_() == "<p>a · dwa · seed 1: arrived</p>"
     (tmp_path / "replay.html").write_text('<p class="x">&amp;</p>')

@@ -74,7 +74,7 @@ def run_of(scenario: Scenario, registry: Registry, planner: str = "goal_seek") -
         run = simulate(
             scenario, registry, planner=planner, out=Path(folder), references=False, metrics=()
         )
-        assert not run.failed, run.record["reason"]
+        assert not run.failed, run.record.reason
         return run.trajectories
 
 

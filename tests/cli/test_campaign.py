@@ -16,12 +16,14 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.cli.shared.campaign_run import read_seeds
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.rows import RunRow, ScoreRow
 from crowdbot.core.results.store import INDEX
 from crowdbot.core.statistics.groups import by_group
 from crowdbot.errors import UsageError
 from tests.cli.campaign_cases import TINY, outcome, run, start
+from tests.core.results.made_up_record import made_up_record
 from tests.examples import THOROUGH
 from tests.once import once
 from tests.waiting import AT_MOST, wait_until
@@ -309,7 +311,7 @@ def test_tables_of_results_count_failures() -> None:
         for r, v in zip(runs, (1.0, 0.0), strict=True)
     ]
     failures = [
-        FailureRow(suite="s", scenario="x", planner=p, seed=2, error="", traceback="")
+        Failure(suite="s", scenario="x", planner=p, seed=2, error="", traceback="")
         for p in ("a", "b")
     ]
     found = Results(runs=tuple(runs), scores=tuple(scores), failures=tuple(failures))
@@ -324,9 +326,8 @@ def test_tables_of_results_count_failures() -> None:
 
 
 def made_up(planner: str, seed: int, status: str) -> RunRow:
-    return RunRow(
-        run_id=f"{planner}{seed}", suite="s", scenario="x", planner=planner, seed=seed, axes={},
-        status=status, reason="", goal_time=None, sim_time=1.0, wall_time=1.0, privileged=False,
-        pinned=True, spec_hash="", realisation_hash="", trajectory_hash="", density=None,
-        directory=f"{planner}{seed}", conditions={},
+    record = made_up_record(
+        run_id=f"{planner}{seed}", suite="s", scenario="x", planner=planner, seed=seed,
+        status=status, goal_time=None, density=None,
     )  # fmt: skip
+    return RunRow(record=record, directory=f"{planner}{seed}")

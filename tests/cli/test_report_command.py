@@ -13,10 +13,12 @@ import pytest
 
 from crowdbot.cli import main
 from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.types.score import Score
 from tests.core.report.report_cases import campaign
 from tests.core.report.test_page import SMALL_AXES, Page, small
+from tests.core.results.made_up_record import changed
 
 
 @pytest.fixture
@@ -32,15 +34,15 @@ def runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> dict[str, Results]:
     return found
 
 
-def changed(results: Results, planner: str, **conditions: str) -> Results:
-    """The same with other conditions for one planner."""
-    return replace(
-        results,
-        runs=tuple(
-            replace(r, conditions={**r.conditions, **conditions}) if r.planner == planner else r
-            for r in results.runs
-        ),
-    )
+def with_changes(results: Results, planner: str, **values: dict[str, str]) -> Results:
+    """The same with other texts in the records of one planner."""
+
+    def other(row: RunRow) -> RunRow:
+        document = row.record.document()
+        return changed(row, **{name: document[name] | new for name, new in values.items()})
+
+    runs = tuple(other(r) if r.planner == planner else r for r in results.runs)
+    return replace(results, runs=runs)
 
 
 def test_three_files_are_written(
@@ -73,7 +75,7 @@ def test_planners_and_suites_are_chosen(
     other = small(suite="office", planners={"dwa": 0.0}, failures=0)
     both = replace(
         runs["runs"],
-        runs=(*runs["runs"].runs, *(replace(r, run_id=f"o{r.run_id}") for r in other.runs)),
+        runs=(*runs["runs"].runs, *(changed(r, run_id=f"o{r.run_id}") for r in other.runs)),
     )
     runs["runs"] = both
     assert main(["report"]) == 1
@@ -94,7 +96,7 @@ def test_planners_and_suites_are_chosen(
 def test_runs_that_differ_in_more_than_the_planner_are_refused(
     runs: dict[str, Results], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    runs["runs"] = changed(runs["runs"], "dwa", **{"rates.log": "20 Hz"})
+    runs["runs"] = with_changes(runs["runs"], "dwa", conditions={"rates.log": "20 Hz"})
     assert main(["report"]) == 1
     said = capsys.readouterr().err
     assert "rates.log" in said
@@ -120,7 +122,7 @@ def test_reference_scores_are_planners_of_their_own(
     labels = [p["label"] for p in page.meta["planners"]]
     assert labels == ["dwa", "dwa (reference)", "lidar_only (reference)"]
     assert page.words.count("reference scores") == 4  # heads and methods
-    runs["theirs"] = changed(runs["theirs"], "dwa", **{"versions.crowdbot": "0.0.1"})
+    runs["theirs"] = with_changes(runs["theirs"], "dwa", versions={"crowdbot": "0.0.1"})
     assert main(["report", "--reference", "theirs"]) == 1
     runs["theirs"] = small(suite="office")
     capsys.readouterr()
@@ -169,24 +171,8 @@ def test_runs_on_a_disk_are_reported(tmp_path: Path, capsys: pytest.CaptureFixtu
     for run in results.runs:
         folder = tmp_path / run.directory
         folder.mkdir(parents=True)
-        kept = ("run_id", "suite", "scenario", "seed", "status", "reason", "goal_time",
-                "sim_time", "wall_time", "density")  # fmt: skip
-        record = {
-            **{name: getattr(run, name) for name in kept},
-            **run.record,
-            "axes": dict(run.axes),
-            "pinned": True,
-            "conditions": {"rates.log": "16 Hz"},
-            "metrics": {"risk": {"spec_version": 1, "horizon": 5.0}},
-            "privileged": False,
-            "references": {},
-            "hashes": {
-                "spec": run.spec_hash,
-                "realisation": run.realisation_hash,
-                "trajectory": run.trajectory_hash,
-            },
-        }
-        (folder / "run.json").write_text(json.dumps(record), encoding="utf-8")
+        metrics = {"risk": {"spec_version": 1, "horizon": 5.0}}
+        changed(run, metrics=metrics).record.write(folder)
         for name in ("run.mcap", "scenario.yaml"):
             (folder / name).touch()
         names = ("metric", "symbol", "category", "variant", "unit", "better", "status", "value",

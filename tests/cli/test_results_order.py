@@ -12,6 +12,7 @@ from crowdbot import cli
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import named_metrics
 from tests.core.report.report_cases import campaign
+from tests.core.results.made_up_record import changed
 
 NAMED = ["min_clearance", "collision_count"]
 
@@ -21,7 +22,7 @@ def test_named_metrics_come_first(
 ) -> None:
     axes = {"density": ("d0125", "d0250")}
     made = campaign(axes=axes, metrics=(*NAMED, "safe_efficiency"), failures=0)
-    runs = tuple(replace(r, record={**r.record, "suite_metrics": NAMED}) for r in made.runs)
+    runs = tuple(changed(r, suite_metrics=NAMED) for r in made.runs)
     found = replace(made, runs=runs)
     assert named_metrics(found.runs) == NAMED
     shown: dict[str, list[str]] = {}

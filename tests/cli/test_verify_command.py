@@ -18,6 +18,7 @@ from crowdbot import cli
 from crowdbot.core.bundle import entries as entries_module
 from crowdbot.core.bundle.entries import load_entries
 from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.support.json_digest import digest
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite, write_suite
 from tests.waiting import AT_MOST
 
@@ -62,6 +63,21 @@ matrix:
 Verify = Callable[..., tuple[int, dict[str, Any]]]
 
 
+def run_and_bundle(folder: Path, bundle: str, out: str, *more: str) -> None:
+    """Run both scenarios through the command line, and pack what came of it."""
+    suite, runs = folder / "tiny.yaml", folder / out
+    for scenario in open_spec(str(suite), registry()).scenarios:
+        assert cli.main([
+            "-q", "simulate", str(suite), scenario.id, "--planner", f"{folder / 'mine.py'}:Steady",
+            "--planner-set", "speed=0.4", "--record", "none", "--out", str(runs), *more,
+        ]) == 0  # fmt: skip
+    label = next((runs / "tiny").glob("*/*")).name
+    assert cli.main([
+        "bundle", str(runs), "--suite", str(suite), "--planner", label,
+        "--out", str(folder / bundle), "--team", "Us", "--recordings",
+    ]) == 0  # fmt: skip
+
+
 @pytest.fixture(scope="module")
 def world(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A suite of two scenarios of one second, and a planner of our own that has run them."""
@@ -71,16 +87,7 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> Path:
     suite.write_text(text.replace("flow: in,", "flow: in, speed: slow,"), encoding="utf-8")
     assert cli.main(["lock", str(suite)]) == 0
     (folder / "mine.py").write_text(PLANNER, encoding="utf-8")
-    for scenario in open_spec(str(suite), registry()).scenarios:
-        assert cli.main([
-            "-q", "simulate", str(suite), scenario.id, "--planner", f"{folder / 'mine.py'}:Steady",
-            "--planner-set", "speed=0.4", "--record", "none", "--out", str(folder / "runs"),
-        ]) == 0  # fmt: skip
-    label = next((folder / "runs" / "tiny").glob("*/*")).name
-    assert cli.main([
-        "bundle", str(folder / "runs"), "--suite", str(suite), "--planner", label,
-        "--out", str(folder / "team.cbz"), "--team", "Us", "--recordings",
-    ]) == 0  # fmt: skip
+    run_and_bundle(folder, "team.cbz", "runs")
     return folder
 
 
@@ -105,6 +112,22 @@ def test_an_honest_bundle_is_verified(world: Path, verify: Verify) -> None:
     assert len(found["runs"]) == 2
     saved = json.loads((world / "team.verified.json").read_text())
     assert saved["sha256"] == found["sha256"]
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "key"),
+    [("--planner-memory", "6", "planner_memory"), ("--planner-memory", "0", "planner_memory"),
+     ("--step-budget", "5", "step_budget")],
+)  # fmt: skip
+def test_what_a_planner_may_take_is_part_of_an_honest_bundle(
+    world: Path, verify: Verify, option: str, value: str, key: str
+) -> None:
+    name = f"{key}-{value}"
+    run_and_bundle(world, f"{name}.cbz", name, option, value)
+    record = next((world / name / "tiny").rglob("run.json"))
+    assert key in json.loads(record.read_text(encoding="utf-8"))
+    code, found = verify(world / f"{name}.cbz", "--all")
+    assert (code, found["outcome"], found["findings"]) == (0, "verified", [])
 
 
 def test_the_seed_names_the_sample(world: Path, verify: Verify) -> None:
@@ -200,7 +223,7 @@ def test_foreign_versions_are_compared_within_tolerance(world: Path, verify: Ver
                                            "plugins")}  # fmt: skip
         hashes = {k: v for k, v in record["hashes"].items() if k != "trajectory"}
         record["hashes"]["trajectory"] = "cb1-sha256:0"
-        record["run_id"] = provenance.digest({**identity, "hashes": hashes})
+        record["run_id"] = digest({**identity, "hashes": hashes})
         return json.dumps(record).encode()
 
     def manifest(content: bytes) -> bytes:
@@ -283,7 +306,7 @@ def test_runs_made_from_python_are_verified(world: Path, verify: Verify, tmp_pat
             scenario, planner=f"{world / 'mine.py'}:Steady", planner_settings={"speed": 0.4},
             out=tmp_path / "runs", suite="tiny", record="none",
         )  # fmt: skip
-    assert made.record["axes"] == {}
+    assert made.record.axes == {}
     bundle = tmp_path / "team.cbz"
     assert cli.main([
         "bundle", str(tmp_path / "runs"), "--suite", suite, "--planner", made.directory.parent.name,

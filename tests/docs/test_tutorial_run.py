@@ -9,7 +9,6 @@ import runpy
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -37,18 +36,13 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> crowdbot.Run:
     done = subprocess.run(argv, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     record = json.loads(done.stdout)
-    return crowdbot.Run(folder / record["directory"], _record(folder / record["directory"]))
-
-
-def _record(directory: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((directory / "run.json").read_text(encoding="utf-8"))
-    return found
+    return crowdbot.Run.open(folder / record["directory"])
 
 
 def test_the_planner_ran_to_the_limit(run: crowdbot.Run) -> None:
     assert run.status == "timeout"
-    assert run.record["planner"]["name"] == "MyPlanner"
-    assert run.record["pinned"] is False
+    assert run.record.planner.name == "MyPlanner"
+    assert run.record.pinned is False
     signal = run.trajectories.signals["my_planner/nearest"]
     assert len(signal) >= 32
     assert run.trajectories.robot is not None
@@ -67,15 +61,15 @@ def test_every_key_is_described(run: crowdbot.Run) -> None:
     text = section(read("reference/run_directory.md"), "## run.json")
     cells = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \|", text, re.M)
     assert {k for c in cells for k in re.findall(r"`(\w+)`", c)} == {
-        *run.record,
+        *run.record.document(),
         "live",
         "robots",
         "toppled_time",
     }
     named = ("axes", "axis_words", "metrics")  # their keys are names that a suite or a plugin chose
-    chosen = {k: v for k, v in run.record.items() if k not in named}
+    chosen = {k: v for k, v in run.record.document().items() if k not in named}
     inner = {k for v in chosen.values() if isinstance(v, dict) for k in v}
-    inner |= {k for plugin in run.record["plugins"] for k in plugin}
+    inner |= {k for plugin in run.record.plugins for k in plugin.document()}
     assert {k for k in inner if f"`{k}`" not in text} == set()
 
 

@@ -152,14 +152,14 @@ def _with_reference(results: Results, given: Results | None) -> tuple[Results, t
     suite = results.runs[0].suite
     scenarios = {r.scenario for r in results.runs}
     runs = [
-        replace(r, planner=r.planner + _REFERENCE)
+        replace(r, entry=r.planner + _REFERENCE)
         for r in given.runs
         if r.suite == suite and r.scenario in scenarios
     ]
     if not runs:
         raise InputError(f"--reference: no run of a scenario of {suite} that is reported here")
-    ids = {r.run_id for r in runs} - {r.run_id for r in results.runs}
-    scores = [s for s in given.scores if s.run_id in ids]
+    ids = {r.record.run_id: r.run_id for r in runs}
+    scores = [replace(s, run_id=ids[s.run_id]) for s in given.scores if s.run_id in ids]
     both = replace(results, runs=(*results.runs, *runs), scores=(*results.scores, *scores))
     return both, tuple(sorted({r.planner for r in runs}))
 

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from crowdbot.cli.serving.serve_arguments import ClockChoice, DistroChoice, MissedChoice
 from crowdbot.errors import MissingLibraryError, UsageError
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from crowdbot.core.live.services import Service
     from crowdbot.core.live.session import LiveSession
     from crowdbot.core.recording.watcher import Watcher
+    from crowdbot.core.runs.run_record import RunRecord
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,13 +222,15 @@ def needs(extra: str, *modules: str) -> None:
         )
 
 
-def report(record: Mapping[str, Any]) -> None:
+def report(record: RunRecord) -> None:
     """Say on stderr what only a live run has."""
-    live = record["live"]
-    lag = f", at most {live['largest_lag']:.3g} s behind" if "largest_lag" in live else ""
+    live = record.live
+    if live is None:
+        return
+    lag = "" if live.largest_lag is None else f", at most {live.largest_lag:.3g} s behind"
     _say(
-        f"live: {live['steps']} steps, {live['missed_steps']} without a command in time, "
-        f"{live['refused_commands']} commands refused{lag}"
+        f"live: {live.steps} steps, {live.missed_steps} without a command in time, "
+        f"{live.refused_commands} commands refused{lag}"
     )
 
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import typer
 
 from crowdbot.core.registry.plugin_errors import UserInterrupt
-from crowdbot.core.types.ending import Ending
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.run import Run
@@ -84,7 +83,7 @@ def print_run(run: Run, *, as_json: bool) -> None:
     _print_result(run, as_json=as_json)
     if run.failed:
         sys.stdout.flush()
-        print(f"error: {run.record['reason']}", file=sys.stderr)
+        print(f"error: {run.record.reason}", file=sys.stderr)
 
 
 def _print_result(run: Run, *, as_json: bool) -> None:
@@ -112,7 +111,7 @@ def _print_result(run: Run, *, as_json: bool) -> None:
         ]
         typer.echo(
             json.dumps(
-                {**run.record, "directory": str(run.directory), "reused": run.reused,
+                {**run.record.document(), "directory": str(run.directory), "reused": run.reused,
                  "replaced": list(run.replaced), "scores": scores},
                 indent=2,
             )
@@ -131,10 +130,10 @@ def _summary(run: Run) -> str:
     from crowdbot.core.runs.provenance import remarks
 
     record = run.record
-    when = record["goal_time"] or record["sim_time"]
-    ending = Ending(run.status).sentence.format(t=when)
-    speed = f"{record['real_time_factor']:.1f} times real time"
+    when = record.goal_time or record.sim_time
+    ending = record.status.sentence.format(t=when)
+    speed = f"{record.real_time_factor:.1f} times real time"
     note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
-    who = f"{record['scenario']} · {record['planner']['name']} · seed {record['seed']}"
+    who = f"{record.scenario} · {record.planner.name} · seed {record.seed}"
     flags = "".join(f"; {flag.lower()}" for flag in remarks(record))
     return f"{who}: {ending}{note}{flags}"

@@ -13,6 +13,7 @@ from crowdbot.core.bundle.manifest import LOCK, BundledRun, Manifest
 from crowdbot.core.bundle.pack import read_json
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.run_record import RunRecord, record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import parse_scores
 from crowdbot.dsl.identity.canonical import dump_scenario_yaml
@@ -81,7 +82,9 @@ def check_suite(archive: Archive, expansion: Expansion, registry: Registry) -> I
 
 def _claimed(archive: Archive, entry: BundledRun) -> ClaimedRun:
     name = f"{entry.directory}/{files.RECORD}"
-    record = read_json(archive.text(name), name)
+    document = read_json(archive.text(name), name)
+    if problems := record_problems(document):
+        raise InputError("; ".join(f"{name}: {text}" for text in problems))
     table = f"{entry.directory}/{files.SCORES}"
     rows = parse_scores(archive.text(table), table)
     for row in rows:
@@ -89,7 +92,7 @@ def _claimed(archive: Archive, entry: BundledRun) -> ClaimedRun:
             raise InputError(f"{table}: a score of another run: {row.scenario} seed {row.seed}")
     return ClaimedRun(
         entry=entry,
-        record=record,
+        record=RunRecord.parse(document, name),
         scores=tuple(r.score for r in rows),
         planners=frozenset(r.planner for r in rows),
     )
@@ -134,11 +137,11 @@ def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]
     How a crowd is told by a text of its own may change with the version.
     """
     record, crowd = run.record, scenario.crowd
-    if record.get("axes", {}) != dict(axes):
-        labels, wanted = _labels(record.get("axes")), _labels(dict(axes))
+    if record.axes != dict(axes):
+        labels, wanted = _labels(record.axes), _labels(dict(axes))
         yield f"its axes are {labels}; the scenario's are {wanted}"
-    said, versions = record.get("crowd"), record.get("versions")
-    same = isinstance(versions, dict) and versions.get("crowdbot") == metadata.version("crowdbot")
+    said = record.crowd
+    same = record.versions.get("crowdbot") == metadata.version("crowdbot")
     if same and said is not None and said != ("" if crowd is None else fingerprint(crowd)):
         yield f"its crowd is said to be {str(said)[:40]!r}, which the scenario's is not"
 
@@ -160,12 +163,11 @@ def _scenario_problems(
     yield from (f"{run.directory}: {text}" for text in declared_problems(claimed, registry))
     axes = expansion.axes.get(run.scenario, {})
     yield from (f"{run.directory}: {text}" for text in _place_problems(claimed, scenario, axes))
-    hashes = claimed.record.get("hashes")
-    hashes = hashes if isinstance(hashes, dict) else {}
+    hashes = claimed.record.hashes
     locked = scenario.locked.files.lock.scenarios.get(run.scenario) if scenario.locked else None
-    if locked is not None and hashes.get("realisation") != locked.realisation:
+    if locked is not None and hashes.realisation != locked.realisation:
         yield f"{run.scenario}: its people are not those of the lock that is installed here"
-    if hashes.get("spec") != spec_of(scenario, registry):
+    if hashes.spec != spec_of(scenario, registry):
         yield f"{run.scenario}: its hash is not that of the scenario that is installed here"
     elif text != dump_scenario_yaml(scenario, registry.spec_versions(scenario)):
         yield f"{name} is not the scenario that its hash stands for"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.fleet_scores import AT, fleet_scores
 from crowdbot.core.types.score import Score
 
@@ -15,17 +15,16 @@ from crowdbot.core.types.score import Score
 _ROUNDING = 1e-12
 
 
-def arrivals(record: Mapping[str, Any]) -> dict[str, bool]:
+def arrivals(record: RunRecord) -> dict[str, bool]:
     """Which robots arrived: by name; the robot of a run of one has an empty name."""
-    robots = record.get("robots")
-    if not robots:
-        return {"": record["goal_time"] is not None}
-    return {name: one["goal_time"] is not None for name, one in robots.items()}
+    if not record.robots:
+        return {"": record.goal_time is not None}
+    return {name: one.goal_time is not None for name, one in record.robots.items()}
 
 
-def fleet_problems(record: Mapping[str, Any], scores: Sequence[Score]) -> Iterator[str]:
+def fleet_problems(record: RunRecord, scores: Sequence[Score]) -> Iterator[str]:
     """Where the scores of a fleet are not those of its robots together."""
-    robots = record.get("robots") or {}
+    robots = record.robots
     fleet: dict[tuple[str, str], Score] = {}
     by_robot: dict[str, dict[tuple[str, str], Score]] = {name: {} for name in robots}
     for score in scores:

@@ -15,13 +15,9 @@ from crowdbot.core.recording.container.attachments import attached
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.read_and_score import RecordedRun, read_recorded
+from crowdbot.core.runs.run_record import ReferenceRecord
+from crowdbot.core.support.strict_json import parse_json
 from crowdbot.errors import InputError
-
-#: What the record of a calibration run has besides what its id is the hash of.
-_ENDING = (
-    "run_id", "reference", "status", "reason", "goal_time", "sim_time", "wall_time", "cpu_time",
-    "real_time_factor", "planner_step_time", "clamped_commands", "files",
-)  # fmt: skip
 
 
 def recording_problems(archive: Archive, runs: Sequence[ClaimedRun]) -> Iterator[str]:
@@ -38,7 +34,7 @@ def recording_problems(archive: Archive, runs: Sequence[ClaimedRun]) -> Iterator
             continue
         yield from (f"{name}: {text}" for text in _run_problems(archive, run, name))
         for reference, place in reference_members(run).items():
-            wanted = run.record.get("reference_hashes", {}).get(reference)
+            wanted = run.record.reference_hashes.get(reference)
             if place not in archive.names:
                 yield f"{run.name}: its {reference} is not there: {place[:200]}"
             elif wanted is None or used.setdefault(place, wanted) != wanted:
@@ -50,7 +46,7 @@ def recording_problems(archive: Archive, runs: Sequence[ClaimedRun]) -> Iterator
 
 def reference_members(run: ClaimedRun) -> dict[str, str]:
     """Names of the members that are the recordings of a run's calibration runs."""
-    listed = run.record.get("references") or {}
+    listed = run.record.references
     return {k: posixpath.normpath(f"{run.entry.directory}/{p}") for k, p in listed.items()}
 
 
@@ -79,7 +75,7 @@ def _unpacked(archive: Archive, name: str) -> Iterator[Path]:
 def ownership_problems(run: ClaimedRun, found: RecordedRun) -> Iterator[str]:
     """Where a recording is not that of a run."""
     header, record = found.header, run.record
-    hashes = provenance.recording_hashes(record["run_id"], record)
+    hashes = provenance.recording_hashes(record)
     if header.scenario != run.entry.scenario:
         yield f"it is of scenario '{header.scenario[:100]}', not of {run.entry.scenario}"
     for key, wanted in hashes.items():
@@ -118,9 +114,7 @@ def _attachment_problems(
         yield "two files inside it have one name"
     for name, content in attachments:
         if name == files.RECORD:
-            plain = {k: v for k, v in run.record.items() if k != "files"}
-            texts = files.json_text(plain), files.json_text({**plain, "axes": {}})
-            same = content in [text.encode() for text in texts]
+            same = _is_record_of(run, content)
         elif name in (files.SCENARIO, files.SCORES):
             same = content == archive.read(f"{run.entry.directory}/{name}")
         else:
@@ -130,19 +124,26 @@ def _attachment_problems(
             yield f"{name} inside it is not that of the run"
 
 
+def _is_record_of(run: ClaimedRun, content: bytes) -> bool:
+    plain = {k: v for k, v in run.record.document().items() if k != "files"}
+    try:
+        found = parse_json(content.decode())
+    except ValueError:
+        return False
+    return found in (plain, {**plain, "axes": {}})
+
+
 def _reference_problems(archive: Archive, name: str, wanted: str) -> Iterator[str]:
     try:
         found = read_member(archive, name)
         record = f"{posixpath.dirname(name)}/{files.RECORD}"
-        document = read_json(archive.text(record), record)
+        claimed = ReferenceRecord.parse(read_json(archive.text(record), record), record)
     except InputError as error:
         yield str(error).removeprefix(f"{archive.path}: ")
         return
     if found.trajectory != wanted:
         yield "what happens in it has another hash than the runs say"
-    key = {k: v for k, v in document.items() if k not in _ENDING}
-    run_id = provenance.digest({"reference": document.get("reference"), **key})
-    if not run_id == document.get("run_id") == found.header.hashes.get("run"):
+    if not claimed.id() == claimed.run_id == found.header.hashes.get("run"):
         yield f"its run_id is not the hash of what {files.RECORD} says"
     if not found.complete:
         yield f"it is cut: it can be read until {found.until:g} s"

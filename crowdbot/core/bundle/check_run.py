@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
 
 from crowdbot.core.bundle.check_fleet import arrivals, fleet_problems
 from crowdbot.core.bundle.manifest import BundledRun, Manifest
-from crowdbot.core.bundle.pack import is_privileged
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.fleet_scores import AT
 from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.metric_component import MetricComponent
 
-#: Keys of run.json that the run's id is the hash of; ``hashes`` without the trajectory.
-_IDENTITY = ("scenario", "suite", "planner", "seed", "hashes", "versions", "plugins")
-#: The same, in runs that have them only.
-_SOMETIMES = ("step_budget",)
 #: What an honest score may exceed its bounds by.
 _ROUNDING = 1e-9
 
@@ -36,7 +29,7 @@ class ClaimedRun:
     """
 
     entry: BundledRun
-    record: dict[str, Any] = field(repr=False)
+    record: RunRecord = field(repr=False)
     scores: tuple[Score, ...] = field(repr=False)
     planners: frozenset[str] = frozenset()
 
@@ -48,10 +41,6 @@ class ClaimedRun:
 
 def run_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
     """Where record, manifest and hashes contradict each other."""
-    wrong = record_problems(run.record)
-    if wrong:
-        yield from (f"{files.RECORD}: {text}" for text in wrong)
-        return
     yield from _identity_problems(run, manifest)
     yield from _ending_problems(run)
     yield from _score_problems(run, manifest)
@@ -63,7 +52,8 @@ def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
     known = registry.components("metric")
     for score in run.scores:
         metric = known.get(score.metric)
-        version = _map(_map(run.record, "metrics"), score.metric).get("spec_version")
+        scored = run.record.metrics.get(score.metric)
+        version = None if scored is None else scored.spec_version
         if not isinstance(metric, MetricComponent) or metric.spec_version != version:
             continue  # not comparable, which is told where scores are compared
         declared = metric.variants.get(score.variant.partition(AT)[0])
@@ -83,48 +73,47 @@ def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
 
 def _identity_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
     record, entry = run.record, run.entry
-    hashes, single = record["hashes"], manifest.edition.scenarios == 1
-    identity = {k: record[k] for k in _IDENTITY} | {k: record[k] for k in _SOMETIMES if k in record}
-    identity["hashes"] = {k: v for k, v in hashes.items() if k != "trajectory"}
-    if not record["run_id"] == provenance.digest(identity) == entry.run_id:
+    single = manifest.edition.scenarios == 1
+    if not record.run_id == record.id() == entry.run_id:
         yield f"its run_id is not the hash of what {files.RECORD} says"
-    if hashes["trajectory"] != entry.trajectory:
+    if record.hashes.trajectory != entry.trajectory:
         yield f"the trajectory's hash in {files.RECORD} is not that of the manifest"
-    if (record["scenario"], record["seed"]) != (entry.scenario, entry.seed):
+    if (record.scenario, record.seed) != (entry.scenario, entry.seed):
         yield "its record is of another scenario or seed"
-    if record["suite"] not in (manifest.edition.suite, *["scenarios"] * single):
-        yield f"its record is of suite '{record['suite'][:60]}'"
+    if record.suite not in (manifest.edition.suite, *["scenarios"] * single):
+        yield f"its record is of suite '{record.suite[:60]}'"
     if entry.directory != _directory(run, manifest):
         yield f"its folder should be {_directory(run, manifest)[:200]}"
-    if record["planner"] != manifest.planner:
+    if record.planner.document() != manifest.planner:
         yield "its planner is not that of the manifest"
-    if record["versions"] != manifest.versions:
+    if record.versions != manifest.versions:
         yield "its versions are not those of the manifest"
-    if record["pinned"] != manifest.pinned:
+    if record.pinned != manifest.pinned:
         yield f"the manifest says pinned: {manifest.pinned}, the run does not"
-    if is_privileged(record) != (manifest.classed == "privileged"):
+    if record.knows_truth != (manifest.classed == "privileged"):
         yield f"the manifest says '{manifest.classed}', the run does not"
 
 
 def _directory(run: ClaimedRun, manifest: Manifest) -> str:
     entry = run.entry
-    return f"runs/{run.record['suite']}/{entry.scenario}/{manifest.label}/seed-{entry.seed}"
+    return f"runs/{run.record.suite}/{entry.scenario}/{manifest.label}/seed-{entry.seed}"
 
 
 def _ending_problems(run: ClaimedRun) -> Iterator[str]:
     """Where status, time of arrival and success contradict each other."""
-    if run.record["status"] == Ending.ARRIVED and run.record["goal_time"] is None:
+    record = run.record
+    if record.status == Ending.ARRIVED and record.goal_time is None:
         yield "its status is 'arrived', but it has no time of arrival"
-    alone = not run.record.get("robots")
+    alone = not record.robots
     for key in ("goal_time", "toppled_time"):
-        time = run.record.get(key)
-        if time is not None and time > run.record["sim_time"]:
-            yield f"its {key} is {time:g} s, but it ended after {run.record['sim_time']:g} s"
-    if run.record["status"] != Ending.ARRIVED and alone and run.record["goal_time"] is not None:
-        yield f"its status is '{run.record['status']}', but it has a time of arrival"
-    if run.record["status"] == Ending.TOPPLED and alone and run.record.get("toppled_time") is None:
+        time = getattr(record, key)
+        if time is not None and time > record.sim_time:
+            yield f"its {key} is {time:g} s, but it ended after {record.sim_time:g} s"
+    if record.status != Ending.ARRIVED and alone and record.goal_time is not None:
+        yield f"its status is '{record.status}', but it has a time of arrival"
+    if record.status == Ending.TOPPLED and alone and record.toppled_time is None:
         yield "its status is 'toppled', but it has no toppled_time"
-    arrived = arrivals(run.record)
+    arrived = arrivals(record)
     for score in run.scores:
         _, _, robot = score.variant.partition(AT)
         if (score.metric, score.status) != ("success", "ok") or robot not in arrived:
@@ -141,13 +130,8 @@ def _score_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
             yield f"{files.SCORES}: {metric}.{variant} is there {count} times"
     for planner in sorted(run.planners - {manifest.label}):
         yield f"{files.SCORES}: scores of another planner: '{planner[:60]}'"
-    scored, versions = {s.metric for s in run.scores}, run.record["metrics"].keys()
+    scored, versions = {s.metric for s in run.scores}, run.record.metrics.keys()
     for metric in sorted(scored - versions):
         yield f"{files.RECORD} does not say which version of {metric[:60]} was scored"
     for metric in sorted(versions - scored):
         yield f"{files.SCORES}: {metric[:60]} was scored, but is not there"
-
-
-def _map(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    value = record.get(name)
-    return value if isinstance(value, Mapping) else {}

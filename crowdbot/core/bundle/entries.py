@@ -23,6 +23,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
 from crowdbot.core.runs.read_and_score import score_robots
+from crowdbot.core.runs.record_parts import MetricPart
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError
@@ -60,7 +61,7 @@ class LeaderboardEntry:
     @property
     def failed(self) -> int:
         """Runs in which the planner failed."""
-        return sum(has_failed(str(run.record.get("status"))) for run in self.runs)
+        return sum(has_failed(run.record.status) for run in self.runs)
 
 
 def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntry], dict[str, str]]:
@@ -122,15 +123,13 @@ def _looks(name: str) -> str:
 def old_metrics(run: ClaimedRun, registry: Registry) -> set[str]:
     """Metrics of a run whose version is not the one that is installed."""
     known = registry.components("metric")
-    recorded = run.record.get("metrics")
-    recorded = recorded if isinstance(recorded, Mapping) else {}
-    return {s.metric for s in run.scores if _version(recorded.get(s.metric)) != (
+    return {s.metric for s in run.scores if _version(run, s.metric) != (
         known[s.metric].spec_version if s.metric in known else None)}  # fmt: skip
 
 
-def _version(recorded: Any) -> int | None:
-    value = recorded.get("spec_version") if isinstance(recorded, Mapping) else recorded
-    return value if isinstance(value, int) else None
+def _version(run: ClaimedRun, metric: str) -> int | None:
+    recorded = run.record.metrics.get(metric)
+    return None if recorded is None else recorded.spec_version
 
 
 def _up_to_date(entry: LeaderboardEntry, archive: Archive, registry: Registry) -> LeaderboardEntry:
@@ -149,17 +148,18 @@ def _scored_again(
     archive: Archive, run: ClaimedRun, again: Sequence[str], gone: Sequence[str], registry: Registry
 ) -> ClaimedRun:
     left = [s for s in run.scores if s.metric not in again and s.metric not in gone]
-    metrics = dict(run.record.get("metrics") or {})
+    metrics = dict(run.record.metrics)
     for name in gone:
         metrics.pop(name, None)
     if again:
         known = registry.components("metric")
         found = _score(archive, run, again, registry)
         left += found
-        metrics |= {s.metric: {"spec_version": known[s.metric].spec_version, **s.parameters}
+        metrics |= {s.metric: MetricPart(spec_version=known[s.metric].spec_version, **s.parameters)
                     for s in found}  # fmt: skip
     left.sort(key=lambda s: s.metric)
-    return replace(run, scores=tuple(left), record={**run.record, "metrics": metrics})
+    record = run.record.model_copy(update={"metrics": metrics})
+    return replace(run, scores=tuple(left), record=record)
 
 
 def _score(
@@ -179,7 +179,7 @@ def _score(
         if name in archive.names
     }
     for key, found in read.items():
-        if found.trajectory != run.record.get("reference_hashes", {}).get(key):
+        if found.trajectory != run.record.reference_hashes.get(key):
             raise InputError(f"{run.entry.directory}: its {key} is not the one that it names")
     alone, crowd = read.get(ROBOT_ALONE), read.get(CROWD_ALONE)
     references = {

@@ -93,7 +93,7 @@ def _runs(entry: LeaderboardEntry, here: Path) -> list[dict[str, str]]:
     for run in entry.runs:
         places = (unpacked / run.entry.directory / n for n in (files.REPLAY, files.SCORES))
         page = next((p for p in places if p.is_file()), None)
-        status, time = str(run.record.get("status", "")), run.record.get("goal_time")
+        status, time = run.record.status, run.record.goal_time
         ending = status if time is None else f"{status} after {time:.1f} s"
         listed.append({
             "name": run.name, "ending": ending, "href": _link(page, here) if page else "",

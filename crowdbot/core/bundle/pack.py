@@ -22,7 +22,7 @@ from crowdbot.core.bundle.manifest import (
 )
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.runs.run_record import RunRecord, record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.support.strict_json import parse_json
@@ -59,7 +59,7 @@ class _Found:
     """One complete run: name of its folder below the root, its record, and the suite's axes."""
 
     folder: PurePosixPath
-    record: dict[str, Any]
+    record: RunRecord
     axes: Mapping[str, str]
 
 
@@ -87,9 +87,7 @@ def pack(
         if problem := name_problem(text):
             raise InputError(f"{option} {printable(text[:60])!r}: {problem}")
     found = _runs(submission, expansion)
-    missing = missing_runs(
-        expansion, {(str(f.record.get("scenario")), int(f.record["seed"])) for f in found}
-    )
+    missing = missing_runs(expansion, {(f.record.scenario, f.record.seed) for f in found})
     if missing and not submission.partial:
         some = "\n".join(f"  {name}" for name in missing[:_SHOWN])
         more = f"\n  … and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
@@ -121,11 +119,11 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
         folder = base / scenario.id / submission.planner
         for seed in expansion.run_seeds:
             place = folder / f"seed-{seed}"
-            record = files.read_record(place)
+            record = _record(place)
             if record is not None:
                 name = PurePosixPath(place.relative_to(submission.root).as_posix())
                 axes = expansion.axes.get(scenario.id, {})
-                found.append(_Found(name, _checked(record, place), axes))
+                found.append(_Found(name, record, axes))
     if not found:
         seeds = other_seeds(submission, expansion)
         if seeds:
@@ -150,20 +148,24 @@ def other_seeds(submission: Submission, expansion: Expansion) -> list[int]:
     return sorted({int(n) for n in numbers if n.isdecimal()} - set(expansion.run_seeds))
 
 
-def _checked(record: dict[str, Any], place: Path) -> dict[str, Any]:
-    """A record that is what a record looks like, beside a table of scores."""
-    if wrong := record_problems(record):
+def _record(place: Path) -> RunRecord | None:
+    """The record of a complete run, beside a table of scores; None where there is none."""
+    try:
+        document = files.checked_record(place)
+    except InputError:
+        return None
+    if wrong := record_problems(document):
         raise InputError(f"{place / files.RECORD}: damaged: {wrong[0]}; run it again")
     if (place / files.SCORES).is_file():  # a missing one is told with the others
         read_scores_csv(place / files.SCORES)
-    return record
+    return RunRecord.parse(document, place)
 
 
 # ----------------------------------------------------------------------- checking
 def _check_fits(found: Sequence[_Found], expansion: Expansion, registry: Registry) -> None:
     specs = {s.id: spec_of(s, registry) for s in expansion.scenarios}
     for run in found:
-        if _hash(run, "spec") != specs[str(run.record["scenario"])]:
+        if run.record.hashes.spec != specs[run.record.scenario]:
             raise InputError(
                 f"{run.folder} is of another state of {expansion.suite_id}: its scenario has "
                 "another hash; run it again"
@@ -175,15 +177,11 @@ def _check_alike(found: Sequence[_Found]) -> None:
     first = found[0]
     for name in ("planner", "versions", "pinned"):
         for run in found[1:]:
-            if run.record.get(name) != first.record.get(name):
+            if getattr(run.record, name) != getattr(first.record, name):
                 raise InputError(
                     f"{first.folder} and {run.folder} have different '{name}' in {files.RECORD}; "
                     "run the older ones again"
                 )
-
-
-def _hash(run: _Found, name: str) -> str:
-    return str(run.record.get("hashes", {}).get(name, ""))
 
 
 # ------------------------------------------------------------------------ packing
@@ -195,8 +193,8 @@ def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path 
         members |= {f"runs/{run.folder}/{name}": folder / name for name in names}
         if submission.recordings:
             members |= dict(_references(submission.root, folder, run))
-        if run.axes and not run.record.get("axes"):  # a run made from Python knows of no suite
-            whole = files.json_text({**run.record, "axes": dict(run.axes)})
+        if run.axes and not run.record.axes:  # a run made from Python knows of no suite
+            whole = files.json_text({**run.record.document(), "axes": dict(run.axes)})
             members[f"runs/{run.folder}/{files.RECORD}"] = whole.encode()
     for name, place in members.items():
         if isinstance(place, Path) and not place.is_file():
@@ -206,8 +204,7 @@ def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path 
 
 def _references(root: Path, folder: Path, run: _Found) -> Iterator[tuple[str, Path]]:
     """The recordings that the run was compared with."""
-    listed: Mapping[str, str] = run.record.get("references") or {}
-    for path in listed.values():
+    for path in run.record.references.values():
         place = (folder / path).resolve()
         inside = place.is_relative_to(root.resolve())
         if not inside:
@@ -239,30 +236,24 @@ def _manifest(
             scenarios=len(expansion.scenarios),
             rules=RULES,
         ),
-        planner=first["planner"],
-        classed="privileged" if is_privileged(first) else "sensors only",
-        pinned=bool(first.get("pinned")),
-        versions=first["versions"],
+        planner=first.planner.document(),
+        classed="privileged" if first.knows_truth else "sensors only",
+        pinned=first.pinned,
+        versions=first.versions,
         seeds=list(expansion.run_seeds),
         missing=list(missing),
         runs=[
             BundledRun(
-                scenario=str(f.record["scenario"]),
-                seed=int(f.record["seed"]),
+                scenario=f.record.scenario,
+                seed=f.record.seed,
                 directory=f"runs/{f.folder}",
-                run_id=str(f.record["run_id"]),
-                trajectory=_hash(f, "trajectory"),
+                run_id=f.record.run_id,
+                trajectory=f.record.hashes.trajectory,
             )
             for f in found
         ],
         members=members_of(members),
     )
-
-
-def is_privileged(record: Mapping[str, Any]) -> bool:
-    """Whether the planner of a run was told what no sensor can tell."""
-    label = str(record.get("planner", {}).get("label", ""))
-    return bool(record.get("privileged")) or label.endswith("+privileged")
 
 
 def read_json(text: str, what: str) -> dict[str, Any]:

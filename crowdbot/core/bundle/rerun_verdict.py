@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 from crowdbot.core.bundle.check import ClaimedRun
 from crowdbot.core.bundle.tolerances import SPREADS, WALL_CLOCK, are_equal, mean_limit, single_limit
+from crowdbot.core.runs.record_parts import MetricPart
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.types.score import Score
 
 Outcome = Literal[
@@ -36,13 +38,13 @@ class Rerun:
     """One run, made again.
 
     Attributes:
-        record: the new ``run.json``.
+        record: that of the new run.
         repeated: trajectory's hash of a third time, where there was one.
         own: scores without part of calibration runs, where those may be others; None: not asked.
     """
 
     claimed: ClaimedRun
-    record: Mapping[str, Any] = field(repr=False)
+    record: RunRecord = field(repr=False)
     scores: tuple[Score, ...] = field(repr=False)
     repeated: str | None = None
     own: frozenset[tuple[str, str]] | None = None
@@ -50,7 +52,7 @@ class Rerun:
     @property
     def trajectory(self) -> str:
         """Hash of the new trajectory."""
-        return _trajectory(self.record)
+        return self.record.hashes.trajectory
 
     @property
     def relation(self) -> Relation:
@@ -87,7 +89,7 @@ def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
     relations = {a.claimed.name: a.relation for a in reruns}
     findings = [
         f"{a.claimed.name}: the trajectory is another one on the same processor "
-        f"({_machine(a.record, 'processor')}) with the same software"
+        f"({a.record.machine.get('processor', '')}) with the same software"
         for a in reruns
         if a.relation == "different"
     ]
@@ -116,11 +118,11 @@ def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
     )
 
 
-def same_platform(claimed: Mapping[str, Any], record: Mapping[str, Any]) -> bool:
-    """Whether two records come from the same processor and software."""
-    names = ("processor", "rounding")
-    same = all(_machine(claimed, n) == _machine(record, n) != "" for n in names)
-    return same and claimed.get("versions") == record.get("versions")
+def same_platform(claimed: RunRecord, record: RunRecord) -> bool:
+    """True if two records come from the same processor and software."""
+    a, b = claimed.machine, record.machine
+    same = all(a.get(n, "") == b.get(n, "") != "" for n in ("processor", "rounding"))
+    return same and claimed.versions == record.versions
 
 
 # ----------------------------------------------------------------------------- records
@@ -134,8 +136,9 @@ _OF_SUITE = ("axis_words", "suite_metrics", "crowd")
 
 def _other_ending(rerun: Rerun) -> Iterator[str]:
     """What the record claims of a run, and the same trajectory does not bear out."""
+    claimed, here = rerun.claimed.record.document(), rerun.record.document()
     for key in _ENDING:
-        said, found = rerun.claimed.record.get(key), rerun.record.get(key)
+        said, found = claimed.get(key), here.get(key)
         numbers = [x for x in (said, found) if isinstance(x, float)]
         equal = are_equal(*numbers) if len(numbers) == 2 else said == found
         if not equal:
@@ -147,16 +150,12 @@ def _other_people(rerun: Rerun) -> Iterator[str]:
 
     On another platform they may be drawn differently; then the trajectory is another one, too.
     """
-    said, found = (_realisation(r) for r in (rerun.claimed.record, rerun.record))
+    said, found = (r.hashes.realisation for r in (rerun.claimed.record, rerun.record))
     if said != found and (rerun.same_platform or rerun.relation == "identical"):
         yield (
             f"{rerun.claimed.name}: its people are claimed to have the hash {said[:30]}, but those "
             f"of the scenario have {found[:30]}"
         )
-
-
-def _realisation(record: Mapping[str, Any]) -> str:
-    return str(_mapping(record, "hashes").get("realisation", ""))
 
 
 def _not_comparable(reruns: Sequence[Rerun]) -> dict[str, str]:
@@ -166,15 +165,14 @@ def _not_comparable(reruns: Sequence[Rerun]) -> dict[str, str]:
         for metric in sorted({s.metric for s in rerun.claimed.scores}):
             if metric in found or _same_metric(rerun, metric):
                 continue
-            said, here = (_mapping(r, "metrics").get(metric) for r in (
-                rerun.claimed.record, rerun.record))  # fmt: skip
+            said, here = (r.metrics.get(metric) for r in (rerun.claimed.record, rerun.record))
             found[metric] = f"{metric} is not comparable: {_versions(said, here)}"
     return found
 
 
-def _versions(said: object, here: object) -> str:
+def _versions(said: MetricPart | None, here: MetricPart | None) -> str:
     """How two entries of a metric differ, in words."""
-    a, b = (x.get("spec_version") if isinstance(x, Mapping) else None for x in (said, here))
+    a, b = (None if x is None else x.spec_version for x in (said, here))
     if b is None:
         return f"version {a} was scored; here there is no such metric among those of the suite"
     if a != b:
@@ -189,10 +187,10 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
     and have no rank.
     """
     claimed, here = rerun.claimed.record, rerun.record
-    if claimed.get("versions") != here.get("versions"):
+    if claimed.versions != here.versions:
         return
     for key in ("metrics", "conditions"):
-        said, found = (_mapping(r, key) for r in (claimed, here))
+        said, found = (getattr(r, key) for r in (claimed, here))
         differing = [
             name
             for name in sorted(said.keys() | found.keys())
@@ -209,27 +207,22 @@ def _other_role(rerun: Rerun) -> Iterator[str]:
 
     Also what the same software says of the same suite: words, named metrics, the crowd.
     """
-    if rerun.claimed.record.get("versions") == rerun.record.get("versions"):
+    if rerun.claimed.record.versions == rerun.record.versions:
         for key in _OF_SUITE:
-            said = rerun.claimed.record.get(key)  # nothing of a run that was made from Python
-            if said and said != rerun.record.get(key):
+            said = getattr(rerun.claimed.record, key)  # nothing of a run made from Python
+            if said and said != getattr(rerun.record, key):
                 yield f"{rerun.claimed.name}: {key} is not that of the suite"
-    role, found = (r.get("role", "candidate") for r in (rerun.claimed.record, rerun.record))
+    role, found = (r.role for r in (rerun.claimed.record, rerun.record))
     if role != found:
         yield f"{rerun.claimed.name}: role is claimed to be {role!r}, but is {found!r}"
 
 
 def _other_version(a: Any, b: Any) -> bool:
     """Whether these are two versions of a metric, or one that is there on one side only."""
-    if isinstance(a, Mapping) != isinstance(b, Mapping):
+    if isinstance(a, MetricPart) != isinstance(b, MetricPart):
         return True  # told as a score that is not comparable, or that was left out
-    versions = [x.get("spec_version") if isinstance(x, Mapping) else None for x in (a, b)]
-    return None not in versions and versions[0] != versions[1]
-
-
-def _mapping(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    value = record.get(name)
-    return value if isinstance(value, Mapping) else {}
+    both = isinstance(a, MetricPart) and isinstance(b, MetricPart)
+    return both and a.spec_version != b.spec_version
 
 
 # ------------------------------------------------------------------- equal trajectories
@@ -249,7 +242,7 @@ def _unequal(rerun: Rerun) -> Iterator[str]:
             )
     claimed = {(s.metric, s.variant) for s in rerun.claimed.scores}
     for name in sorted(set(computed) - claimed):
-        if _same_metric(rerun, name[0]) or name[0] not in _mapping(rerun.claimed.record, "metrics"):
+        if _same_metric(rerun, name[0]) or name[0] not in rerun.claimed.record.metrics:
             yield f"{rerun.claimed.name}: {'.'.join(name)} was left out"
 
 
@@ -272,8 +265,8 @@ def _agree(a: Score, b: Score) -> bool:
 
 def _same_metric(rerun: Rerun, metric: str) -> bool:
     """Whether both were scored by the same version of a metric with the same parameters."""
-    sides = [(r.get("metrics") or {}).get(metric) for r in (rerun.claimed.record, rerun.record)]
-    return bool(sides[0] == sides[1])
+    sides = [r.metrics.get(metric) for r in (rerun.claimed.record, rerun.record)]
+    return sides[0] == sides[1]
 
 
 # --------------------------------------------------------------- different trajectories
@@ -309,15 +302,6 @@ def _gap(rerun: Rerun, metric: str) -> float | None:
 
 
 # ------------------------------------------------------------------------------ texts
-def _trajectory(record: Mapping[str, Any]) -> str:
-    return str(record.get("hashes", {}).get("trajectory", ""))
-
-
-def _machine(record: Mapping[str, Any], name: str) -> str:
-    machine = record.get("machine")
-    return str(machine.get(name, "")) if isinstance(machine, Mapping) else ""
-
-
 def _name(score: Score) -> str:
     return f"{score.metric}.{score.variant}"
 

@@ -188,7 +188,7 @@ def _table(
     findings = confounds(results, accept)
     check_comparable(findings)
     summary = summarise(results)
-    told = [(r.axes.get(AXIS, ""), str(r.record.get("crowd") or "")) for r in results.runs]
+    told = [(r.axes.get(AXIS, ""), r.record.crowd or "") for r in results.runs]
     crowds = [(name, like) for name, like in told if name or like]
     ranks = summary.ranks(by)
     scores = [s for s in summary.scores if s.metric == by and s.mean.value is not None]

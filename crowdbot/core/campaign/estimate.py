@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from crowdbot.core.campaign.job import Job, Kind
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.run_record import RunRecord
 
 # Measured with the challenge's corridor and dwa on one core (docs/reference/performance.md): per
 # simulated second, and for each person in it. Only their proportions matter once runs are there.
@@ -38,10 +37,10 @@ class CostEstimate:
             self._time[name][0] += took
             self._time[name][1] += cost
 
-    def learn_run(self, run: Path, record: Mapping[str, Any], people: int, limit: float) -> None:
+    def learn_run(self, run: Path, record: RunRecord, people: int, limit: float) -> None:
         """A run that is complete."""
-        took = float(record["wall_time"]) + _START
-        self.learn(str(record["planner"]["label"]), expected_seconds("run", people, limit), took)
+        took = record.wall_time + _START
+        self.learn(record.planner.label, expected_seconds("run", people, limit), took)
         try:
             size = (run / files.RECORDING).stat().st_size
         except OSError:

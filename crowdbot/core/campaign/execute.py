@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -15,11 +14,10 @@ from crowdbot.core.campaign.population_cache import cached_population
 from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.core.runs import provenance
-from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import Populate, Prepared, prepare, references_of, run_identity
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.run import Request
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.core.sim.references import make_reference
@@ -77,9 +75,8 @@ def _execute(
         return make_run(request, prepared).status
     for reference in references_of(request, prepared):
         if reference.run_id == job.key:
-            complete = reference.complete and not job.force
-            there = files.read_record(reference.directory) if complete else None
-            return str(there["status"]) if there else make_reference(request, reference).status
+            there = None if job.force else reference.complete
+            return there.status if there else make_reference(request, reference).status
     raise InputError(f"{job.source.spec} changed since the campaign began")
 
 
@@ -91,7 +88,7 @@ def _check_loaded(job: Job, request: Request, prepared: Prepared) -> None:
     """
     if not request.choice.died:
         return
-    identity = provenance.digest(run_identity(request, prepared.run))
+    identity = run_identity(request, prepared.run).id()
     if job.key not in (identity, *(r.run_id for r in references_of(request, prepared))):
         raise PlannerError(request.choice.died)
 
@@ -120,9 +117,8 @@ def _request(job: Job) -> Request:
         force=job.force,
     )
     if job.retry_failed and job.kind == "run" and not job.force:
-        with suppress(KeyError, TypeError):
-            status = (files.read_record(request.directory) or {})["status"]
-            return replace(request, force=has_failed(status))
+        there = RunRecord.find(request.directory)
+        return replace(request, force=there is not None and has_failed(there.status))
     return request
 
 

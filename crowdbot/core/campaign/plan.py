@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from crowdbot.core.campaign.estimate import CostEstimate, expected_seconds
 from crowdbot.core.campaign.job import Job, Kind
@@ -19,7 +18,6 @@ from crowdbot.core.campaign.request import (
 )
 from crowdbot.core.campaign.sample import FLOOR_SCENARIOS, sample
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs import provenance
 from crowdbot.core.runs.identity import (
     Prepared,
     Reference,
@@ -30,6 +28,7 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.run import Request
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.sim.preflight import preflight
 from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError
@@ -44,7 +43,7 @@ class PlannedRun:
         status: of the run where it is there and stays, else empty.
         directory: absolute.
         axes, position: what its record ought to say.
-        record: what it says.
+        record: what it says; None where the run is not there.
     """
 
     key: str
@@ -53,7 +52,7 @@ class PlannedRun:
     directory: Path
     axes: dict[str, str]
     position: int
-    record: dict[str, Any] = field(repr=False)
+    record: RunRecord | None = field(repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,12 +177,12 @@ class _PlanBuilder:
     def _add(
         self, suite: SelectedSuite, prepared: Prepared, entry: PlannerEntry, request: Request
     ) -> None:
-        key = provenance.digest(run_identity(request, prepared.run))
+        key = run_identity(request, prepared.run).id()
         references = references_of(request, prepared)
         record = reusable_record(request, key, compared=bool(references))
         if record is not None:
             self._learn(request, record, prepared)
-            failed = self._campaign.retry_failed and has_failed(record["status"])
+            failed = self._campaign.retry_failed and has_failed(record.status)
             if failed or self._campaign.force:
                 record = None
         if record is None and not self._can_run(entry, request):
@@ -192,11 +191,11 @@ class _PlanBuilder:
             PlannedRun(
                 key=key,
                 label=entry.choice.label,
-                status="" if record is None else record["status"],
+                status="" if record is None else record.status,
                 directory=request.directory,
                 axes=dict(request.axes),
                 position=request.position,
-                record=record or {},
+                record=record,
             )
         )
         for reference in references:
@@ -221,7 +220,7 @@ class _PlanBuilder:
     ) -> bool:
         """Whether a calibration run has to be made first; then there is a job for it."""
         if reference.run_id not in self._jobs:
-            there = reference.complete and not self._campaign.force
+            there = reference.complete is not None and not self._campaign.force
             if self._references[reference.run_id] or there:
                 self._references[reference.run_id] = True
                 return False
@@ -229,7 +228,7 @@ class _PlanBuilder:
             self._job(kind, reference.run_id, suite, entry, request, reference, ())
         return True
 
-    def _learn(self, request: Request, record: dict[str, Any], prepared: Prepared) -> None:
+    def _learn(self, request: Request, record: RunRecord, prepared: Prepared) -> None:
         people = len(prepared.run.people.agents)
         self._estimate.learn_run(request.directory, record, people, longest(request.scenario))
 

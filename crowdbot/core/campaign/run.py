@@ -14,7 +14,6 @@ from crowdbot.core.campaign.plan import Plan
 from crowdbot.core.campaign.worker_pool import Busy, WorkerPool
 from crowdbot.core.results.failure import Failure, forget_failure, write_failure
 from crowdbot.core.results.store import Store, index
-from crowdbot.core.runs import run_directory as files
 from crowdbot.core.types.ending import Ending, has_failed
 from crowdbot.errors import PluginError, SimulationError
 
@@ -185,7 +184,7 @@ def _failure(job: Job, done: Done, axes: dict[str, str]) -> Failure:
 def _relabel(plan: Plan) -> None:
     """A suite may call its axes otherwise without changing what happens in a run."""
     for run in plan.runs:
-        recorded = (run.record.get("axes"), run.record.get("position"))
-        if run.record and recorded != (run.axes, run.position):
-            record = {**run.record, "axes": run.axes, "position": run.position}
-            files.write_json(run.directory / files.RECORD, record)
+        record = run.record
+        if record is not None and (record.axes, record.position) != (run.axes, run.position):
+            renamed = {"axes": run.axes, "position": run.position}
+            record.model_copy(update=renamed).write(run.directory)

@@ -133,7 +133,7 @@ def make_rerun(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
 
 def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
     scenario = next(s for s in setup.expansion.scenarios if s.id == claimed.entry.scenario)
-    compared = bool(claimed.record.get("references"))
+    compared = bool(claimed.record.references)
     with tempfile.TemporaryDirectory(prefix="crowdbot-verify-") as folder:
         request = Request(
             scenario=scenario,
@@ -150,13 +150,11 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
             progress=setup.progress,
             stop=setup.stop,
             on_hang=setup.on_hang,
-            step_budget=claimed.record.get("step_budget"),
+            step_budget=claimed.record.step_budget,
         )
         run = make_run(request, prepare(scenario, setup.registry, references=compared))
         rows = read_scores_csv(run.directory / files.SCORES)
-        rerun = Rerun(
-            claimed=claimed, record=dict(run.record), scores=tuple(row.score for row in rows)
-        )
+        rerun = Rerun(claimed=claimed, record=run.record, scores=tuple(row.score for row in rows))
         if rerun.relation != "identical" or rerun.same_platform:
             return rerun
         return replace(rerun, own=_own_scores(setup, run, rerun.scores))

@@ -7,7 +7,6 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
-from typing import Any
 
 from crowdbot.core.live.door import Door
 from crowdbot.core.live.planner import LivePlanner, Manner, status
@@ -17,6 +16,7 @@ from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
+from crowdbot.core.runs.record_parts import LivePart
 from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun
@@ -177,15 +177,12 @@ def _scene(request: Request, built: BuiltRun) -> LiveScene:
 def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:
     """Add to run.json what only a live run knows."""
     counts = session.counts
-    live: dict[str, Any] = {
-        "steps": counts.steps,
-        "missed_steps": counts.missed,
-        "refused_commands": counts.refused,
-    }
-    if manner.rate is not None:
-        live["largest_lag"] = round(counts.most_lag, 4)
-    record = {**run.record, "live": live}
-    files.attach_files(run.directory, record)
-    record["files"] = files.sizes(run.directory)
-    files.write_json(run.directory / files.RECORD, record)
+    lag = {} if manner.rate is None else {"largest_lag": round(counts.most_lag, 4)}
+    live = LivePart(
+        steps=counts.steps, missed_steps=counts.missed, refused_commands=counts.refused, **lag
+    )
+    record = run.record.model_copy(update={"live": live})
+    files.attach_files(run.directory, record.document())
+    record = record.model_copy(update={"files": files.sizes(run.directory)})
+    record.write(run.directory)
     return replace(run, record=record)

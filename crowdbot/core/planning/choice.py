@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from crowdbot.dsl.spec.component_specs import PlannerRole
 
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from crowdbot.core.planning.planner import Planner
 
 #: Where a planner runs, as records say it.
-OWN, IN_PROCESS = "own", "in_process"
+OWN: Final = "own"
+IN_PROCESS: Final = "in_process"
 #: Address space of a planner's own process, bytes.
 MEMORY = 4 << 30
 
@@ -97,7 +98,7 @@ class PlannerChoice:
         return next(filter(None, found), "")
 
     @property
-    def process(self) -> str:
+    def process(self) -> Literal["own", "in_process"]:
         """Where it runs, as records say it."""
         return IN_PROCESS if self.in_process else OWN
 

@@ -118,7 +118,7 @@ class Contents:
 
 def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
     """How human the people of some runs are; nothing of runs without people."""
-    told = [(r.axes.get(AXIS, ""), str(r.record.get("crowd") or "")) for r in runs]
+    told = [(r.axes.get(AXIS, ""), r.record.crowd or "") for r in runs]
     return lines_of((name, like) for name, like in told if name or like)
 
 

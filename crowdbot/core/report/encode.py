@@ -10,8 +10,9 @@ import numpy as np
 
 from crowdbot.core.report.packing import deflate, pack
 from crowdbot.core.report.series import Series
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import WITHOUT_RUN, FailureRow, RunRow
+from crowdbot.core.results.rows import WITHOUT_RUN, RunRow
 from crowdbot.core.types.ending import ATTEMPTED, Ending, has_failed
 
 #: Code of a score that a run does not have.
@@ -21,7 +22,7 @@ OK = ("ok", "")
 #: Of a traceback.
 _LINES, _WIDTH = 24, 400
 
-Attempt = RunRow | FailureRow
+Attempt = RunRow | Failure
 
 
 class Names:
@@ -56,12 +57,11 @@ def axes_of(results: Results) -> list[dict[str, Any]]:
     found: dict[str, dict[str, set[tuple[str, str]]]] = {}
     tried: list[Attempt] = [*results.runs, *results.failures]
     for one in tried:
-        told = one.record.get("axis_words") if isinstance(one, RunRow) else None
+        told = one.record.axis_words if isinstance(one, RunRow) else {}
         for name, label in one.axes.items():
             said = found.setdefault(name, {}).setdefault(label, set())
-            words = told.get(name) if isinstance(told, Mapping) else None
-            if isinstance(words, list) and len(words) == 2:
-                said.add((str(words[0]), str(words[1])))
+            if words := told.get(name):
+                said.add((words[0], words[1]))
     return [_axis(name, labels) for name, labels in found.items()]
 
 
@@ -108,7 +108,7 @@ def encode_runs(
         "replay": [None if r is None else replays.get(r.run_id) for r in runs],
         "moment": [None if r is None else _moment(r) for r in runs],
         "traceback": {
-            i: _excerpt(a.traceback) for i, a in enumerate(tried) if isinstance(a, FailureRow)
+            i: _excerpt(a.traceback) for i, a in enumerate(tried) if isinstance(a, Failure)
         },
     }
     names = {"scenarios": scenarios.texts, "statuses": statuses.texts, "reasons": reasons.texts}
@@ -118,12 +118,11 @@ def encode_runs(
 
 def _moment(run: RunRow) -> list[Any] | None:
     """Seconds, and what happens then: where to look at a run first."""
-    found = run.record.get("worst_moment")
-    if not isinstance(found, Mapping) or not isinstance(found.get("t"), int | float):
+    found = run.record.worst_moment
+    if found is None:
         return None
-    clearance = found.get("clearance")
-    known = f", {clearance:.2f} m" if isinstance(clearance, int | float) else ""
-    return [round(float(found["t"]), 2), f"{found.get('what')}{known}"]
+    known = "" if found.clearance is None else f", {found.clearance:.2f} m"
+    return [round(found.t, 2), f"{found.what}{known}"]
 
 
 def _excerpt(traceback: str) -> str:
@@ -156,7 +155,7 @@ def encode_scores(
     for r, attempt in enumerate(tried):
         failed = ("failed", status_of(attempt))
         for s, one in enumerate(series):
-            if isinstance(attempt, FailureRow):
+            if isinstance(attempt, Failure):
                 value = WITHOUT_RUN.get(one.metric)
                 codes[s, r] = states.setdefault(failed if value is None else OK, len(states))
                 values[s, r] = _number(value)

@@ -8,15 +8,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from crowdbot.core.results.rows import RunRow
+from crowdbot.core.runs.record_parts import PluginPart
 
 
 def facts(runs: Sequence[RunRow]) -> dict[str, dict[str, str]]:
     """Groups of facts: name -> text, with counts where the runs differ."""
     records = [run.record for run in runs]
     groups = {
-        "software": _merged(_texts(r.get("versions")) for r in records),
-        "machine": _merged(_texts(r.get("machine")) for r in records),
-        "plugins": _merged(_plugins(r.get("plugins")) for r in records),
+        "software": _merged(r.versions for r in records),
+        "machine": _merged(r.machine for r in records),
+        "plugins": _merged(_plugins(r.plugins) for r in records),
         "conditions": _merged(_conditions(run, metrics=False) for run in runs),
         "metrics": _merged(_conditions(run, metrics=True) for run in runs),
     }
@@ -25,7 +26,7 @@ def facts(runs: Sequence[RunRow]) -> dict[str, dict[str, str]]:
 
 def hashes(runs: Sequence[RunRow]) -> dict[str, str]:
     """What identifies the data: how many of each, and one hash of all."""
-    everything = sorted(f"{run.run_id} {run.trajectory_hash}" for run in runs)
+    everything = sorted(f"{run.record.run_id} {run.trajectory_hash}" for run in runs)
     digest = hashlib.sha256("\n".join(everything).encode()).hexdigest()
     return {
         "scenarios": str(len({run.spec_hash for run in runs})),
@@ -52,7 +53,7 @@ def short(hash_: str) -> str:
 
 def planner_facts(runs: Sequence[RunRow]) -> dict[str, str]:
     """Kind and parameters of one planner, from its runs."""
-    return _merged(_texts(run.record.get("planner")) for run in runs)
+    return _merged(_texts(run.record.planner.document()) for run in runs)
 
 
 def _conditions(run: RunRow, *, metrics: bool) -> dict[str, str]:
@@ -77,15 +78,9 @@ def _texts(value: Any) -> dict[str, str]:
     return found
 
 
-def _plugins(value: Any) -> dict[str, str]:
+def _plugins(plugins: Sequence[PluginPart]) -> dict[str, str]:
     """Plugin -> distribution."""
-    if not isinstance(value, Sequence) or isinstance(value, str):
-        return {}
-    plugins = [p for p in value if isinstance(p, Mapping)]
-    return {
-        str(p.get("name")): str(p.get("distribution")) + ("" if p.get("pinned") else ", not pinned")
-        for p in plugins
-    }
+    return {p.name: p.distribution + ("" if p.pinned else ", not pinned") for p in plugins}
 
 
 def _merged(documents: Iterable[Mapping[str, str]]) -> dict[str, str]:

@@ -8,7 +8,8 @@ from operator import attrgetter
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
 from crowdbot.core.report.provenance import short
-from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.failure import Failure
+from crowdbot.core.results.rows import RunRow, ScoreRow
 
 _RUN = ("suite", "scenario", "planner", "seed", "run_status", "run_id", "realisation", "density")
 _SCORE = (
@@ -38,7 +39,7 @@ def csv_rows(contents: Contents) -> Iterator[Sequence[str]]:
 
 def _run_cells(attempt: Attempt) -> tuple[str, ...]:
     cells = (attempt.suite, attempt.scenario, attempt.planner, str(attempt.seed))
-    if isinstance(attempt, FailureRow):
+    if isinstance(attempt, Failure):
         return (*cells, status_of(attempt), "", "", "")
     more = (
         attempt.status,
@@ -50,7 +51,7 @@ def _run_cells(attempt: Attempt) -> tuple[str, ...]:
 
 
 def _without_scores(attempt: Attempt) -> tuple[str, ...]:
-    reason = attempt.error if isinstance(attempt, FailureRow) else "not_scored"
+    reason = attempt.error if isinstance(attempt, Failure) else "not_scored"
     cells = {"status": status_of(attempt), "reason": reason}
     return tuple(cells.get(name, "") for name in _SCORE)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow
@@ -121,7 +121,7 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
     for scenario, group in _grouped(runs, lambda r: f"{r.suite}/{r.scenario}"):
         yield _finding("scenario", scenario, group, lambda r: _short(r.spec_hash))
         yield _finding("crowd", scenario, group, lambda r: _short(r.realisation_hash))
-        yield _finding("agents", scenario, group, lambda r: str(r.record.get("agents", "")))
+        yield _finding("agents", scenario, group, lambda r: r.record.agents)
     yield from _conditions(runs)
     # A ceiling is there to be compared with, and says what it is.
     yield _finding("privileged", "planners", [r for r in runs if r.role != "ceiling"], _class)
@@ -133,7 +133,7 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
 
 
 def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
-    all_conditions = {r.run_id: _conditions_of(r) for r in runs}
+    all_conditions = {r.run_id: r.conditions for r in runs}
     names = dict.fromkeys(n for found in all_conditions.values() for n in found)
     for name in sorted(names):
         kind = _CONDITIONS.get(name.partition(".")[0], "condition")
@@ -154,21 +154,6 @@ def _has_metric(conditions: Mapping[str, str], name: str) -> bool:
     """Whether a run has the metric of a condition such as ``metrics.risk.risk_horizon``."""
     head = ".".join(name.split(".")[:2])
     return any(n == head or n.startswith(f"{head}.") for n in conditions)
-
-
-def _conditions_of(run: RunRow) -> dict[str, str]:
-    """Conditions of a run; versions and metrics of its record where they are not among them."""
-    found = dict(run.conditions)
-    heads = {name.partition(".")[0] for name in found}
-    if "processor" not in heads:
-        found["processor"] = str(_map(run, "machine").get("processor", ""))
-    if not heads & {"version", "versions"}:
-        found |= {f"versions.{k}": str(v) for k, v in _map(run, "versions").items()}
-    if not heads & {"metric", "metrics"}:
-        for metric, parameters in _map(run, "metrics").items():
-            given = parameters if isinstance(parameters, Mapping) else {"version": parameters}
-            found |= {f"metrics.{metric}.{k}": str(v) for k, v in given.items()}
-    return found
 
 
 def _unpaired(runs: Sequence[RunRow]) -> Iterator[Finding]:
@@ -242,19 +227,14 @@ def _class(run: RunRow) -> str:
 
 
 def _source(run: RunRow) -> str:
-    planner = _map(run, "planner")
-    digest = str(planner.get("sha256", ""))[:12]
-    loose = [p for p in run.record.get("plugins") or () if not p.get("pinned", True)]
-    beside = ", ".join(f"{p['distribution']} sha256 {p.get('sha256', '')[:12]}" for p in loose)
+    planner = run.record.planner
+    digest = planner.sha256[:12]
+    loose = [plugin for plugin in run.record.plugins if not plugin.pinned]
+    beside = ", ".join(f"{p.distribution} sha256 {p.sha256[:12]}" for p in loose)
     return (
-        f"{planner.get('kind', run.planner)}{f' sha256 {digest}' * bool(digest)}"
+        f"{planner.kind}{f' sha256 {digest}' * bool(digest)}"
         f"{f', with the plugin {beside}' * bool(beside)}"
     )
-
-
-def _map(run: RunRow, name: str) -> Mapping[str, Any]:
-    value = run.record.get(name)
-    return value if isinstance(value, Mapping) else {}
 
 
 def _short(text: str) -> str:

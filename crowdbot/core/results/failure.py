@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 
 from crowdbot.core.runs.run_directory import write_json
@@ -16,18 +16,23 @@ SUFFIX = ".failure.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failure:
-    """Which run, and what Python said."""
+    """A run that a campaign could not make, with what Python said; as its file has it.
 
-    run_id: str
+    Attributes:
+        axes, position: as in `RunRecord`.
+        exit_code: what `crowdbot simulate` would have ended with.
+    """
+
+    run_id: str = ""
     suite: str
     scenario: str
     planner: str
     seed: int
-    position: int
+    position: int = 0
     error: str
     traceback: str
-    exit_code: int
-    axes: Mapping[str, str]
+    exit_code: int = 0
+    axes: Mapping[str, str] = field(default_factory=dict)
 
 
 def write_failure(run: Path, failure: Failure) -> None:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from crowdbot.core.results.rows import DamagedRun, FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.failure import Failure
+from crowdbot.core.results.rows import DamagedRun, RunRow, ScoreRow
 from crowdbot.core.results.tables import run_lines, score_lines
 from crowdbot.core.scoring.score_scale import Scales
 from crowdbot.core.support.arguments import path_of
@@ -33,7 +34,7 @@ class Results:
     runs: tuple[RunRow, ...] = ()
     damaged: tuple[DamagedRun, ...] = ()
     scores: tuple[ScoreRow, ...] = ()
-    failures: tuple[FailureRow, ...] = ()
+    failures: tuple[Failure, ...] = ()
     scales: Scales = field(default_factory=dict, repr=False)
 
     @classmethod

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cached_property
+
+from crowdbot.core.runs.run_record import RunRecord
 
 #: What is known of an attempt that left no run: its robot did not arrive.
 WITHOUT_RUN: Mapping[str, float] = {
@@ -16,81 +18,153 @@ WITHOUT_RUN: Mapping[str, float] = {
 _PLACES = {"own": "own process", "in_process": "in the simulator's process"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class RunRow:
-    """One complete run.
+    """One complete run: a view of its record.
 
     Attributes:
-        run_id: hash of everything that decides what happens in it.
-        suite, scenario, planner, seed: planner is the label, with a digest of its parameters
-            where they are not the defaults.
-        axes: axis of the suite -> label, such as ``{"flow": "counter", "density": "d0250"}``,
-            in the suite's order; ``draw`` among them where a condition has several.
-        status: the word of an `Ending`; ``reason`` says why it ended.
-        goal_time: s, None when the robot did not arrive.
-        sim_time, wall_time: s.
-        privileged: the planner was told what no sensor can tell.
-        pinned: every plugin and the planner came from an installed distribution.
-        spec_hash, realisation_hash, trajectory_hash: runs with equal ``realisation_hash`` share
-            one drawn crowd: the cluster of the statistics.
-        density: mean number of people present for each m² of the crowd's area, 1/m²; None
-            without people.
+        record: what its ``run.json`` says.
         directory: of the run, relative to the results' root.
-        conditions: what must be equal in runs that are compared: rates, perceived radius, whether
-            people see the robot, versions of software, parameters of metrics. Name -> text.
-        record: the whole ``run.json``.
-        role: what the planner is there for: floor, baseline, ceiling or candidate.
+        entry: of a leaderboard: the name that its planner has there.
     """
 
-    run_id: str
-    suite: str
-    scenario: str
-    planner: str
-    seed: int
-    axes: Mapping[str, str]
-    status: str
-    reason: str
-    goal_time: float | None
-    sim_time: float
-    wall_time: float
-    privileged: bool
-    pinned: bool
-    spec_hash: str
-    realisation_hash: str
-    trajectory_hash: str
-    density: float | None
+    record: RunRecord = field(repr=False)
     directory: str
-    conditions: Mapping[str, str]
-    record: Mapping[str, Any] = field(default_factory=dict, repr=False)
-    role: str = "candidate"
+    entry: str = ""
+
+    @property
+    def run_id(self) -> str:
+        """Hash of everything that decides what happens in it; in a leaderboard with the entry."""
+        own = self.record.run_id
+        return f"{self.entry}\0{own}" if self.entry else own
+
+    @property
+    def suite(self) -> str:
+        """The suite."""
+        return self.record.suite
+
+    @property
+    def scenario(self) -> str:
+        """Id of the scenario."""
+        return self.record.scenario
+
+    @property
+    def planner(self) -> str:
+        """The label, with a digest of its parameters where they are not the defaults."""
+        return self.entry or self.record.planner.label
+
+    @property
+    def seed(self) -> int:
+        """The seed of sensor noise and planner."""
+        return self.record.seed
+
+    @property
+    def axes(self) -> Mapping[str, str]:
+        """Axis of the suite -> label, in its order; ``draw`` where a condition has several."""
+        return self.record.axes
+
+    @property
+    def status(self) -> str:
+        """The word of its `Ending`."""
+        return str(self.record.status)
+
+    @property
+    def reason(self) -> str:
+        """The reason for which it ended."""
+        return self.record.reason
+
+    @property
+    def goal_time(self) -> float | None:
+        """When the robot arrived, s."""
+        return self.record.goal_time
+
+    @property
+    def sim_time(self) -> float:
+        """Simulated time, s."""
+        return self.record.sim_time
+
+    @property
+    def wall_time(self) -> float:
+        """What the simulation took, s."""
+        return self.record.wall_time
+
+    @property
+    def privileged(self) -> bool:
+        """True if the planner was told what no sensor can tell."""
+        return self.record.knows_truth
+
+    @property
+    def pinned(self) -> bool:
+        """True if every plugin and the planner came from an installed distribution."""
+        return self.record.trusted
 
     @property
     def planner_process(self) -> str:
-        """As `process_of` says it."""
-        return process_of(self.record)
+        """Where the planner ran: ``own``, or ``in_process``, inside the simulator."""
+        return self.record.planner_process
+
+    @property
+    def role(self) -> str:
+        """What the planner is there for: floor, baseline, ceiling or candidate."""
+        return self.record.role
+
+    @property
+    def spec_hash(self) -> str:
+        """Hash of the scenario."""
+        return self.record.hashes.spec
+
+    @property
+    def realisation_hash(self) -> str:
+        """Hash of the drawn crowd; runs that share one are a cluster of the statistics."""
+        return self.record.hashes.realisation
+
+    @property
+    def trajectory_hash(self) -> str:
+        """Hash of what happened."""
+        return self.record.hashes.trajectory
+
+    @property
+    def density(self) -> float | None:
+        """Mean number of people in the crowd's area, 1/m²; None without people."""
+        return self.record.density
+
+    @cached_property
+    def conditions(self) -> Mapping[str, str]:
+        """What must be equal in runs that are compared, name -> text."""
+        return self.record.compared
 
 
-def process_of(record: Mapping[str, Any]) -> str:
-    """Where the planner of a run ran: ``own``, or ``in_process``, inside the simulator.
-
-    Args:
-        record: ``run.json``; those before planners had processes do not say it.
-    """
-    return "own" if record.get("planner_process") == "own" else "in_process"
+#: Columns of runs in ``results.sqlite``, CSV, Parquet and data frames: attribute -> type.
+RUN_COLUMNS: Mapping[str, str] = {
+    "suite": "TEXT",
+    "scenario": "TEXT",
+    "planner": "TEXT",
+    "seed": "INTEGER",
+    "status": "TEXT",
+    "reason": "TEXT",
+    "goal_time": "REAL",
+    "sim_time": "REAL",
+    "wall_time": "REAL",
+    "density": "REAL",
+    "privileged": "INTEGER",
+    "pinned": "INTEGER",
+    "planner_process": "TEXT",
+    "spec_hash": "TEXT",
+    "realisation_hash": "TEXT",
+    "trajectory_hash": "TEXT",
+    "run_id": "TEXT",
+    "directory": "TEXT",
+}
 
 
 def named_metrics(runs: Iterable[RunRow]) -> list[str]:
     """Metrics that the suites of some runs name, in their order; each once."""
-    found: dict[str, None] = {}
-    for run in runs:
-        named = run.record.get("suite_metrics")
-        found.update(dict.fromkeys(map(str, named)) if isinstance(named, list) else {})
-    return list(found)
+    return list(dict.fromkeys(name for run in runs for name in run.record.suite_metrics))
 
 
-def processes(records: Iterable[Mapping[str, Any]]) -> str:
+def processes(records: Iterable[RunRecord]) -> str:
     """Where the planner of some runs ran, in words."""
-    return " or ".join(sorted({_PLACES[process_of(record)] for record in records}))
+    return " or ".join(sorted({_PLACES[record.planner_process] for record in records}))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,19 +190,6 @@ class ScoreRow:
     reason: str
     lower: float | None
     upper: float | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FailureRow:
-    """A run that a campaign could not make, with what Python said; ``axes`` as in `RunRow`."""
-
-    suite: str
-    scenario: str
-    planner: str
-    seed: int
-    axes: Mapping[str, str] = field(default_factory=dict)
-    error: str
-    traceback: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,27 +17,25 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from crowdbot.core.results.failure import SUFFIX, read_failure
-from crowdbot.core.results.rows import DamagedRun, FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.failure import SUFFIX, Failure, read_failure
+from crowdbot.core.results.rows import RUN_COLUMNS, DamagedRun, RunRow, ScoreRow
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.scores_csv import RunScore, read_scores_csv, safe_cell
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
 INDEX, LOCK = "results.sqlite", "results.lock"
 #: Of the tables; an index of another version is rebuilt.
-VERSION = 3
+VERSION = 4
 
-_TABLES = """
-CREATE TABLE IF NOT EXISTS runs (
-    directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, run_id TEXT NOT NULL,
-    suite TEXT NOT NULL, scenario TEXT NOT NULL, position INTEGER NOT NULL,
-    planner TEXT NOT NULL, seed INTEGER NOT NULL, axes TEXT NOT NULL,
-    status TEXT NOT NULL, reason TEXT NOT NULL, goal_time REAL, sim_time REAL, wall_time REAL,
-    density REAL, spec_hash TEXT, realisation_hash TEXT, trajectory_hash TEXT,
-    conditions TEXT NOT NULL, record TEXT NOT NULL
-);
+#: Of a run, beside `RUN_COLUMNS`; ``axes``, ``conditions`` and ``record`` are JSON.
+_BESIDE = {
+    "stamp": "TEXT", "position": "INTEGER", "axes": "TEXT", "conditions": "TEXT", "record": "TEXT",
+}  # fmt: skip
+_RUNS = ", ".join(f"{name} {kind}" for name, kind in {**RUN_COLUMNS, **_BESIDE}.items())
+_TABLES = f"""
+CREATE TABLE IF NOT EXISTS runs ({_RUNS}, PRIMARY KEY (directory));
 CREATE TABLE IF NOT EXISTS scores (
     directory TEXT NOT NULL REFERENCES runs ON DELETE CASCADE, row INTEGER NOT NULL,
     category TEXT NOT NULL, metric TEXT NOT NULL, symbol TEXT NOT NULL, variant TEXT NOT NULL,
@@ -57,7 +55,7 @@ class StoredRows(NamedTuple):
 
     runs: tuple[RunRow, ...]
     scores: tuple[ScoreRow, ...]
-    failures: tuple[FailureRow, ...]
+    failures: tuple[Failure, ...]
     damaged: tuple[DamagedRun, ...]
 
 
@@ -231,13 +229,13 @@ class Store:
         if not (run / files.RECORD).exists():
             return  # replaced at this very moment; the next look finds it
         try:
-            columns, rows = _columns(run), read_scores_csv(run / files.SCORES)
-            _check_rows(run / files.SCORES, columns, rows)
+            row, rows = _read_row(run, directory), read_scores_csv(run / files.SCORES)
+            _check_rows(run / files.SCORES, row, rows)
         except InputError as error:
             reason = str(error).removeprefix(f"{run}/")
             self._damaged.append(DamagedRun(directory=directory, reason=reason))
             return
-        self._put("runs", {"directory": directory, "stamp": stamp, **columns})
+        self._put("runs", {"stamp": stamp, **_columns(row)})
         self._database.executemany(
             _INSERT_SCORE,
             ((directory, number, *_cells(row.score)) for number, row in enumerate(rows)),
@@ -313,38 +311,36 @@ def _stamp_of_run(run: Path) -> str:
     return " ".join(parts)
 
 
-def _columns(run: Path) -> dict[str, Any]:
+def _read_row(run: Path, directory: str) -> RunRow:
     """The row of a run.
 
     Raises:
         InputError: something of it is missing, cut or malformed.
     """
-    record = files.checked_record(run)
-    if wrong := files.damage(run, record) or next(iter(record_problems(record)), ""):
-        raise InputError(wrong)
-    try:
-        return {
-            **{n: record[n] for n in ("run_id", "suite", "scenario", "seed", "status", "reason")},
-            **{n: record[n] for n in ("goal_time", "sim_time", "wall_time")},
-            "position": record.get("position", 0),
-            "planner": record["planner"]["label"],
-            "axes": json.dumps(record.get("axes") or {}),
-            "density": record.get("density"),
-            **{f"{n}_hash": record["hashes"][n] for n in ("spec", "realisation", "trajectory")},
-            "conditions": json.dumps(conditions(record)),
-            "record": json.dumps(record),
-        }
-    except (KeyError, TypeError) as error:
-        raise InputError(f"{run / files.RECORD}: not a record of a run: {error}") from error
+    document = files.checked_record(run)
+    listed = document.get("files")
+    files.check_whole(run, listed if isinstance(listed, Mapping) else {})
+    return RunRow(record=RunRecord.parse(document, files.RECORD), directory=directory)
 
 
-def _check_rows(file: Path, run: Mapping[str, Any], rows: Sequence[RunScore]) -> None:
+def _columns(row: RunRow) -> dict[str, Any]:
+    """The columns of a run."""
+    return {
+        **{name: getattr(row, name) for name in RUN_COLUMNS},
+        "position": row.record.position,
+        "axes": json.dumps(row.axes),
+        "conditions": json.dumps(row.conditions),
+        "record": json.dumps(row.record.document()),
+    }
+
+
+def _check_rows(file: Path, run: RunRow, rows: Sequence[RunScore]) -> None:
     """Whether scores are those of a run, each once.
 
     Raises:
         InputError: they are not.
     """
-    own = (safe_cell(run["scenario"]), safe_cell(run["planner"]), run["seed"])
+    own = (safe_cell(run.scenario), safe_cell(run.planner), run.seed)
     seen = set[tuple[str, str]]()
     for row in rows:
         name = row.score.metric, row.score.variant
@@ -356,36 +352,11 @@ def _check_rows(file: Path, run: Mapping[str, Any], rows: Sequence[RunScore]) ->
         seen.add(name)
 
 
-def conditions(record: dict[str, Any]) -> dict[str, str]:
-    """What must be equal in runs that are compared, by name."""
-    metrics: dict[str, Any] = record.get("metrics") or {}
-    return {
-        **(record.get("conditions") or {}),
-        **{f"metrics.{n}": json.dumps(p, sort_keys=True) for n, p in metrics.items()},
-        **{f"versions.{n}": str(v) for n, v in record["versions"].items()},
-        "processor": str(record["machine"].get("processor", "")),
-    }
-
-
 def _run(row: sqlite3.Row) -> RunRow:
-    record = json.loads(row["record"])
-    same = (
-        "run_id", "suite", "scenario", "planner", "seed", "status", "reason", "goal_time",
-        "sim_time", "wall_time", "spec_hash", "realisation_hash", "trajectory_hash", "density",
-        "directory",
-    )  # fmt: skip
-    pinned = record.get("pinned", False) and all(p["pinned"] for p in record["plugins"])
-    return RunRow(
-        **{name: row[name] for name in same},
-        axes=json.loads(row["axes"]),
-        privileged=bool(record.get("privileged", row["planner"].endswith("+privileged"))),
-        pinned=bool(pinned),
-        conditions=json.loads(row["conditions"]),
-        record=record,
-        role=str(record.get("role", "candidate")),
-    )
+    record = RunRecord.model_validate_json(row["record"])
+    return RunRow(record=record, directory=row["directory"])
 
 
-def _failure(row: sqlite3.Row) -> FailureRow:
+def _failure(row: sqlite3.Row) -> Failure:
     values = {name: row[name] for name in _FAILURE if name != "position"}
-    return FailureRow(**{**values, "axes": json.loads(row["axes"])})
+    return Failure(**{**values, "axes": json.loads(row["axes"])})

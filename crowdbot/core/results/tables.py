@@ -6,22 +6,17 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.results.rows import RunRow, ScoreRow
+from crowdbot.core.results.rows import RUN_COLUMNS, RunRow, ScoreRow
 from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.errors import InputError, MissingLibraryError
 
 Line = dict[str, Any]
-_RUN = (
-    "suite", "scenario", "planner", "seed", "status", "reason", "goal_time", "sim_time",
-    "wall_time", "density", "privileged", "pinned", "planner_process", "spec_hash",
-    "realisation_hash", "trajectory_hash", "run_id", "directory",
-)  # fmt: skip
 _SCORE = (
     "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
     "lower", "upper",
 )  # fmt: skip
 
-_NUMBERS = ("goal_time", "sim_time", "wall_time", "density", "value", "lower", "upper")
+_NUMBERS = {"value", "lower", "upper"} | {n for n, kind in RUN_COLUMNS.items() if kind == "REAL"}
 _NULL = "\\N"
 
 
@@ -34,7 +29,10 @@ def run_lines(runs: Sequence[RunRow]) -> list[Line]:
     """One line a run; its label on axis ``x`` is in ``axis_x``."""
     axes = axes_of(runs)
     return [
-        {**{n: getattr(run, n) for n in _RUN}, **{f"axis_{a}": run.axes.get(a) for a in axes}}
+        {
+            **{n: getattr(run, n) for n in RUN_COLUMNS},
+            **{f"axis_{a}": run.axes.get(a) for a in axes},
+        }
         for run in runs
     ]
 

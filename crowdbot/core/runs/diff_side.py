@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs.run_directory import RECORD, SCENARIO, SCORES, read_record
+from crowdbot.core.runs.run_directory import RECORD, SCENARIO, SCORES
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scenarios.library import open_spec, pick, suite_names
 from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash
 from crowdbot.errors import InputError
@@ -83,13 +84,13 @@ def _scenario(
 
 
 def _run(folder: Path, registry: Registry, overrides: Sequence[str]) -> DiffSide:
-    record = read_record(folder)
+    record = RunRecord.find(folder)
     if record is None:
         raise InputError(f"{folder}: no run directory, there is no readable {RECORD} in it")
     if overrides:
         raise InputError(f"{folder}: --set changes a scenario, not a run")
     found = _scenario(str(folder), str(folder / SCENARIO), None, registry, ())
-    kept = {k: v for k, v in record.items() if k not in _PASSING}
+    kept = {k: v for k, v in record.document().items() if k not in _PASSING}
     return DiffSide(
         name=str(folder), scenario=found.scenario, hash=found.hash, run=kept,
         scores=_scores(folder / SCORES),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import re
 from collections.abc import Callable, Mapping
@@ -10,12 +9,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
-from crowdbot.core.planning.choice import IN_PROCESS, MEMORY
+from crowdbot.core.planning.choice import MEMORY
+from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.runs.record_parts import IdentityHashes, PlannerPart, PluginPart
 from crowdbot.core.runs.run import Recorded, Request
+from crowdbot.core.runs.run_record import (
+    ReferenceIdentity,
+    ReferenceRecord,
+    RunIdentity,
+    RunRecord,
+)
 from crowdbot.core.scenarios.lock import Population, population
 from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.identity.canonical import content_hash
@@ -65,27 +71,33 @@ class Reference:
 
     Attributes:
         name: ``robot_alone`` or ``crowd_alone``.
-        key: all that it depends on; part of its record.
-        run_id: hash of name and key.
+        identity: all that it depends on; part of its record.
         directory: where it goes, shared by all runs that depend on the same.
     """
 
     name: str
     trial: Trial
-    key: Mapping[str, Any]
-    run_id: str
+    identity: ReferenceIdentity
     directory: Path
 
     @property
-    def finished(self) -> bool:
-        """Whether it is complete, perhaps with a planner that failed."""
-        return files.is_complete(self.directory, self.run_id)
+    def run_id(self) -> str:
+        """Its id."""
+        return self.identity.id()
 
     @property
-    def complete(self) -> bool:
-        """Whether it is there and no planner failed in it, which may have a passing cause."""
-        record = files.read_record(self.directory) or {}
-        return self.finished and not has_failed(str(record.get("status")))
+    def finished(self) -> ReferenceRecord | None:
+        """Its record if it is complete, perhaps with a planner that failed."""
+        record = ReferenceRecord.find(self.directory)
+        if record is None or record.run_id != self.run_id:
+            return None
+        return None if files.damage(self.directory, record.files, scores=False) else record
+
+    @property
+    def complete(self) -> ReferenceRecord | None:
+        """The same if no planner failed in it, which may have a passing cause."""
+        record = self.finished
+        return None if record is None or has_failed(record.status) else record
 
 
 def prepare(
@@ -135,22 +147,23 @@ def prepare(
     )
 
 
-def run_identity(request: Request, run: Trial) -> dict[str, Any]:
-    """Everything that decides what happens in a run; its digest is the run's id."""
-    return {
-        "scenario": run.scenario.id,
-        "suite": request.suite,
-        "planner": {
-            **request.choice.spec_dump,
-            "name": request.choice.name,
-            "label": request.choice.label,
-        },
+def run_identity(request: Request, run: Trial) -> RunIdentity:
+    """Everything that decides what happens in a run."""
+    return RunIdentity(
+        scenario=run.scenario.id,
+        suite=request.suite,
+        planner=planner_part(request.choice),
         **_budget(request),
-        "seed": request.seed,
-        "hashes": {"spec": run.spec, "realisation": run.realisation},
-        "versions": provenance.versions(),
-        "plugins": provenance.plugins(request.registry),
-    }
+        seed=request.seed,
+        hashes=IdentityHashes(spec=run.spec, realisation=run.realisation),
+        versions=provenance.versions(),
+        plugins=[PluginPart(**plugin) for plugin in provenance.plugins(request.registry)],
+    )
+
+
+def planner_part(choice: PlannerChoice) -> PlannerPart:
+    """A planner as records have it."""
+    return PlannerPart(**{**choice.spec_dump, "name": choice.name, "label": choice.label})
 
 
 def references_of(request: Request, prepared: Prepared) -> tuple[Reference, ...]:
@@ -173,9 +186,9 @@ def longest(scenario: Scenario) -> float:
     return max(robot.task.time_limit for robot in scenario.robots.values())
 
 
-def _budget(request: Request) -> dict[str, float | None]:
+def _budget(request: Request) -> dict[str, Any]:
     """What a planner may take, where that is not the usual."""
-    found: dict[str, float | None] = {}
+    found: dict[str, Any] = {}
     if request.step_budget is not None:
         found["step_budget"] = request.step_budget
     if not request.choice.in_process and request.choice.memory != MEMORY:
@@ -187,61 +200,73 @@ def _reference(
     request: Request, name: str, trial: Trial, depends_on: Mapping[str, Any]
 ) -> Reference:
     others = provenance.third_parties(request.registry)
-    key = {"spec": trial.spec, "versions": provenance.versions(), **others, **depends_on}
-    run_id = provenance.digest({"reference": name, **key})
-    short = run_id.removeprefix("cb1-sha256:")[:16]
+    identity = ReferenceIdentity.model_validate(
+        {
+            "reference": name,
+            "spec": trial.spec,
+            "versions": provenance.versions(),
+            **others,
+            **depends_on,
+        }
+    )
+    short = identity.id().removeprefix("cb1-sha256:")[:16]
     directory = request.out / "references" / f"{name}-{short}"
-    return Reference(name=name, trial=trial, key=key, run_id=run_id, directory=directory)
+    return Reference(name=name, trial=trial, identity=identity, directory=directory)
 
 
-def reusable_record(request: Request, run_id: str, *, compared: bool) -> dict[str, Any] | None:
+def reusable_record(request: Request, run_id: str, *, compared: bool) -> RunRecord | None:
     """The record of the run if it is complete and holds as much as is wanted now.
 
     Args:
         request: what is wanted.
-        run_id: from `run_identity`.
+        run_id: of the run that is wanted.
         compared: whether it must have calibration runs.
     """
-    record = files.read_record(request.directory)
-    if record is None or record.get("run_id") != run_id:
-        if record is None and request.directory.is_dir():
-            _LOG.warning("%s: run.json is missing or cut; it is made again", request.directory)
+    place = request.directory
+    if not place.is_dir():
         return None
-    if wrong := files.damage(request.directory, record) or next(iter(record_problems(record)), ""):
-        _LOG.warning("%s: %s; it is made again", request.directory, wrong)
+    try:
+        document = files.checked_record(place)
+    except InputError:
+        _LOG.warning("%s: run.json is missing or cut; it is made again", place)
         return None
-    if record.get("planner_process", IN_PROCESS) != request.choice.process:
+    if document.get("run_id") != run_id:
         return None
-    if not _holds(record, request) or (compared and not record.get("references")):
+    try:
+        record = RunRecord.parse(document, files.RECORD)
+        files.check_whole(place, record.files)
+    except InputError as error:
+        _LOG.warning("%s: %s; it is made again", place, error)
         return None
-    if request.replay and not (request.directory / files.REPLAY).exists():
+    if record.planner_process != request.choice.process:
+        return None
+    if not _holds(record, request) or (compared and not record.references):
+        return None
+    if request.replay and not (place / files.REPLAY).exists():
         return None
     return record
 
 
-def _holds(record: Mapping[str, Any], request: Request) -> bool:
-    """Whether as much was recorded as is wanted, or more."""
+def _holds(record: RunRecord, request: Request) -> bool:
+    """True if as much was recorded as is wanted, or more."""
     levels = get_args(Recorded)
-    return record.get("recorded") in levels[: levels.index(request.record) + 1]
+    return record.recorded in levels[: levels.index(request.record) + 1]
 
 
-def recorded_otherwise(request: Request, identity: Mapping[str, Any]) -> tuple[str, ...]:
-    """In what the run that is there now differs from the one that is wanted, by dotted keys.
+def recorded_otherwise(request: Request, identity: RunIdentity) -> tuple[str, ...]:
+    """How the run that is there now differs from the one that is wanted, as dotted keys.
 
     Empty where none is there, or the very same.
     """
-    before = files.read_record(request.directory)
+    before = RunRecord.find(request.directory)
     if before is None:
         return ()
-    keys = (*identity, *(k for k in ("step_budget",) if k in before and k not in identity))
-    wanted = json.loads(json.dumps({**identity, "recorded": request.record}))
+    there, wanted = before.identity(), identity.identity()
     found = []
-    for key in (*keys, "recorded"):
-        a, b = _flat(key, before.get(key)), _flat(key, wanted.get(key))
-        if key == "hashes":
-            a.pop("hashes.trajectory", None)
+    for key in dict.fromkeys([*wanted, *there]):
+        a, b = _flat(key, there.get(key)), _flat(key, wanted.get(key))
         found += sorted(name for name in a.keys() | b.keys() if a.get(name) != b.get(name))
-    return tuple(found)
+    return (*found, *["recorded"] * (before.recorded != request.record))
 
 
 def _flat(name: str, value: Any) -> dict[str, Any]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import platform
 from collections.abc import Mapping
@@ -18,27 +17,24 @@ import numpy as np
 from crowdbot.core.planning.choice import IN_PROCESS
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.record_parts import Part
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.support.float_fingerprint import fingerprint
+from crowdbot.core.support.json_digest import digest
 from crowdbot.core.trajectories.trajectories import Trajectories
 
 _PACKAGES = ("crowdbot", "drake", "mcap", "numba", "numpy", "pydantic", "rosbags")
 
 
-def digest(document: Mapping[str, Any]) -> str:
-    """``cb1-sha256:`` hash of a JSON document."""
-    text = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
-    return f"cb1-sha256:{hashlib.sha256(text.encode()).hexdigest()}"
-
-
-def recording_hashes(run_id: str, identity: Mapping[str, Any]) -> dict[str, str]:
+def recording_hashes(identity: Part) -> dict[str, str]:
     """What the header of a recording says about whose it is.
 
     Args:
-        run_id: of the run, or of the calibration run.
-        identity: what that is the hash of.
+        identity: of the run, or of the calibration run.
     """
-    found = {"run": run_id}
-    return found | ({"planner": digest(identity["planner"])} if "planner" in identity else {})
+    document = identity.identity()
+    found = {"run": identity.id()}
+    return found | ({"planner": digest(document["planner"])} if "planner" in document else {})
 
 
 def trajectory_hash(run: Trajectories) -> str:
@@ -103,35 +99,29 @@ def third_parties(registry: Registry) -> dict[str, Any]:
     return {"plugins": others} if others else {}
 
 
-def remarks(record: Mapping[str, Any]) -> dict[str, str]:
-    """What a reader of scores must know of where they come from, if there is anything.
-
-    Args:
-        record: ``run.json``, or what will be.
-    """
+def remarks(record: RunRecord) -> dict[str, str]:
+    """What a reader of scores must know of where they come from, if there is anything."""
     found = {}
-    if record.get("privileged"):
+    if record.privileged:
         found["Privileged"] = "the planner sees the truth"
     if runs_inside(record):
         found["In process"] = "the planner ran inside the simulator, where nothing contains it"
-    if not record.get("pinned", True):
-        loose = [p["distribution"] for p in record.get("plugins", ()) if not p["pinned"]]
-        if "sha256" in record["planner"]:
-            loose.append(record["planner"]["kind"])
+    if not record.pinned:
+        loose = [plugin.distribution for plugin in record.plugins if not plugin.pinned]
+        if record.planner.sha256:
+            loose.append(record.planner.kind)
         found["Not pinned"] = f"{', '.join(loose)}: not from an installed distribution"
     return found
 
 
-def runs_inside(record: Mapping[str, Any]) -> bool:
-    """Whether a planner that is not crowdbot's own ran inside the simulator.
+def runs_inside(record: RunRecord) -> bool:
+    """True if a planner that is not crowdbot's own ran inside the simulator.
 
-    Args:
-        record: ``run.json``, or what will be; of runs before planners had processes, None is said.
+    Runs of before planners had processes do not say where theirs ran.
     """
-    if record.get("planner_process") != IN_PROCESS:
+    if record.planner_process != IN_PROCESS or "planner_process" not in record.model_fields_set:
         return False
-    kind = str(record.get("planner", {}).get("kind", ""))
-    return "sha256" in record.get("planner", {}) or "." in kind
+    return bool(record.planner.sha256) or "." in record.planner.kind
 
 
 def machine() -> dict[str, str]:

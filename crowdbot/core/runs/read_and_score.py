@@ -18,6 +18,7 @@ from crowdbot.core.runs.run import read_kept, read_references
 from crowdbot.core.scoring.evaluate import Scores, score
 from crowdbot.core.scoring.fleet_scores import fleet_scores
 from crowdbot.core.scoring.metric import References
+from crowdbot.core.support.json_digest import digest
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 
@@ -113,7 +114,7 @@ def score_robots(
 def trajectory_of(runs: Mapping[str, Trajectories]) -> str:
     """Hash of every simulated number of a run of one robot or of several."""
     hashes = {name: provenance.trajectory_hash(run) for name, run in runs.items()}
-    return next(iter(hashes.values())) if len(hashes) == 1 else provenance.digest(hashes)
+    return next(iter(hashes.values())) if len(hashes) == 1 else digest(hashes)
 
 
 def read_recorded(path: Path) -> RecordedRun:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.recording.reading.images import (
@@ -22,6 +21,7 @@ from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.read_and_score import SeenRun, read_robots
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.types.environment import EnvironmentParts
@@ -31,22 +31,18 @@ from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, UsageError
 
 
-def replay_facts(record: Mapping[str, Any]) -> dict[str, str]:
-    """What the page tells of a run, name -> text.
-
-    Args:
-        record: ``run.json``, or what will be.
-    """
-    arrival = record["goal_time"]
+def replay_facts(record: RunRecord) -> dict[str, str]:
+    """What the page tells of a run, name -> text."""
+    arrival = record.goal_time
     return {
-        "Suite": record["suite"],
-        "Scenario": record["scenario"],
-        "Planner": _label(record),
+        "Suite": record.suite,
+        "Scenario": record.scenario,
+        "Planner": record.planner.label,
         **provenance.remarks(record),
-        "Seed": str(record["seed"]),
-        "Status": record["status"],
+        "Seed": str(record.seed),
+        "Status": record.status,
         "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
-        "Spec": record["hashes"]["spec"][:24],
+        "Spec": record.hashes.spec[:24],
     }
 
 
@@ -90,9 +86,9 @@ def replayed_runs(folders: Sequence[Path], registry: Registry) -> list[ShownRun]
     records = [_record(folder) for folder in folders]
     first = records[0]
     for folder, record in zip(folders, records, strict=True):
-        if record["scenario"] != first["scenario"]:
+        if record.scenario != first.scenario:
             raise UsageError(
-                f"{folder} is a run of {record['scenario']}, {folders[0]} of {first['scenario']}: "
+                f"{folder} is a run of {record.scenario}, {folders[0]} of {first.scenario}: "
                 "only runs of one scenario can be shown beside each other"
             )
     labels = _labels(records)
@@ -102,30 +98,20 @@ def replayed_runs(folders: Sequence[Path], registry: Registry) -> list[ShownRun]
     ]
 
 
-def _record(folder: Path) -> dict[str, Any]:
-    record = files.read_record(folder)
-    if record is None:
+def _record(folder: Path) -> RunRecord:
+    if not (folder / files.RECORD).is_file():
         raise InputError(f"{folder}: no run directory, there is no readable {files.RECORD} in it")
-    missing = {"scenario", "suite", "planner", "seed", "status", "goal_time", "hashes"} - set(
-        record
-    )
-    damaged = f"{files.RECORD} lacks {', '.join(sorted(missing))}" if missing else ""
-    damaged = damaged or files.damage(folder, record)
-    if damaged:
+    record = RunRecord.read(folder)
+    if damaged := files.damage(folder, record.files):
         raise InputError(f"{folder}: {damaged}")
     return record
 
 
-def _label(record: Mapping[str, Any]) -> str:
-    planner = record["planner"]
-    return str(planner.get("label") or planner.get("name") or planner.get("kind"))
-
-
-def _labels(records: Sequence[Mapping[str, Any]]) -> list[str]:
+def _labels(records: Sequence[RunRecord]) -> list[str]:
     """By planner; runs of the same planner by seed, too."""
-    planners = [_label(record) for record in records]
+    planners = [record.planner.label for record in records]
     return [
-        planner if planners.count(planner) == 1 else f"{planner}, seed {record['seed']}"
+        planner if planners.count(planner) == 1 else f"{planner}, seed {record.seed}"
         for planner, record in zip(planners, records, strict=True)
     ]
 
@@ -135,7 +121,7 @@ def shown_run(
     seen: Mapping[str, SeenRun],
     models: Mapping[str, RobotModel],
     parts: EnvironmentParts,
-    record: Mapping[str, Any],
+    record: RunRecord,
     scores: Sequence[Score],
     images: Sequence[ReplayImages],
 ) -> ShownRun:
@@ -145,7 +131,7 @@ def shown_run(
         scenario: what was run.
         seen, models: of each robot by name, in the scenario's order.
         parts: the environment.
-        record: ``run.json``, or what will be.
+        record: of the run.
         scores: of the run.
         images: what cameras saw.
     """
@@ -158,8 +144,8 @@ def shown_run(
     }
     return ShownRun(
         run=seen[last].run,
-        title=f"{scenario.id} · {_label(record)}",
-        label=_label(record),
+        title=f"{scenario.id} · {record.planner.label}",
+        label=record.planner.label,
         facts={**several, **replay_facts(record)},
         scans=seen[last].scans,
         images=images,
@@ -180,7 +166,7 @@ def shown_run(
     )
 
 
-def _replayed(folder: Path, record: Mapping[str, Any], label: str, registry: Registry) -> ShownRun:
+def _replayed(folder: Path, record: RunRecord, label: str, registry: Registry) -> ShownRun:
     scenario, recording = _scenario(folder, registry), folder / files.RECORDING
     images = images_of_replay(recording)
     shown = shown_run(

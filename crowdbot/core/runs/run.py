@@ -15,6 +15,7 @@ from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
@@ -36,14 +37,14 @@ class Run:
 
     Attributes:
         directory: where its files are.
-        record: ``run.json``.
+        record: what ``run.json`` says; `RunRecord.document` is the same as plain values.
         reused: whether the run had been made before.
         replaced: how an earlier run in the same folder, which this one has replaced, was
             recorded differently; empty if there was none, or it was recorded in the same way.
     """
 
     directory: Path
-    record: Mapping[str, Any] = field(repr=False)
+    record: RunRecord = field(repr=False)
     reused: bool = False
     replaced: tuple[str, ...] = ()
     _keep: object = field(default=None, repr=False, compare=False)
@@ -59,30 +60,29 @@ class Run:
             InputError: the folder holds no complete run.
         """
         path = path_of("directory", directory)
-        record = files.read_record(path)
-        if record is None:
+        if not (path / files.RECORD).is_file():
             raise InputError(f"{directory}: no run directory, there is no {files.RECORD} in it")
-        return cls(path, record, reused=True)
+        return cls(path, RunRecord.read(path), reused=True)
 
     @property
     def scenario(self) -> str:
         """Id of the scenario."""
-        return str(self.record["scenario"])
+        return self.record.scenario
 
     @property
     def planner(self) -> str:
         """Label of the planner, as scores carry it."""
-        return str(self.record["planner"]["label"])
+        return self.record.planner.label
 
     @property
     def seed(self) -> int:
         """Of the run."""
-        return int(self.record["seed"])
+        return self.record.seed
 
     @property
     def status(self) -> str:
         """How it ended: ``arrived``, ``timeout``, …, a word of the table of endings."""
-        return str(self.record["status"])
+        return str(self.record.status)
 
     @property
     def failed(self) -> bool:
@@ -112,7 +112,7 @@ class Run:
     @cached_property
     def robots(self) -> Mapping[str, Trajectories]:
         """The run of each of several robots, by name; empty of a run of one."""
-        if "robots" not in self.record:
+        if not self.record.robots:
             return {}
         with Recording(self.directory / files.RECORDING) as recording:
             return {name: recording.trajectories(name) for name in recording.robots}
@@ -120,7 +120,7 @@ class Run:
     @cached_property
     def references(self) -> References:
         """The calibration runs, as far as they were computed."""
-        paths: Mapping[str, str] = self.record["references"]
+        paths = self.record.references
         return read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
 
     def _repr_html_(self) -> str:

@@ -24,14 +24,6 @@ _LOCK = ".lock"
 _NEEDED = (RECORDING, SCENARIO, SCORES)
 
 
-def read_record(directory: Path) -> dict[str, Any] | None:
-    """``run.json`` of a complete run, or None."""
-    try:
-        return checked_record(directory)
-    except InputError:
-        return None
-
-
 def checked_record(directory: Path) -> dict[str, Any]:
     """``run.json`` of a complete run.
 
@@ -48,12 +40,6 @@ def checked_record(directory: Path) -> dict[str, Any]:
     if not isinstance(record, dict):
         raise InputError(f"{file}: cut, or not a record of a run: not a mapping")
     return record
-
-
-def is_complete(directory: Path, run_id: str) -> bool:
-    """Whether a directory holds the complete run of this id."""
-    record = read_record(directory)
-    return record is not None and record.get("run_id") == run_id and not damage(directory, record)
 
 
 def attach_files(folder: Path, record: Mapping[str, Any]) -> None:
@@ -78,25 +64,33 @@ def sizes(folder: Path) -> dict[str, int]:
     return {name: (folder / name).stat().st_size for name in _NEEDED if (folder / name).is_file()}
 
 
-def damage(directory: Path, record: Mapping[str, Any]) -> str:
+def damage(directory: Path, listed: Mapping[str, int], *, scores: bool = True) -> str:
     """What is missing or cut in the directory of a run, in words; empty where nothing is.
 
     Args:
         directory: of a run, or of a calibration run.
-        record: its ``run.json``, which says how large its files are.
+        listed: bytes of its files, as its record says.
+        scores: False for a calibration run, which has none.
     """
-    listed = record.get("files")
-    for name in _NEEDED:
-        if name == SCORES and "reference" in record:
-            continue
+    for name in _NEEDED if scores else _NEEDED[:2]:
         try:
             size = (directory / name).stat().st_size
         except OSError:
             return f"{name} is missing"
-        wanted = listed.get(name) if isinstance(listed, Mapping) else None
-        if isinstance(wanted, int) and size != wanted:
+        wanted = listed.get(name)
+        if wanted is not None and size != wanted:
             return f"{name} has {size} bytes instead of {wanted}"
     return ""
+
+
+def check_whole(directory: Path, listed: Mapping[str, int]) -> None:
+    """Refuse a run that is damaged.
+
+    Raises:
+        InputError: what is missing or cut.
+    """
+    if wrong := damage(directory, listed):
+        raise InputError(wrong)
 
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:

@@ -1,158 +1,195 @@
-"""run.json: what a run says about itself."""
+"""RunRecord: what a run says about itself, as it is written to ``run.json``, read and hashed."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
-from fnmatch import fnmatchcase
+import json
+import warnings
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, Self
 
-from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs import provenance
+from annotated_types import Len
+from pydantic import Field, ValidationError
+
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.outcome import Outcome
-from crowdbot.core.runs.read_and_score import trajectory_of
-from crowdbot.core.runs.realised_density import mean_density
-from crowdbot.core.runs.run import Request
-from crowdbot.core.scoring.evaluate import Scores
-from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.trajectories.worst_moment import worst_moment
-from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.identity.canonical import dump_scenario_yaml
-from crowdbot.dsl.identity.crowd_likeness import fingerprint
-from crowdbot.dsl.scenario.robot_response import RobotResponse
-from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.core.runs.record_parts import (
+    CostPart,
+    Count,
+    Hash,
+    HashesPart,
+    Identity,
+    IdentityHashes,
+    LivePart,
+    MetricPart,
+    MomentPart,
+    Part,
+    PlannerPart,
+    PluginPart,
+    RobotPart,
+)
+from crowdbot.errors import InputError
 
 
-def run_record(
-    request: Request,
-    identity: Mapping[str, Any],
-    references: Mapping[str, Path],
-    outcome: Outcome,
-    runs: Mapping[str, Trajectories],
-    scores: Scores,
-    *,
-    parts: EnvironmentParts,
-) -> dict[str, Any]:
-    """The record of a run of one robot or of several, but for how its people were found."""
-    scenario, registry = request.scenario, request.registry
-    run = max(runs.values(), key=lambda one: len(one.t))  # sees the people to the end
-    hashes = {**identity["hashes"], "trajectory": trajectory_of(runs)}
-    up = "/".join([".."] * len(request.directory.relative_to(request.out).parts))
-    return {
-        "run_id": provenance.digest(identity),
-        **identity,
-        "axes": dict(request.axes),
-        "axis_words": {axis: list(words) for axis, words in request.words.items()},
-        "position": request.position,
-        "hashes": hashes,
-        "pinned": request.pinned,
-        "privileged": request.choice.privileged,
-        "role": request.choice.role,
-        "planner_process": request.choice.process,
-        "allowed_plugins": request.registry.allowed,
-        "recorded": request.record,
-        **ending(outcome),
-        **_robots(request, outcome, runs),
-        "references": {
-            n: f"{up}/{p.relative_to(request.out).as_posix()}" for n, p in references.items()
-        },
-        "density": mean_density(run, scenario, parts),
-        "conditions": _conditions(scenario, runs),
-        "crowd": "" if scenario.crowd is None else fingerprint(scenario.crowd),
-        "metrics": _metrics(registry, scores),
-        "suite_metrics": _named(request.metrics, scores),
-        "worst_moment": _worst(runs.values()),
-        "machine": provenance.machine(),
-    }
+class RunIdentity(Part):
+    """Everything that decides what happens in a run.
+
+    Attributes:
+        step_budget: s, where one was given.
+        planner_memory: bytes or None, where it is not the usual.
+    """
+
+    scenario: Identity[str]
+    suite: Identity[str]
+    planner: Identity[PlannerPart]
+    step_budget: Identity[int | float | None] = None
+    planner_memory: Identity[int | None] = None
+    seed: Identity[Count]
+    hashes: Identity[IdentityHashes]
+    versions: Identity[dict[str, str]]
+    plugins: Identity[list[PluginPart]]
 
 
-def _robots(request: Request, outcome: Outcome, runs: Mapping[str, Trajectories]) -> dict[str, Any]:
-    """What became of each of several robots; nothing of one."""
-    if not outcome.robots:
-        return {}
-    kept = (
-        "status", "reason", "goal_time", "toppled_time", "sim_time", "planner_step_time",
-        "clamped_commands",
-    )  # fmt: skip
-    found = {}
-    for name, one in outcome.robots.items():
-        choice, end = request.choice.of(name), ending(one)
-        found[name] = {
-            "planner": {**choice.spec_dump, "name": choice.name, "label": choice.label},
-            **{key: end[key] for key in kept if key in end},
-            "trajectory": provenance.trajectory_hash(runs[name]),
+class _Record(CostPart):
+    """A record that stands in the directory of its run."""
+
+    run_id: Hash
+    files: dict[str, Count] = Field(default_factory=dict)
+
+    @classmethod
+    def parse(cls, document: Mapping[str, Any], what: object) -> Self:
+        """The record that a document holds.
+
+        Raises:
+            InputError: something is missing or malformed; it begins with ``what``.
+        """
+        if problems := _problems(cls, document):
+            raise InputError(f"{what}: {problems[0]}")
+        return cls.model_validate(dict(document))
+
+    @classmethod
+    def read(cls, directory: Path) -> Self:
+        """The record of the complete run in a directory.
+
+        Raises:
+            InputError: it cannot be read, or is malformed.
+        """
+        return cls.parse(files.checked_record(directory), directory / files.RECORD)
+
+    @classmethod
+    def find(cls, directory: Path) -> Self | None:
+        """The same, or None."""
+        try:
+            return cls.read(directory)
+        except InputError:
+            return None
+
+    def write(self, directory: Path) -> None:
+        """Write it into a directory.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        files.write_json(directory / files.RECORD, self.document())
+
+    def document(self) -> dict[str, Any]:
+        """The record as ``run.json`` has it."""
+        return {"run_id": self.run_id, **super().document()}
+
+
+class RunRecord(_Record, RunIdentity):
+    """The record of one complete run; docs/reference/run_directory.md explains each key.
+
+    A column of results is a field of this, or a property of `RunRow`.
+    """
+
+    hashes: Identity[HashesPart]
+    axes: dict[str, str] = Field(default_factory=dict)
+    axis_words: dict[str, Annotated[list[str], Len(2, 2)]] = Field(default_factory=dict)
+    position: Count = 0
+    agents: Literal["locked", "drawn", "none"] = "none"
+    pinned: bool
+    privileged: bool
+    role: Literal["floor", "baseline", "ceiling", "candidate"] = "candidate"
+    planner_process: Literal["own", "in_process"] = "in_process"
+    allowed_plugins: list[str] | None = None
+    recorded: Literal["all", "used", "none"] = "all"
+    robots: dict[str, RobotPart] = Field(default_factory=dict)
+    references: dict[str, str]
+    reference_hashes: dict[str, Hash] = Field(default_factory=dict)
+    density: float | None = None
+    conditions: dict[str, str] = Field(default_factory=dict)
+    crowd: str | None = None
+    metrics: dict[str, MetricPart]
+    suite_metrics: list[str] = Field(default_factory=list)
+    worst_moment: MomentPart | None = None
+    machine: dict[str, str]
+    live: LivePart | None = None
+
+    @property
+    def knows_truth(self) -> bool:
+        """True if the planner was told what no sensor can tell."""
+        return self.privileged or self.planner.label.endswith("+privileged")
+
+    @property
+    def trusted(self) -> bool:
+        """True if planner and plugins all come from installed distributions."""
+        return self.pinned and all(plugin.pinned for plugin in self.plugins)
+
+    @property
+    def compared(self) -> dict[str, str]:
+        """What must be equal in runs that are compared, by name."""
+        metrics = {n: json.dumps(m.document(), sort_keys=True) for n, m in self.metrics.items()}
+        return {
+            **self.conditions,
+            **{f"metrics.{name}": text for name, text in metrics.items()},
+            **{f"versions.{name}": version for name, version in self.versions.items()},
+            "processor": self.machine.get("processor", ""),
         }
-    return {"robots": found}
+
+    def __getitem__(self, key: str) -> Any:
+        """A value by its key in ``run.json``; deprecated."""
+        warnings.warn(
+            f"record[{key!r}] is deprecated: use record.{key}, or record.document()",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        return self.document()[key]
 
 
-def ending(outcome: Outcome) -> dict[str, Any]:
-    """How a run ended, and what it took; ``toppled_time`` only of a robot that toppled."""
-    fallen = {} if outcome.toppled_time is None else {"toppled_time": outcome.toppled_time}
-    return {
-        "status": outcome.status,
-        "reason": outcome.reason,
-        "goal_time": outcome.goal_time,
-        **fallen,
-        "sim_time": outcome.sim_time,
-        "wall_time": round(outcome.wall_time, 3),
-        "cpu_time": round(outcome.cpu_time, 3),
-        "real_time_factor": round(outcome.real_time_factor, 2),
-        "planner_step_time": outcome.planner_step_time,
-        "clamped_commands": outcome.clamped,
-    }
+class ReferenceIdentity(Part):
+    """Everything that a calibration run depends on."""
+
+    reference: Identity[str]
+    spec: Identity[Hash]
+    versions: Identity[dict[str, str]]
+    plugins: Identity[list[PluginPart]] = Field(default_factory=list)
+    planner: Identity[dict[str, Any]] = Field(default_factory=dict)
+    seed: Identity[Count] = 0
+    step_budget: Identity[int | float | None] = None
+    planner_memory: Identity[int | None] = None
+    realisation: Identity[str] = ""
+    duration: Identity[int | float] = 0.0
 
 
-def write_scenario(folder: Path, scenario: Scenario, registry: Registry) -> None:
-    """Write the scenario with every default."""
-    text = dump_scenario_yaml(scenario, registry.spec_versions(scenario))
-    (folder / files.SCENARIO).write_text(text, encoding="utf-8")
+class ReferenceRecord(_Record, ReferenceIdentity):
+    """The record of a calibration run."""
 
 
-def _conditions(scenario: Scenario, runs: Mapping[str, Trajectories]) -> dict[str, str]:
-    """What of a scenario must be equal in runs that are compared, whatever their axes are."""
-    found = {f"rates.{name}": f"{rate:g} Hz" for name, rate in scenario.rates}
-    radii = [run.robot.radius for run in runs.values() if run.robot is not None]
-    if scenario.crowd is not None and radii:
-        response = scenario.crowd.robot_response
-        perceived = dict.fromkeys(f"{radius + response.margin:.10g} m" for radius in radii)
-        found["perceived_radius"] = ", ".join(perceived)
-        share = f" {response.ignoring:g}" if response.ignoring_fraction is not None else ""
-        words = _own_words(response), f"{response.reaction}{share}", f"velocity {response.velocity}"
-        found["people_and_robot"] = ", ".join(words)
-    return found
+def record_problems(document: Mapping[str, Any]) -> list[str]:
+    """Everything in a record that has the wrong type or is missing: where, and what is wanted."""
+    return _problems(RunRecord, document)
 
 
-def _own_words(response: RobotResponse) -> str:
-    """The kind of a response, and what of it is not as usual."""
-    told = {"kind", "reaction", "ignoring_fraction", "velocity", "margin"}  # elsewhere
-    fields = {n: f for n, f in type(response).model_fields.items() if n not in told}
-    given = {n: getattr(response, n) for n, f in fields.items()}
-    changed = [f"{n} {value:g}" for n, value in given.items() if value != fields[n].default]
-    return ", ".join([response.kind, *changed])
+def _problems(model: type[Part], document: Mapping[str, Any]) -> list[str]:
+    try:
+        model.model_validate(dict(document))
+    except ValidationError as error:
+        return [_problem(e["loc"], e["msg"]) for e in error.errors(include_url=False)]
+    except RecursionError:
+        return ["it is nested too deep"]
+    return []
 
 
-def _worst(runs: Iterable[Trajectories]) -> dict[str, Any] | None:
-    """When the run is worst, to the millisecond and millimetre."""
-    moments = [found for found in map(worst_moment, runs) if found is not None]
-    if not moments:
-        return None
-    found = min(moments, key=lambda m: math.inf if m.clearance is None else m.clearance)
-    clearance = None if found.clearance is None else round(found.clearance, 3)
-    return {"t": round(found.t, 3), "what": found.what, "clearance": clearance}
-
-
-def _named(patterns: Sequence[str] | None, scores: Scores) -> list[str]:
-    """Metrics that the suite names, in its order; none where it leaves that open."""
-    known = dict.fromkeys(s.metric for s in scores)
-    chosen = [m for p in patterns or () if p != "*" for m in known if fnmatchcase(m, p)]
-    return list(dict.fromkeys(chosen))
-
-
-def _metrics(registry: Registry, scores: Scores) -> dict[str, Any]:
-    """Metric -> version of its words, and the parameters it was computed with."""
-    known = registry.components("metric")
-    return {
-        s.metric: {"spec_version": known[s.metric].spec_version, **s.parameters} for s in scores
-    }
+def _problem(place: tuple[int | str, ...], message: str) -> str:
+    where = ".".join(str(part)[:60] for part in place)
+    return f"'{where}': {message[:1].lower()}{message[1:]}"

@@ -10,9 +10,10 @@ from pathlib import Path
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, Reference
+from crowdbot.core.runs.make_record import ending, write_scenario
 from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
 from crowdbot.core.runs.run import Request
-from crowdbot.core.runs.run_record import ending, write_scenario
+from crowdbot.core.runs.run_record import ReferenceRecord
 from crowdbot.core.sim.built_run import build_runs
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.run_setup import RunSetup, record_crowd
@@ -40,16 +41,19 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
     with gc_frozen(), partial(reference.directory) as folder:
         setup = setup_of(request, reference, folder)
         if reference.name == CROWD_ALONE:
-            outcome = record_crowd(setup, reference.key["duration"])
+            outcome = record_crowd(setup, reference.identity.duration)
         else:
             outcome = _record_alone(setup)
         check_interrupted(outcome, folder)
         if outcome.status == PLANNER_FAILED:
             _LOG.warning("%s: the planner failed: %s", reference.name, outcome.reason)
         write_scenario(folder, reference.trial.scenario, request.registry)
-        names = {"run_id": reference.run_id, "reference": reference.name}
-        record = {**names, **reference.key, **ending(outcome), "files": files.sizes(folder)}
-        files.write_json(folder / files.RECORD, record)
+        ReferenceRecord(
+            run_id=reference.run_id,
+            **{n: getattr(reference.identity, n) for n in reference.identity.model_fields_set},
+            **ending(outcome),
+            files=files.sizes(folder),
+        ).write(folder)
         files.publish(folder, reference.directory)
     return outcome
 
@@ -77,7 +81,7 @@ def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
         stop=request.stop,
         on_hang=request.on_hang,
         step_budget=request.step_budget,
-        hashes=provenance.recording_hashes(reference.run_id, reference.key),
+        hashes=provenance.recording_hashes(reference.identity),
     )
 
 

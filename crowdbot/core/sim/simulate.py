@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
 from crowdbot.core.crowd.compile_ahead import crowd_compiled_ahead
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
@@ -27,11 +27,11 @@ from crowdbot.core.runs.identity import (
     reusable_record,
     run_identity,
 )
+from crowdbot.core.runs.make_record import make_record, write_scenario
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.read_and_score import (
     SeenRun,
     read_robots,
-    reference_hashes,
     references_by_robot,
     score_robots,
 )
@@ -41,7 +41,7 @@ from crowdbot.core.runs.run import (
     Request,
     Run,
 )
-from crowdbot.core.runs.run_record import run_record, write_scenario
+from crowdbot.core.runs.run_record import RunIdentity, RunRecord
 from crowdbot.core.scoring.evaluate import Scores, metric_specs
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.sim.built_run import BuiltRun
@@ -189,8 +189,7 @@ def make_run(
     identity = run_identity(request, prepared.run)
     references = references_of(request, prepared)
     if not request.force:
-        run_id = provenance.digest(identity)
-        record = reusable_record(request, run_id, compared=bool(references))
+        record = reusable_record(request, identity.id(), compared=bool(references))
         if record is not None:
             return Run(request.directory, record, reused=True, _keep=keep)
     replaced = recorded_otherwise(request, identity)
@@ -205,9 +204,9 @@ def _record_run(
     request: Request,
     prepared: Prepared,
     builts: Mapping[str, BuiltRun],
-    identity: Mapping[str, Any],
+    identity: RunIdentity,
     references: Mapping[str, Path],
-) -> dict[str, Any]:
+) -> RunRecord:
     final = request.directory
     parts = next(iter(builts.values())).parts
     with partial(final) as folder:
@@ -222,9 +221,10 @@ def _record_run(
             references_by_robot(references, tuple(builts)),
             metrics="*" if request.metrics is None else request.metrics,
         )
-        record = run_record(request, identity, references, outcome, runs, scores, parts=parts)
-        record["agents"] = prepared.run.people.source
-        record["reference_hashes"] = reference_hashes(references)
+        people = prepared.run.people
+        record = make_record(
+            request, identity, people, references, outcome, runs, scores, parts=parts
+        )
         shown = [] if images is None else images.images()
         record = _write_files(request, builts, folder, seen, shown, scores, record)
         files.publish(folder, final)
@@ -247,17 +247,17 @@ def _write_files(
     seen: Mapping[str, SeenRun],
     images: Sequence[ReplayImages],
     scores: Scores,
-    record: Mapping[str, Any],
-) -> dict[str, Any]:
+    record: RunRecord,
+) -> RunRecord:
     """Write everything, the record last; it says how large the other files are."""
     scenario = request.scenario
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.replay:
         _write_replay(request, builts, folder, seen, images, scores, record)
-    files.attach_files(folder, record)
-    whole = {**record, "files": files.sizes(folder)}
-    files.write_json(folder / files.RECORD, whole)
+    files.attach_files(folder, record.document())
+    whole = record.model_copy(update={"files": files.sizes(folder)})
+    whole.write(folder)
     return whole
 
 
@@ -268,7 +268,7 @@ def _write_replay(
     seen: Mapping[str, SeenRun],
     images: Sequence[ReplayImages],
     scores: Scores,
-    record: Mapping[str, Any],
+    record: RunRecord,
 ) -> None:
     shown = shown_run(
         request.scenario,
@@ -282,9 +282,7 @@ def _write_replay(
     write_replay(folder / files.REPLAY, shown)
 
 
-def _setup(
-    request: Request, prepared: Prepared, folder: Path, identity: Mapping[str, Any]
-) -> RunSetup:
+def _setup(request: Request, prepared: Prepared, folder: Path, identity: RunIdentity) -> RunSetup:
     return RunSetup(
         scenario=request.scenario,
         agents=prepared.run.people.agents,
@@ -298,6 +296,6 @@ def _setup(
         stop=request.stop,
         on_hang=request.on_hang,
         step_budget=request.step_budget,
-        hashes=provenance.recording_hashes(provenance.digest(identity), identity),
+        hashes=provenance.recording_hashes(identity),
         watchers=request.watchers,
     )

@@ -140,7 +140,7 @@ def audit(results: Results, seeing: Collection[str] = ()) -> Audit:
         pairs=tuple(pairs),
         seeds=sorted({r.seed for r in runs}),
         scenarios={r.scenario: r.spec_hash for r in runs},
-        versions={str(k): str(v) for k, v in (runs[0].record.get("versions") or {}).items()},
+        versions=dict(runs[0].record.versions),
     )
 
 

@@ -10,8 +10,9 @@ from fnmatch import fnmatchcase
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import FailureRow, RunRow
+from crowdbot.core.results.rows import RunRow
 from crowdbot.core.results.tables import axes_of
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.estimate import Counts, Estimate
@@ -73,7 +74,7 @@ def by_group(
     failed = Counter(
         tuple(_label(one, axis) for axis in by)
         for one in _tried(table, results)
-        if isinstance(one, FailureRow) or has_failed(one.status)
+        if isinstance(one, Failure) or has_failed(one.status)
     )
     return [
         _summary(table, name, dict(zip(by, group, strict=True)), rows, failed[group])
@@ -101,11 +102,11 @@ def _groups(table: Table, results: Results, by: Sequence[str]) -> Mapping[_Group
     return found
 
 
-def _key(one: RunRow | FailureRow) -> Key:
+def _key(one: RunRow | Failure) -> Key:
     return one.suite, one.scenario, one.seed
 
 
-def _tried(table: Table, results: Results) -> list[RunRow | FailureRow]:
+def _tried(table: Table, results: Results) -> list[RunRow | Failure]:
     """The runs, and the attempts that left none and that no run has made good."""
     lost = [f for f in results.failures if (f.planner, _key(f)) in table.failures]
     return [*results.runs, *lost]
@@ -136,8 +137,8 @@ def _gathered(table: Table, name: Name, rows: _Rows) -> tuple[Floats, Floats, ND
     return np.concatenate(low), np.concatenate(high), np.concatenate(outcome)
 
 
-def _label(run: RunRow | FailureRow, name: str) -> str:
-    if name == "status" and isinstance(run, FailureRow):
+def _label(run: RunRow | Failure, name: str) -> str:
+    if name == "status" and isinstance(run, Failure):
         return "failed"
     return run.axes[name] if name in run.axes else str(getattr(run, name, ""))
 

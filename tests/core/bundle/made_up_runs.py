@@ -18,11 +18,13 @@ from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scenarios.library import open_suite
 from crowdbot.core.scenarios.lock import make_lock, write_lock
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.core.scoring.scores_csv import write_scores_csv
+from crowdbot.core.support.json_digest import digest
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.identity.canonical import dump_scenario_yaml
 from crowdbot.dsl.identity.crowd_likeness import fingerprint
@@ -93,7 +95,7 @@ def make_runs(
                 "versions": provenance.versions(), "plugins": [],
             }  # fmt: skip
             record = {
-                "run_id": provenance.digest(identity), **identity,
+                "run_id": digest(identity), **identity,
                 "hashes": {**identity["hashes"], "trajectory": f"cb1-sha256:{number}{seed}"},
                 "pinned": choice.pinned, "privileged": choice.privileged, "status": "arrived",
                 "goal_time": 0.5, "reason": "", "sim_time": 1.0, "wall_time": 0.1,
@@ -129,7 +131,7 @@ def record_runs(root: Path) -> None:
     """Give every run a recording, and its record the hash of that."""
     for number, file in enumerate(sorted(root.rglob("run.json"))):
         record = json.loads(file.read_text())
-        hashes = provenance.recording_hashes(record["run_id"], record)
+        hashes = provenance.recording_hashes(RunRecord.parse(record, file))
         recording = file.with_name("run.mcap")
         record["hashes"]["trajectory"] = write_recording(
             recording, record["scenario"], hashes, 0.1 * number

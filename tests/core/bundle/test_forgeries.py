@@ -17,7 +17,7 @@ from crowdbot.core.bundle.check import problems_of
 from crowdbot.core.bundle.entries import load_entries
 from crowdbot.core.bundle.manifest import MANIFEST
 from crowdbot.core.recording.container.attachments import attach
-from crowdbot.core.runs.record_model import record_problems
+from crowdbot.core.runs.run_record import record_problems
 from crowdbot.core.scenarios.library import open_suite
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError

@@ -21,6 +21,7 @@ from crowdbot.core.bundle.verification import content_hash, record_path, save_ve
 from crowdbot.core.statistics.audit import Audit, audit, write_audit
 from crowdbot.errors import InputError
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite
+from tests.core.results.made_up_record import changed
 from tests.core.statistics.test_floors import results
 
 
@@ -120,7 +121,7 @@ def test_classes_stand_apart_and_noise_is_not_ranked(folder: Path) -> None:
 def audited(suite: str, blind: float) -> Audit:
     """An audit of some suite whose floor and baseline have these values."""
     found = results({"known": [1.0] * 8, "blind": [blind] * 8})
-    return audit(replace(found, runs=tuple(replace(r, suite=suite) for r in found.runs)))
+    return audit(replace(found, runs=tuple(changed(r, suite=suite) for r in found.runs)))
 
 
 def test_nobody_has_audited_it(folder: Path, tmp_path: Path) -> None:
@@ -133,7 +134,7 @@ def test_a_suite_that_cannot_tell_is_labelled(folder: Path, tmp_path: Path) -> N
     entries, _ = load_entries(folder, registry())
     scenarios = {run.entry.scenario: "" for e in entries for run in e.runs}
     for run in (run for e in entries for run in e.runs):
-        scenarios[run.entry.scenario] = str(run.record["hashes"]["spec"])
+        scenarios[run.entry.scenario] = run.record.hashes.spec
     for blind, labelled in ((1.0, True), (0.0, False)):
         found = audited("tiny", blind).model_copy(update={"scenarios": scenarios})
         write_audit(tmp_path / "audit.json", found)

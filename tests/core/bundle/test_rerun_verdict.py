@@ -12,7 +12,9 @@ from crowdbot.core.bundle.check import ClaimedRun
 from crowdbot.core.bundle.manifest import BundledRun
 from crowdbot.core.bundle.rerun_verdict import Rerun, verdict_of
 from crowdbot.core.bundle.tolerances import SPREADS
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.types.score import Score
+from tests.core.results.made_up_record import made_up_record
 
 HERE = {"processor": "znver3", "rounding": "aa"}
 VERSIONS = {"crowdbot": "0.1.0"}
@@ -25,9 +27,9 @@ def scored(metric: str = "risk", value: float | None = 1.0, **more: Any) -> Scor
     return Score(metric=metric, value=value, **values)
 
 
-def record(trajectory: str = "t", **more: Any) -> dict[str, Any]:
-    return {"hashes": {"trajectory": trajectory}, "machine": HERE, "versions": VERSIONS,
-            "metrics": {"risk": {"spec_version": 1}}, **more}  # fmt: skip
+def record(trajectory: str = "t", **more: Any) -> RunRecord:
+    values = {"machine": HERE, "versions": VERSIONS, "metrics": {"risk": {"spec_version": 1}}}
+    return made_up_record(**{"trajectory_hash": trajectory, **values, **more})
 
 
 def claimed(*scores: Score, number: int = 0, **more: Any) -> ClaimedRun:
@@ -119,7 +121,7 @@ def test_another_trajectory_on_the_same_platform_is_suspicious() -> None:
     {"machine": {"processor": "skylake", "rounding": "aa"}},
     {"machine": {"processor": "znver3", "rounding": "bb"}},
     {"machine": {"processor": "znver3"}},
-    {"machine": None},
+    {"machine": {}},
     {"versions": {"crowdbot": "0.2.0"}},
 ])  # fmt: skip
 def test_another_trajectory_on_another_platform_is_not(there: dict[str, Any]) -> None:
@@ -178,7 +180,11 @@ def test_one_impossible_score_is_noticed() -> None:
 
 
 def test_a_metric_that_does_not_exist_here_is_never_verified() -> None:
-    run = claimed(scored(), scored("glory"), metrics={"risk": {"spec_version": 1}, "glory": {}})
+    run = claimed(
+        scored(),
+        scored("glory"),
+        metrics={"risk": {"spec_version": 1}, "glory": {"spec_version": 1}},
+    )
     found = verdict_of([rerun(run)])
     assert (found.outcome, found.not_comparable) == ("not comparable", ("glory",))
     assert "here there is no such metric" in found.findings[0]

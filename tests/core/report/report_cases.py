@@ -16,10 +16,12 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.report import Contents, Heading, gather
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.rows import RunRow, ScoreRow
 from crowdbot.core.scoring.score_factory import ScoreFactory
 from crowdbot.plugin import MetricComponent
+from tests.core.results.made_up_record import made_up_record
 from tests.once import once
 
 AXES = {
@@ -51,7 +53,7 @@ def campaign(
     scored = _metrics(metrics)
     runs: list[RunRow] = []
     scores: list[ScoreRow] = []
-    failed: list[FailureRow] = []
+    failed: list[Failure] = []
     cells = list(product(product(*axes.values()), planners, range(seeds)))
     last = [c for c in cells if c[1] == list(planners)[-1]]
     doomed = last[len(last) - failures :]
@@ -66,8 +68,8 @@ def campaign(
     return Results(runs=tuple(runs), scores=tuple(scores), failures=tuple(failed))
 
 
-def _failure(suite: str, named: dict[str, str], planner: str, seed: int) -> FailureRow:
-    return FailureRow(
+def _failure(suite: str, named: dict[str, str], planner: str, seed: int) -> Failure:
+    return Failure(
         suite=suite,
         scenario="-".join(named.values()),
         planner=planner,
@@ -134,28 +136,29 @@ def _run(suite: str, named: dict[str, str], planner: str, seed: int, skill: floa
         "toppled": "toppled",
         "planner_failed": "step: ZeroDivisionError: float division by zero",
     }
-    return RunRow(
-        run_id=f"cb1-sha256:{zlib.crc32(f'{scenario}/{planner}/{seed}'.encode()):064x}",
-        suite=suite,
-        scenario=scenario,
-        planner=planner,
-        seed=seed,
-        axes=named,
-        status=status,
-        reason=reasons[status],
-        goal_time=goal_time,
-        sim_time=sim_time,
-        wall_time=float(rng.uniform(4, 12)),
-        privileged=planner.endswith("+privileged"),
-        pinned=True,
-        spec_hash=f"cb1-sha256:{zlib.crc32(scenario.encode()):064x}",
-        realisation_hash=f"cb1-sha256:{zlib.crc32(drawn.encode()):064x}",
-        trajectory_hash=f"cb1-sha256:{zlib.crc32(f'{scenario}{planner}{seed}t'.encode()):064x}",
-        density=_PEOPLE.get(named.get("density", ""), 0.2) * float(rng.normal(1.0, 0.02)),
-        directory=f"{suite}/{scenario}/{planner}/seed-{seed}",
-        conditions=conditions(),
-        record={**record(planner), "axis_words": words(named), "worst_moment": moment(rng)},
-    )
+    values: dict[str, Any] = {
+        **record(planner),
+        "run_id": f"cb1-sha256:{zlib.crc32(f'{scenario}/{planner}/{seed}'.encode()):064x}",
+        "suite": suite,
+        "scenario": scenario,
+        "seed": seed,
+        "axes": named,
+        "status": status,
+        "reason": reasons[status],
+        "goal_time": goal_time,
+        "sim_time": sim_time,
+        "wall_time": float(rng.uniform(4, 12)),
+        "privileged": planner.endswith("+privileged"),
+        "spec_hash": f"cb1-sha256:{zlib.crc32(scenario.encode()):064x}",
+        "realisation_hash": f"cb1-sha256:{zlib.crc32(drawn.encode()):064x}",
+        "trajectory_hash": f"cb1-sha256:{zlib.crc32(f'{scenario}{planner}{seed}t'.encode()):064x}",
+        "density": _PEOPLE.get(named.get("density", ""), 0.2) * float(rng.normal(1.0, 0.02)),
+        "conditions": conditions(),
+        "axis_words": words(named),
+        "worst_moment": moment(rng),
+    }
+    directory = f"{suite}/{scenario}/{planner}/seed-{seed}"
+    return RunRow(record=made_up_record(**values), directory=directory)
 
 
 def words(named: Mapping[str, str]) -> dict[str, list[str]]:
@@ -173,7 +176,7 @@ def moment(rng: np.random.Generator) -> dict[str, Any]:
 
 def conditions(**changed: str) -> dict[str, str]:
     """What all runs have in common."""
-    return {"rates.log": "16 Hz", "versions.crowdbot": "0.1.0", **changed}
+    return {"rates.log": "16 Hz", **changed}
 
 
 def record(planner: str) -> dict[str, Any]:

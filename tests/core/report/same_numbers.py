@@ -48,7 +48,7 @@ def random_results(seed: int, planners: int, scenarios: int, draws: int, missing
             one = run(
                 f"planner{p}", f"s{s}", f"d{s % draws}", status=str(status), axes=axes,
                 sim_time=float(rng.uniform(1.0, 90.0)),
-                record={"hashes": {}, "status": str(status), "role": "candidate"},
+                role="candidate",
             )  # fmt: skip
             runs.append(one)
             scores += [_row(one, score) for score in _scores(rng, missing)]
@@ -120,11 +120,6 @@ def _listed(row: RunRow) -> BundledRun:
 
 
 def _claimed(row: RunRow, entry: BundledRun, scores: Sequence[ScoreRow]) -> ClaimedRun:
-    record = {
-        **row.record, "suite": row.suite, "axes": dict(row.axes), "density": row.density,
-        "status": row.status, "sim_time": row.sim_time,
-        "hashes": {"spec": row.spec_hash, "realisation": row.realisation_hash},
-    }  # fmt: skip
     mine = [s for s in scores if s.run_id == row.run_id]
     kept: list[Any] = [Score(**{name: getattr(s, name) for name in _FIELDS}) for s in mine]
-    return ClaimedRun(entry=entry, record=record, scores=tuple(kept))
+    return ClaimedRun(entry=entry, record=row.record, scores=tuple(kept))

@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from crowdbot.core.report import Contents, write_report
+from crowdbot.core.results.rows import RunRow
+from crowdbot.core.runs.record_parts import MomentPart
 from crowdbot.core.statistics import Estimate
 from crowdbot.core.statistics.estimate_text import estimate_text
 from tests.browser import PROGRAM, Visit, axe_findings, needs_axe, needs_browser
@@ -38,6 +40,11 @@ def browser() -> Iterator[Browser]:
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("report")
     return write_report(folder / "report.html", full())["html"]
+
+
+def _moment(run: RunRow) -> MomentPart:
+    assert run.record.worst_moment is not None
+    return run.record.worst_moment
 
 
 def values(report: Contents, metric: str, variant: str, planner: str, **axes: str) -> NDArray[Any]:
@@ -213,7 +220,7 @@ def test_failures_are_found_with_their_replays(browser: Browser, path: Path) -> 
         assert run.scenario in worst.inner_text()
         link = worst.query_selector("a")
         assert link is not None
-        moment = run.record["worst_moment"]["t"]
+        moment = _moment(run).t
         up = "../" * (1 + len(Path(run.directory).parts))
         assert link.get_attribute("href") == (
             f"runs/{run.directory}/replay.html#t={round(moment, 2):g}&report={up}{path.name}"
@@ -384,11 +391,11 @@ def test_a_dot_says_which_run_it_is_and_opens_it_at_its_worst_moment(
         )
         assert found is not None
         run = runs[found[1]]
-        assert float(found[2]) == pytest.approx(run.record["worst_moment"]["t"], abs=0.006)
+        assert float(found[2]) == pytest.approx(_moment(run).t, abs=0.006)
         page.hover("#distribution a >> nth=0 >> circle", force=True)
         tip = page.inner_text("#tip")
         assert run.scenario in tip
-        assert run.record["worst_moment"]["what"] in tip
+        assert _moment(run).what in tip
 
 
 def test_pictures_are_saved_as_svg_png_and_csv(browser: Browser, path: Path) -> None:

@@ -13,6 +13,7 @@ from crowdbot.core.statistics.audit import Audit, audit
 from crowdbot.core.statistics.crowds import CrowdOrder, CrowdRanks
 from tests.core.report.report_cases import AXES, DRAWN, campaign, contents
 from tests.core.report.test_page import EVIL, METRICS, Page
+from tests.core.results.made_up_record import changed
 
 CROWDS = {name: AXES[name] for name in DRAWN}
 
@@ -21,7 +22,7 @@ def with_floor(skill: float, name: str = "straight_on") -> Results:
     """dwa, and a floor of some skill, in 18 scenarios with a crowd each."""
     found = campaign({"dwa": 0.0, name: skill}, axes=CROWDS, metrics=METRICS, failures=0)
     roles = {"dwa": "baseline", name: "floor"}
-    return replace(found, runs=tuple(replace(r, role=roles[r.planner]) for r in found.runs))
+    return replace(found, runs=tuple(changed(r, role=roles[r.planner]) for r in found.runs))
 
 
 def position(text: str, *parts: str) -> list[int]:
@@ -90,8 +91,8 @@ def test_one_that_can_is_not() -> None:
 
 def test_another_version_of_the_suite_has_to_be_audited_again(useless: Audit) -> None:
     results = with_floor(-5.0)
-    changed = tuple(replace(r, spec_hash=f"new-{r.spec_hash}") for r in results.runs)
-    report = contents(replace(results, runs=changed), audit=useless)
+    others = tuple(changed(r, spec_hash=f"new-{r.spec_hash}") for r in results.runs)
+    report = contents(replace(results, runs=others), audit=useless)
     assert "audit it again" in report.suspicion
 
 

@@ -22,11 +22,12 @@ from crowdbot.core.report.cards import card, reference
 from crowdbot.core.report.markdown import markdown
 from crowdbot.core.report.page import render
 from crowdbot.core.report.tables import csv_rows
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import FailureRow
 from crowdbot.core.statistics.estimate_text import joined_text
 from crowdbot.errors import InputError
 from tests.core.report.report_cases import campaign, contents, full
+from tests.core.results.made_up_record import changed
 
 EVIL = "</script><script>alert(1)</script><!-- \"'& \u2028 |`[x](y)"
 SMALL_AXES = {"density": ("d0125", "d0500"), "flow": ("in", "counter"), "range": ("r02", "r05")}
@@ -114,7 +115,7 @@ def test_every_score_is_in_the_page_to_five_digits() -> None:
 def test_failures_of_the_campaign_are_attempts_like_others() -> None:
     results = small(failures=3)
     made_good = results.runs[0]
-    late = FailureRow(
+    late = Failure(
         suite=made_good.suite, scenario=made_good.scenario, planner=made_good.planner,
         seed=made_good.seed, error="killed", traceback="",
     )  # fmt: skip
@@ -169,13 +170,12 @@ def hostile() -> Results:
     found = small(planners={EVIL: 0.0, "good": -0.5})
     record = {
         "versions": {EVIL: EVIL},
-        "planner": {EVIL: {EVIL: EVIL}},
         "plugins": [{"name": EVIL}],
     }
     runs = tuple(
-        replace(
-            r, scenario=EVIL + r.scenario, reason=EVIL, axes={EVIL: EVIL, **r.axes}, record=record,
-            conditions={EVIL: EVIL},
+        changed(
+            r, scenario=EVIL + r.scenario, reason=EVIL, axes={EVIL: EVIL, **r.axes},
+            planner={EVIL: {EVIL: EVIL}, "label": r.planner}, conditions={EVIL: EVIL}, **record,
         )
         for r in found.runs
     )  # fmt: skip

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -129,18 +128,12 @@ def test_unknown_names_are_refused() -> None:
         confounds(Results(), accept=["rate"])
 
 
-def test_old_records_without_conditions_compare() -> None:
-    bare = [replace(r, record={}, conditions={}) for r in (row("a"), row("b"))]
-    assert found(*bare) == {}
-    assert found(bare[0], row("b")).keys() >= {"versions"}
-
-
-def test_conditions_as_the_store_gives_them() -> None:
-    """Flat names; nothing is told twice."""
-    flat = CONDITIONS | {"metrics.risk": '{"risk_horizon": 5}', "versions.numpy": "2.4.6",
-                         "processor": "znver3"}  # fmt: skip
-    other = flat | {"metrics.risk": '{"risk_horizon": 3}', "processor": "generic"}
-    results = Results(runs=(row("a", conditions=flat), row("b", conditions=other)))
+def test_each_condition_is_told_once() -> None:
+    other = RECORD | {
+        "metrics": {"risk": {"spec_version": 1, "risk_horizon": 3.0}},
+        "machine": {"processor": "generic"},
+    }
+    results = Results(runs=(row("a"), row("b", record=other)))
     assert [(f.kind, f.subject) for f in confounds(results)] == [
         ("metrics", "metrics.risk"), ("processor", "processor"),
     ]  # fmt: skip

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import multiprocessing as mp
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.run_record import ReferenceRecord, RunRecord
 from crowdbot.errors import InputError
 
 
@@ -29,9 +31,8 @@ def test_published_under_the_final_name_only(tmp_path: Path) -> None:
         files.publish(folder, final)
     assert sorted(p.name for p in final.iterdir()) == ["run.json", "run.mcap"]
     assert [p.name for p in final.parent.iterdir()] == ["seed-0"]
-    assert (files.read_record(final) or {})["run_id"] == "data"
-    assert not files.is_complete(final, "data")  # it has no scenario and no scores
-    assert not files.is_complete(final, "other")
+    assert files.checked_record(final)["run_id"] == "data"
+    assert files.damage(final, {}) == "scenario.yaml is missing"
 
 
 def test_a_failure_keeps_the_partial(tmp_path: Path) -> None:
@@ -115,9 +116,10 @@ def _work(final: Path, text: str, rounds: int, failures: Any) -> None:
                 _fill(folder, text)
                 (folder / "scores.csv").write_text(text)
                 files.publish(folder, final)
-            record = files.read_record(final)
-            if record is not None and record["run_id"] not in ("a", "b", "c"):
-                failures.put(f"read {record}")
+            with suppress(InputError):  # replaced at this very moment
+                record = files.checked_record(final)
+                if record["run_id"] not in ("a", "b", "c"):
+                    failures.put(f"read {record}")
     except BaseException as error:
         failures.put(repr(error))
         raise
@@ -141,9 +143,7 @@ def test_many_processes_at_once(tmp_path: Path) -> None:
     names = sorted(p.name for p in final.iterdir() if p.name != ".lock")
     assert names == ["run.json", "run.mcap", "scores.csv"]
     texts = {(final / n).read_text() for n in ("run.mcap", "scores.csv")}
-    record = files.read_record(final)
-    assert record is not None
-    assert texts == {record["run_id"]}
+    assert texts == {files.checked_record(final)["run_id"]}
     assert [p.name for p in tmp_path.iterdir()] == ["seed-0"]
 
 
@@ -158,9 +158,11 @@ def test_unwritable_places(tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", ["", "{", "[1]", "null", '{"run_id": '])
 def test_a_damaged_record_is_no_record(text: str, tmp_path: Path) -> None:
     (tmp_path / files.RECORD).write_text(text)
-    assert files.read_record(tmp_path) is None
-    assert not files.is_complete(tmp_path, "x")
-    assert files.read_record(tmp_path / "nowhere") is None
+    for kind in (RunRecord, ReferenceRecord):
+        assert kind.find(tmp_path) is None
+        assert kind.find(tmp_path / "nowhere") is None
+    with pytest.raises(InputError, match=r"run\.json"):
+        files.checked_record(tmp_path)
 
 
 def test_a_record_is_written_in_one_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,7 +47,7 @@ def test_the_same_logic_gives_the_same_trajectory(tmp_path: Path) -> None:
             obs = session.step(planner.step(obs))
             steps += 1
     assert (session.status, session.t, steps) == ("timeout", 3.0, 48)
-    assert trajectory_hash(session.trajectories) == run.record["hashes"]["trajectory"]
+    assert trajectory_hash(session.trajectories) == run.record.hashes.trajectory
     assert sorted(p.name for p in tmp_path.iterdir()) == ["run.mcap", "runs"]
 
 

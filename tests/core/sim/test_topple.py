@@ -9,6 +9,7 @@ import pytest
 
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.robots.task import robot_task
+from crowdbot.core.runs.make_record import ending
 from crowdbot.core.runs.outcome import (
     ARRIVED,
     PLANNER_FAILED,
@@ -16,8 +17,8 @@ from crowdbot.core.runs.outcome import (
     TOPPLED,
     Outcome,
 )
-from crowdbot.core.runs.record_model import RecordModel, RobotPart
-from crowdbot.core.runs.run_record import ending
+from crowdbot.core.runs.record_parts import RobotPart
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.fleet.record import _status
 from crowdbot.core.sim.metric_logger import LEANS
@@ -106,5 +107,5 @@ def test_the_record_of_what_stood_does_not_mention_it() -> None:
         status=TIMEOUT, reason="", goal_time=None, sim_time=1.0, wall_time=1.0, cpu_time=1.0
     )
     assert "toppled_time" not in ending(stood)
-    assert RecordModel.model_fields["toppled_time"].default is None
+    assert RunRecord.model_fields["toppled_time"].default is None
     assert RobotPart.model_fields["toppled_time"].default is None

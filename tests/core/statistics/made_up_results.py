@@ -10,6 +10,7 @@ import numpy as np
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow, ScoreRow
+from tests.core.results.made_up_record import made_up_record
 
 AXES = {
     "flow": ("in", "counter"),
@@ -24,14 +25,13 @@ SHARED = ("coeff", "range")
 
 def run(planner: str = "a", scenario: str = "s0", draw: str = "d0", seed: int = 0,
         **more: Any) -> RunRow:  # fmt: skip
+    directory, given = more.pop("directory", ""), more.pop("record", {})
     values: dict[str, Any] = {
-        "run_id": f"{planner}/{scenario}/{seed}", "suite": "suite", "scenario": scenario,
-        "planner": planner, "seed": seed, "axes": {}, "status": "arrived", "reason": "",
-        "goal_time": 1.0, "sim_time": 1.0, "wall_time": 1.0, "privileged": False, "pinned": True,
-        "spec_hash": f"spec-{scenario}", "realisation_hash": draw, "trajectory_hash": "t",
-        "density": 0.1, "directory": "", "conditions": {}, **more,
+        "run_id": f"{planner}/{scenario}/{seed}", "scenario": scenario, "seed": seed,
+        "spec_hash": f"spec-{scenario}", "realisation_hash": draw, **given,
+        "planner": {**given.get("planner", {}), "label": planner}, **more,
     }  # fmt: skip
-    return RunRow(**values)
+    return RunRow(record=made_up_record(**values), directory=directory)
 
 
 def score(of: RunRow, value: float | None = None, **more: Any) -> ScoreRow:

@@ -13,6 +13,7 @@ from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.statistics import atlas
 from crowdbot.core.statistics.atlas import rank_correlation
 from crowdbot.errors import UnknownNameError
+from tests.core.results.made_up_record import changed
 from tests.core.statistics.made_up_results import run, score
 
 LABELS = ("sparse", "dense")
@@ -64,7 +65,7 @@ def test_floors_are_named_or_known() -> None:
     assert atlas(results, ["goal_seek"]) == atlas(results)
     assert atlas(results, ["clever"]) != atlas(results)
     named_like_a_floor = replace(
-        results, runs=tuple(replace(r, role="candidate") for r in results.runs)
+        results, runs=tuple(changed(r, role="candidate") for r in results.runs)
     )
     assert all(entry.separation is None for entry in atlas(named_like_a_floor))
     with pytest.raises(UnknownNameError, match="goal_sek"):

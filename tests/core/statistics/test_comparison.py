@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import FailureRow, RunRow, ScoreRow
+from crowdbot.core.results.rows import RunRow, ScoreRow
 from crowdbot.core.statistics import Comparison, summarise
+from tests.core.results.made_up_record import changed
 from tests.core.statistics.made_up_results import cells, censored, challenge, pairs, run, score
 
 RNG = np.random.default_rng(11)
@@ -127,7 +129,7 @@ def test_everything_undefined() -> None:
 
 def test_failed_runs_lose() -> None:
     results = pairs(HIGH, LOW)
-    runs = [replace(r, status="planner_failed") if r.planner == "a" else r for r in results.runs]
+    runs = [changed(r, status="planner_failed") if r.planner == "a" else r for r in results.runs]
     found = only(replace(results, runs=tuple(runs)))
     assert (found.verdict, found.losses) == ("worse", 20)  # though its values are the better ones
     assert (found.counts_a.ok, found.counts_a.failed) == (20, 0)
@@ -140,7 +142,7 @@ def test_nobody_gains_by_failing() -> None:
     assert only(results).verdict == "worse"
     for failing in (20, 10):
         runs = [
-            replace(r, status="planner_failed")
+            changed(r, status="planner_failed")
             if r.planner == "a" and int(r.scenario[1:]) < failing
             else r
             for r in results.runs
@@ -161,9 +163,7 @@ def _failed(run: RunRow) -> bool:
 
 def test_what_left_no_run_is_no_success() -> None:
     results = pairs([1.0] * 20, [1.0] * 20, metric="success", unit="1")
-    failure = FailureRow(
-        suite="suite", scenario="s0", planner="a", seed=0, error="boom", traceback=""
-    )
+    failure = Failure(suite="suite", scenario="s0", planner="a", seed=0, error="boom", traceback="")
     kept = tuple(r for r in results.runs if r.run_id != "a/s0/0")
     found = only(replace(results, runs=kept, failures=(failure,)))
     assert (found.counts_a.ok, found.losses) == (20, 1)
@@ -174,7 +174,7 @@ def test_runs_that_could_not_be_made_lose_and_both_failing_is_a_tie() -> None:
     results = pairs(HIGH, LOW)
     kept = tuple(r for r in results.runs if r.run_id not in ("a/s0/0", "b/s1/0", "a/s1/0"))
     failures = tuple(
-        FailureRow(suite="suite", scenario=s, planner=p, seed=0, error="boom", traceback="")
+        Failure(suite="suite", scenario=s, planner=p, seed=0, error="boom", traceback="")
         for p, s in (("a", "s0"), ("a", "s1"), ("b", "s1"))
     )
     found = only(replace(results, runs=kept, failures=failures))
@@ -183,7 +183,7 @@ def test_runs_that_could_not_be_made_lose_and_both_failing_is_a_tie() -> None:
 
 
 def test_a_failure_that_was_repaired_is_none() -> None:
-    failure = FailureRow(suite="suite", scenario="s0", planner="a", seed=0, error="", traceback="")
+    failure = Failure(suite="suite", scenario="s0", planner="a", seed=0, error="", traceback="")
     assert only(replace(pairs(HIGH, LOW), failures=(failure,))).wins == 20
 
 
@@ -208,7 +208,7 @@ def test_runs_of_one_planner_alone_are_missing_not_lost() -> None:
 
 def test_planners_that_share_nothing() -> None:
     results = pairs(HIGH, LOW)
-    runs = [replace(r, seed=1) if r.planner == "a" else r for r in results.runs]
+    runs = [changed(r, seed=1) if r.planner == "a" else r for r in results.runs]
     found = only(replace(results, runs=tuple(runs)))
     assert (found.pairs, found.reason) == (0, "no scenario and seed was run with both")
 
@@ -246,7 +246,7 @@ def test_detectable_difference_is_found_four_times_in_five() -> None:
 
 def test_people_that_nobody_meets_are_draws_of_their_own() -> None:
     results = pairs(HIGH, LOW, draws=["nobody"] * 20)
-    runs = tuple(replace(r, density=None) for r in results.runs)
+    runs = tuple(changed(r, density=None) for r in results.runs)
     assert only(replace(results, runs=runs)).draws == 20
 
 

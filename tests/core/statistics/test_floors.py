@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.rows import FailureRow
 from crowdbot.core.statistics import check_floors, summarise
 from crowdbot.core.statistics.floors import FloorCheck
 from tests.core.statistics.made_up_results import run, score
@@ -113,7 +113,7 @@ def test_who_leaves_out_bad_runs_gains_nothing() -> None:
 def test_runs_that_could_not_be_made_are_not_arrivals() -> None:
     made = results({"mine": [1.0] * 4, "blind": [0.0] * 4 + [1.0] * 8})
     lost = tuple(
-        FailureRow(suite="suite", scenario=f"s{i}", planner="mine", seed=0, error="", traceback="")
+        Failure(suite="suite", scenario=f"s{i}", planner="mine", seed=0, error="", traceback="")
         for i in range(4, 12)
     )
     found = check("mine", Results(runs=made.runs, scores=made.scores, failures=lost))

@@ -52,8 +52,8 @@ def drive(planner: str, in_process: bool | None, folder: Path) -> str:
         world, REGISTRY, planner=planner, place=PlannerPlace(in_process=in_process),
         out=folder, references=False, metrics=(), replay=False, force=True,
     )  # fmt: skip
-    assert run.status == "timeout", run.record["reason"]
-    return str(run.record["hashes"]["trajectory"])
+    assert run.status == "timeout", run.record.reason
+    return run.record.hashes.trajectory
 
 
 @pytest.fixture(scope="module")

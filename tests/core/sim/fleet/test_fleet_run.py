@@ -50,11 +50,11 @@ def test_a_run_says_of_each_robot_and_of_the_fleet(tmp_path: Path) -> None:
     one = run(made, REGISTRY, tmp_path / "one", planner="a=goal_seek,b=stand_still")
     again = run(made, REGISTRY, tmp_path / "again", planner="a=goal_seek,b=stand_still")
     record = one.record
-    assert record["status"] == "timeout"
-    assert record["robots"]["a"]["status"] == "arrived"
-    assert record["robots"]["b"]["status"] == "timeout"
-    assert record["robots"]["b"]["planner"]["name"] == "stand_still"
-    assert record["hashes"] == again.record["hashes"]
+    assert record.status == "timeout"
+    assert record.robots["a"].status == "arrived"
+    assert record.robots["b"].status == "timeout"
+    assert record.robots["b"].planner.name == "stand_still"
+    assert record.hashes == again.record.hashes
     assert one.robots["a"].t[-1] < one.robots["b"].t[-1] == 2.5
     rows = {(r.score.metric, r.score.variant): r.score for r in read_scores_csv(
         one.directory / "scores.csv")}  # fmt: skip
@@ -119,7 +119,7 @@ def test_a_robot_that_has_ended_stays_or_leaves(tmp_path: Path, when_ended: str)
     }
     made = scenario(tmp_path, REGISTRY, two)
     done = run(made, REGISTRY, tmp_path / "out", planner="a=goal_seek,b=stand_still")
-    assert done.record["robots"]["b"]["sim_time"] == 0.5
+    assert done.record.robots["b"].sim_time == 0.5
     touched = len(done.robots["a"].contacts.t0) > 0
     assert touched == (when_ended == "stay")
     there = done.robots["a"].robot.x[-1]

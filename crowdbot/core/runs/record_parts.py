@@ -1,0 +1,144 @@
+"""Parts of the records of runs and calibration runs: types, ranges, and the mark of identity."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, TypeVar
+
+from annotated_types import Ge, Le
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from crowdbot.core.support.json_digest import digest
+from crowdbot.core.types.ending import COMPLETE, Ending
+
+T = TypeVar("T")
+_IDENTITY = "identity"
+#: A field that decides what happens in a run: its id is the hash of all of these.
+Identity = Annotated[T, _IDENTITY]
+
+Hash = Annotated[str, Field(min_length=1, max_length=200)]
+Count = Annotated[int, Ge(0), Le(2**63 - 1)]
+Seconds = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+
+
+def _complete(ending: Ending) -> Ending:
+    if not ending.complete:
+        raise ValueError(f"a complete run ends as {', '.join(COMPLETE)}")
+    return ending
+
+
+Status = Annotated[Ending, Field(strict=False), AfterValidator(_complete)]
+
+
+class Part(BaseModel):
+    """A part of a record; keys that it does not know are kept."""
+
+    model_config = ConfigDict(extra="allow", strict=True, frozen=True)
+
+    def document(self) -> dict[str, Any]:
+        """The part as JSON has it: what was given, defaults left out."""
+        return self.model_dump(mode="json", exclude_unset=True)
+
+    def identity(self) -> dict[str, Any]:
+        """The fields that are marked as identity, as JSON has them; a part without marks, whole."""
+        marked = [n for n, field in type(self).model_fields.items() if _IDENTITY in field.metadata]
+        if not marked:
+            return self.document()
+        found = {n: getattr(self, n) for n in marked if n in self.model_fields_set}
+        return {n: _identity_of(value) for n, value in found.items()}
+
+    def id(self) -> str:
+        """The hash of the identity."""
+        return digest(self.identity())
+
+
+class PlannerPart(Part):
+    """The planner; its parameters stand beside these.
+
+    Attributes:
+        sha256: of the file of a planner that comes from no plugin.
+    """
+
+    kind: str
+    name: str
+    label: str
+    sha256: str = ""
+
+
+class IdentityHashes(Part):
+    """Hashes of the scenario and of its people, as they are known before the run."""
+
+    spec: Identity[Hash]
+    realisation: Identity[Hash]
+
+
+class HashesPart(IdentityHashes):
+    """The same, and the hash of what happened."""
+
+    trajectory: Hash
+
+
+class PluginPart(Part):
+    """One plugin that was loaded; ``sha256`` of its files where it is not pinned."""
+
+    name: str
+    distribution: str
+    pinned: bool
+    sha256: str = ""
+
+
+class MetricPart(Part):
+    """Version of a metric; its parameters stand beside it."""
+
+    spec_version: Annotated[int, Ge(0)]
+
+
+class EndedPart(Part):
+    """How a run, or one of its robots, ended."""
+
+    status: Status
+    reason: str
+    goal_time: Seconds | None
+    toppled_time: Seconds | None = None
+    sim_time: Seconds
+    planner_step_time: dict[str, float] = Field(default_factory=dict)
+    clamped_commands: Count = 0
+
+
+class CostPart(EndedPart):
+    """The same of a whole run, with what it took."""
+
+    wall_time: Seconds
+    cpu_time: Seconds = 0.0
+    real_time_factor: float = 0.0
+
+
+class RobotPart(EndedPart):
+    """One of several robots."""
+
+    planner: PlannerPart
+    trajectory: Hash
+
+
+class MomentPart(Part):
+    """The moment at which a run is worst."""
+
+    t: Seconds
+    what: Annotated[str, Field(max_length=100)]
+    clearance: Annotated[float, Field(allow_inf_nan=False)] | None = None
+
+
+class LivePart(Part):
+    """What only a run by ``crowdbot serve`` has; ``largest_lag`` in s."""
+
+    steps: Count
+    missed_steps: Count
+    refused_commands: Count
+    largest_lag: float | None = None
+
+
+def _identity_of(value: Any) -> Any:
+    if isinstance(value, Part):
+        return value.identity()
+    if isinstance(value, list):
+        return [_identity_of(one) for one in value]
+    return value

@@ -1,0 +1,14 @@
+"""Hash of a JSON document, however its keys are ordered."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+
+def digest(document: Mapping[str, Any]) -> str:
+    """``cb1-sha256:`` hash of a JSON document."""
+    text = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+    return f"cb1-sha256:{hashlib.sha256(text.encode()).hexdigest()}"
