@@ -284,7 +284,7 @@ class CrowdEngine:
             wanted = desired_acceleration(group.policy, view)
             if self._steering:
                 relaxation = relaxation_time_of(group.policy)
-                wanted = steer(self._steering, view, relaxation, wanted)
+                wanted = steer(self._steering, view, relaxation, wanted, self.world.steering.key)
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
         if self._router is not None:
             squeeze(people, self.agents.max_acceleration)

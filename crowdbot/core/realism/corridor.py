@@ -103,14 +103,10 @@ def _engine(
         routes=[[(x + _FAR * g, y)] for (x, y), g in zip(at, way, strict=True)],
     )  # fmt: skip
     half = 0.5 * width
-    wander = model.steering.wander
-    steering = model.steering
-    if wander is not None:
-        steering = replace(steering, wander=replace(wander, key=corridor.seed))
     world = CrowdWorld(
         walls=np.array([[-6.0, -half, length + 6.0, -half], [-6.0, half, length + 6.0, half]]),
         periodic_boundary=(0.0, length, -np.inf, np.inf),
-        steering=steering,
+        steering=replace(model.steering, key=corridor.seed),
         decision_rate=model.decision_rate,
     )
     return CrowdEngine(agents, world, model.policy)

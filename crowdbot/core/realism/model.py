@@ -11,11 +11,11 @@ from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.build import build_cost, build_policy
 from crowdbot.core.crowd.engine import PolicyFactory
 from crowdbot.core.crowd.policy import CrowdPolicy, CrowdView
-from crowdbot.core.crowd.steering.from_spec import steering_of
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.steering import SteeringSpec
 
 #: Preferred speeds where a crowd names none, m/s: those of the recorded people.
 SPEED, SPEED_DEVIATION = 1.5, 0.2
@@ -66,7 +66,7 @@ def model_of(
     avoided = body.avoided_radius if body.avoided_radius is not None else radius
     return CrowdModel(
         policy=lambda agents: build_policy(registry, crowd.policy, costs, agents),
-        steering=steering_of(crowd.steering),
+        steering=Steering(crowd.steering or SteeringSpec()),
         speed=speed,
         speed_deviation=deviation,
         radius=radius,

@@ -15,13 +15,14 @@ from crowdbot.core.crowd.engine import PolicyFactory
 from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.response.from_spec import response_of
 from crowdbot.core.crowd.routing.from_spec import routing_of
-from crowdbot.core.crowd.steering.from_spec import steering_of
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.looks import Looks
 from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
 from crowdbot.dsl.scenario.seeds import stream_seed
+from crowdbot.dsl.scenario.steering import SteeringSpec
 
 #: Names of the portals of a stream, from and to.
 Flow = tuple[str, str]
@@ -154,8 +155,9 @@ def _world(
         goal_point=crowd.goal_point,
         response=response_of(response),
         cohesion=None if crowd.groups is None else Cohesion(**crowd.groups.model_dump()),
-        steering=steering_of(
-            crowd.steering, stream_seed(crowd.seed.root, crowd.seed.key, "crowd.wander")
+        steering=Steering(
+            crowd.steering or SteeringSpec(),
+            key=stream_seed(crowd.seed.root, crowd.seed.key, "crowd.wander"),
         ),
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,

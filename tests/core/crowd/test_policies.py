@@ -12,8 +12,9 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdPolicy, CrowdView, Cro
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.desired_acceleration import candidates_of, relaxation_time_of
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS
-from crowdbot.core.crowd.steering.parameters import Steering, Wander
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.types.candidates import VelocityCandidates
+from crowdbot.dsl.scenario.steering import SteeringSpec, WanderSpec
 from crowdbot.errors import PluginError
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, Straight, ToGoal, rows
@@ -168,7 +169,9 @@ class Takes(ToGoal):
 )
 def test_a_relaxation_time_that_fails_names_the_policy(time: object, message: str) -> None:
     """Steering parts ask for it, inside the boundary."""
-    engine = CrowdEngine(SOME, CrowdWorld(steering=Steering(wander=Wander())), Takes(time))
+    engine = CrowdEngine(
+        SOME, CrowdWorld(steering=Steering(SteeringSpec(wander=WanderSpec()))), Takes(time)
+    )
     with pytest.raises(PluginError, match=message):
         engine.run(1.0)
 

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.realism.corridor import Corridor, simulate
 from crowdbot.core.realism.measure import DIAGRAM, LANES, Realism, measure_tracks
 from crowdbot.core.realism.model import CrowdModel, ghosts, model_of
@@ -47,14 +48,13 @@ def changed(other: CrowdModel) -> Realism:
 
 def test_people_who_are_a_fifth_too_fast() -> None:
     own = usual()[1].parts
-    steering = model().steering
-    assert steering.time_gap is not None
+    parts = model().steering.spec
+    assert parts.time_gap is not None
+    shorter = parts.time_gap.model_copy(update={"time": parts.time_gap.time / 1.2})
     hurried = replace(
         model(),
         speed=1.2 * model().speed,
-        steering=replace(
-            steering, time_gap=replace(steering.time_gap, time=steering.time_gap.time / 1.2)
-        ),
+        steering=Steering(parts.model_copy(update={"time_gap": shorter})),
     )
     found = changed(hurried).parts
     assert found["speed"] < own["speed"] - 0.05

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.crowd.steering.from_spec import steering_of
-from crowdbot.core.crowd.steering.parameters import Steering, TimeGap, Wander
+from crowdbot.core.crowd.steering.parameters import Steering
+from crowdbot.core.crowd.steering.parts import PARTS, parts_of
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.scenario.steering import SteeringSpec, TimeGapSpec, WanderSpec
 from crowdbot.errors import SpecError
 
 REGISTRY = discover(allow=())
@@ -53,12 +54,14 @@ def test_wrong_words_and_numbers_are_refused() -> None:
         scenario("crowd.steering.personal_space.behind=1.5")
 
 
-def test_what_the_engine_takes() -> None:
+def test_every_part_has_a_function_and_parts_that_are_not_named_are_off() -> None:
+    assert list(SteeringSpec.model_fields) == list(PARTS)
     crowd = scenario(
         "crowd.steering.time_gap.time=0.8 s", "crowd.steering.wander.deviation=0.1 m/s^2"
     ).crowd
     assert crowd is not None
-    assert steering_of(crowd.steering, 5) == Steering(
-        time_gap=TimeGap(time=0.8), wander=Wander(deviation=0.1, key=5)
+    assert crowd.steering == SteeringSpec(
+        time_gap=TimeGapSpec(time=0.8), wander=WanderSpec(deviation=0.1)
     )
-    assert steering_of(None) == Steering()
+    assert len(parts_of(Steering(crowd.steering))) == 2
+    assert parts_of(Steering()) == []

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.parameters import LaneKeeping
-from crowdbot.core.crowd.steering.sorted_discs import REACH, SortedDiscs, first_within
+from crowdbot.core.crowd.steering.moment import Moment
+from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
+from crowdbot.dsl.scenario.steering import LanesSpec
 
 #: A person slower than this along one's heading, or against it, stands, m/s.
 _STANDS = 0.2
 
 
-def keep_lane(part: LaneKeeping, near: SortedDiscs, wanted: Array) -> None:
+def keep_lane(part: LanesSpec, now: Moment, wanted: Array) -> None:
     """Add the steps aside of all to accelerations (N, 2), m/s^2, in place."""
-    _keep_all(*near, part.strength, part.reach, part.half_width, part.follow, wanted)
+    _keep_all(*now.near, part.strength, part.reach, part.half_width, part.follow, wanted)
 
 
 @kernel

@@ -2,53 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.steering.lanes import keep_lane
+from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.crowd.steering.personal_space import push_away
-from crowdbot.core.crowd.steering.sorted_discs import SortedDiscs, sorted_discs
+from crowdbot.core.crowd.steering.sorted_discs import sorted_discs
 from crowdbot.core.crowd.steering.time_gap import limit_speed
 from crowdbot.core.crowd.steering.wall_push import push_off_walls
 from crowdbot.core.crowd.steering.wander import wander
 from crowdbot.core.types.arrays import Array
 
-#: Changes accelerations in place: view, neighbours, the policy's relaxation time (s), (N, 2).
-Part = Callable[[CrowdView, SortedDiscs, float, Array], None]
+#: Field of `SteeringSpec` -> what changes accelerations (N, 2) in place, given the field's spec.
+#: They do so in this order: first limits, then pushes.
+PARTS: Mapping[str, Callable[[Any, Moment, Array], None]] = {
+    "time_gap": limit_speed,
+    "personal_space": push_away,
+    "lanes": keep_lane,
+    "wall_push": push_off_walls,
+    "wander": wander,
+}
+
+#: A part with its spec.
+Part = Callable[[Moment, Array], None]
 
 
 def parts_of(steering: Steering) -> list[Part]:
-    """The parts that change accelerations, one after the other: first limits, then pushes."""
-    found: list[Part] = []
-    gap, space = steering.time_gap, steering.personal_space
-    lanes, walls, drift = steering.lanes, steering.wall_push, steering.wander
-    if gap is not None:
-        found.append(lambda view, near, time, out: limit_speed(gap, view, near, time, out))
-    if space is not None:
-        found.append(lambda _view, near, _time, out: push_away(space, near, out))
-    if lanes is not None:
-        found.append(lambda _view, near, _time, out: keep_lane(lanes, near, out))
-    if walls is not None:
-        found.append(lambda view, near, _time, out: push_off_walls(walls, view, near, out))
-    if drift is not None:
-        found.append(lambda view, near, _time, out: wander(drift, view, near, out))
-    return found
+    """Return what is done to accelerations, one after the other."""
+    specs = {name: getattr(steering.spec, name) for name in PARTS}
+    return [partial(PARTS[n], spec) for n, spec in specs.items() if spec is not None]
 
 
-def steer(parts: list[Part], view: CrowdView, relaxation: float, wanted: Array) -> Array:
-    """Accelerations (N, 2) after all parts, within each agent's limit, m/s^2.
+def steer(
+    parts: list[Part], view: CrowdView, relaxation: float, wanted: Array, key: int = 0
+) -> Array:
+    """Return accelerations (N, 2) after all parts, within each agent's limit, m/s^2.
 
     Args:
         relaxation: time in which the policy reaches the velocity that it has chosen, s; 0 is the
             time between decisions.
         wanted: (N, 2) what the policy wants, m/s^2; left as it is.
+        key: as of `Steering`.
     """
-    near, changed = sorted_discs(view), np.array(wanted)
+    now, changed = Moment(view, sorted_discs(view), max(relaxation, view.dt), key), np.array(wanted)
     for part in parts:
-        part(view, near, max(relaxation, view.dt), changed)
+        part(now, changed)
     size = np.hypot(changed[:, 0], changed[:, 1])
     limit = view.agents.max_acceleration
     changed *= np.minimum(1.0, limit / np.maximum(size, limit))[:, np.newaxis]

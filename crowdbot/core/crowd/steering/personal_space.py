@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.parameters import PersonalSpace
-from crowdbot.core.crowd.steering.sorted_discs import REACH, SortedDiscs, first_within
+from crowdbot.core.crowd.steering.moment import Moment
+from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
+from crowdbot.dsl.scenario.steering import PersonalSpaceSpec
 
 #: Largest push by one other, m/s^2.
 HARDEST = 8.0
@@ -17,9 +18,9 @@ HARDEST = 8.0
 _THROUGH = 0.05
 
 
-def push_away(part: PersonalSpace, near: SortedDiscs, wanted: Array) -> None:
+def push_away(part: PersonalSpaceSpec, now: Moment, wanted: Array) -> None:
     """Add the pushes of all others to accelerations (N, 2), m/s^2, in place."""
-    _push_all(*near, part.strength, part.reach, part.anticipation, part.behind, wanted)
+    _push_all(*now.near, part.strength, part.reach, part.anticipation, part.behind, wanted)
 
 
 @kernel

@@ -8,30 +8,27 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.steering.parameters import TimeGap
-from crowdbot.core.crowd.steering.sorted_discs import REACH, SortedDiscs, first_within
+from crowdbot.core.crowd.steering.moment import Moment
+from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
+from crowdbot.dsl.scenario.steering import TimeGapSpec
 
 #: A person faster than this against one's heading is oncoming, m/s.
 _ONCOMING = 0.2
 
 
-def limit_speed(
-    part: TimeGap, view: CrowdView, near: SortedDiscs, relaxation: float, wanted: Array
-) -> None:
-    """Shorten, in place, the velocities that accelerations lead to within ``relaxation``.
+def limit_speed(part: TimeGapSpec, now: Moment, wanted: Array) -> None:
+    """Shorten, in place, the velocities that accelerations lead to within the relaxation time.
 
     Args:
-        relaxation: time in which the policy reaches the velocity that it has chosen, s.
         wanted: (N, 2) accelerations, m/s^2.
     """
     _limit(
-        *near, view.velocity, part.time, part.oncoming_time, part.room, part.half_width,
-        relaxation, wanted,
+        *now.near, now.view.velocity, part.time, part.oncoming_time, part.room, part.half_width,
+        now.relaxation, wanted,
     )  # fmt: skip
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
-from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.steering.parameters import WallPush
-from crowdbot.core.crowd.steering.sorted_discs import SortedDiscs
+from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.dsl.scenario.steering import WallPushSpec
 
 #: Largest push by one wall, m/s^2.
 HARDEST = 8.0
@@ -17,10 +16,11 @@ HARDEST = 8.0
 _LEAST = 4.6  # e-folds: 1 %
 
 
-def push_off_walls(part: WallPush, view: CrowdView, near: SortedDiscs, wanted: Array) -> None:
+def push_off_walls(part: WallPushSpec, now: Moment, wanted: Array) -> None:
     """Add the pushes of all walls to accelerations (N, 2), m/s^2, in place."""
+    view = now.view
     _push_all(
-        near.decides, view.position, view.agents.avoided_radius, view.walls,
+        now.near.decides, view.position, view.agents.avoided_radius, view.walls,
         part.strength, part.reach, wanted,
     )  # fmt: skip
 

@@ -11,21 +11,20 @@ import math
 
 import numpy as np
 
-from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.steering.parameters import Wander
-from crowdbot.core.crowd.steering.sorted_discs import SortedDiscs
+from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.velocity_search.counter_rng import WANDER, uniform
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
+from crowdbot.dsl.scenario.steering import WanderSpec
 
 #: Lag at which the correlation is 1/e, in knots: of (1 - l/2) cos(pi l/2) + sin(pi l/2)/pi.
 E_FOLD = 0.93929
 
 
-def wander(part: Wander, view: CrowdView, near: SortedDiscs, wanted: Array) -> None:
-    """Add the random acceleration of each to accelerations (N, 2), m/s^2, in place."""
-    knots = view.t * E_FOLD / part.time
-    _wander(near.decides, view.agents.id, knots, part.deviation, np.uint64(part.key), wanted)
+def wander(part: WanderSpec, now: Moment, wanted: Array) -> None:
+    """Add the random acceleration of each person to accelerations (N, 2), m/s^2, in place."""
+    knots, ids = now.view.t * E_FOLD / part.time, now.view.agents.id
+    _wander(now.near.decides, ids, knots, part.deviation, np.uint64(now.key), wanted)
 
 
 @kernel

@@ -12,25 +12,28 @@ from hypothesis import strategies as st
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.steering.parameters import (
-    LaneKeeping,
-    PersonalSpace,
-    Steering,
-    TimeGap,
-    WallPush,
-    Wander,
-)
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.crowd.steering.parts import parts_of, steer
 from crowdbot.core.crowd.steering.wander import E_FOLD, wandering
 from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.scenario.steering import (
+    LanesSpec,
+    PersonalSpaceSpec,
+    SteeringSpec,
+    TimeGapSpec,
+    WallPushSpec,
+    WanderSpec,
+)
 from tests.examples import costly
 
 FULL = Steering(
-    time_gap=TimeGap(),
-    personal_space=PersonalSpace(),
-    lanes=LaneKeeping(),
-    wall_push=WallPush(),
-    wander=Wander(),
+    SteeringSpec(
+        time_gap=TimeGapSpec(),
+        personal_space=PersonalSpaceSpec(),
+        lanes=LanesSpec(),
+        wall_push=WallPushSpec(),
+        wander=WanderSpec(),
+    )
 )
 
 
@@ -78,13 +81,13 @@ def seen(
 
 def steered(steering: Steering, view: CrowdView, wanted: Array | None = None) -> Array:
     given_ = np.zeros_like(view.position) if wanted is None else wanted
-    return steer(parts_of(steering), view, 0.5, given_)
+    return steer(parts_of(steering), view, 0.5, given_, steering.key)
 
 
 @pytest.mark.parametrize(("ahead", "allowed"), [(0.9, 0.63), (1.27, 1.0), (0.27, 0.0), (0.1, 0.0)])
 def test_time_gap_is_distance_ahead_less_room_over_time(ahead: float, allowed: float) -> None:
     view = seen([(0.0, 0.0), (ahead, 0.0)], [(1.4, 0.0), (1.4, 0.0)])
-    found = steered(Steering(time_gap=TimeGap()), view)
+    found = steered(Steering(SteeringSpec(time_gap=TimeGapSpec())), view)
     assert found[0, 0] == pytest.approx(max((allowed - 1.4) / 0.5, -5.0))
     assert found[1].tolist() == [0.0, 0.0]  # nobody is ahead of the second
 
@@ -92,28 +95,28 @@ def test_time_gap_is_distance_ahead_less_room_over_time(ahead: float, allowed: f
 @pytest.mark.parametrize("side", [0.281, -0.281])
 def test_time_gap_leaves_out_who_is_beside(side: float) -> None:
     view = seen([(0.0, 0.0), (0.6, side)], [(1.4, 0.0), (1.4, 0.0)])
-    assert steered(Steering(time_gap=TimeGap()), view)[0].tolist() == [0.0, 0.0]
+    assert steered(Steering(SteeringSpec(time_gap=TimeGapSpec())), view)[0].tolist() == [0.0, 0.0]
 
 
 def test_time_gap_is_nearly_off_towards_who_comes() -> None:
     view = seen([(0.0, 0.0), (0.6, 0.0)], [(1.4, 0.0), (-1.4, 0.0)])
-    assert steered(Steering(time_gap=TimeGap()), view)[0].tolist() == [0.0, 0.0]
-    both = Steering(time_gap=TimeGap(oncoming_time=1.0))
+    assert steered(Steering(SteeringSpec(time_gap=TimeGapSpec())), view)[0].tolist() == [0.0, 0.0]
+    both = Steering(SteeringSpec(time_gap=TimeGapSpec(oncoming_time=1.0)))
     assert steered(both, view)[0, 0] == pytest.approx((0.33 - 1.4) / 0.5)
 
 
 def test_time_gap_counts_pillars_and_leaves_who_steps_back() -> None:
     view = seen([(0.0, 0.0)], [(1.0, 0.0)], pillars=np.array([[0.77, 0.0, 0.1]]))
-    part = Steering(time_gap=TimeGap())
+    part = Steering(SteeringSpec(time_gap=TimeGapSpec()))
     assert steered(part, view)[0, 0] == pytest.approx((0.5 - 1.0) / 0.5)
     back = np.array([[-4.0, 0.0]])  # to -1 m/s
     assert steered(part, view, back).tolist() == back.tolist()
 
 
 def test_personal_space_by_hand() -> None:
-    part = PersonalSpace(strength=1.0, reach=0.4, anticipation=0.5, behind=0.5)
+    part = PersonalSpaceSpec(strength=1.0, reach=0.4, anticipation=0.5, behind=0.5)
     view = seen([(0.0, 0.0), (1.0, 0.0)], [(1.0, 0.0), (0.5, 0.0)])
-    found = steered(Steering(personal_space=part), view)
+    found = steered(Steering(SteeringSpec(personal_space=part)), view)
     # In half a second they are 0.75 m apart, discs 0.35 m; ahead of the first, behind the second.
     full = math.exp(-0.35 / 0.4)
     assert found[0] == pytest.approx([-full, 0.0])
@@ -121,7 +124,7 @@ def test_personal_space_by_hand() -> None:
 
 
 def test_personal_space_never_looks_through_somebody() -> None:
-    part = Steering(personal_space=PersonalSpace(strength=1.0))
+    part = Steering(SteeringSpec(personal_space=PersonalSpaceSpec(strength=1.0)))
     view = seen([(0.0, 0.0), (0.5, 0.0)], [(2.0, 0.0), (-2.0, 0.0)])
     found = steered(part, view)
     assert found[0, 0] < 0.0 < found[1, 0]
@@ -130,14 +133,14 @@ def test_personal_space_never_looks_through_somebody() -> None:
 COMES, GOES = (-1.0, 0.0), (1.0, 0.0)
 
 
-def aside(part: LaneKeeping, *others: tuple[tuple[float, float], tuple[float, float]]) -> float:
+def aside(part: LanesSpec, *others: tuple[tuple[float, float], tuple[float, float]]) -> float:
     """Acceleration to the left, m/s^2, of who walks along x from the origin."""
     at, v = zip(((0.0, 0.0), GOES), *others, strict=True)
-    return float(steered(Steering(lanes=part), seen(list(at), list(v)))[0, 1])
+    return float(steered(Steering(SteeringSpec(lanes=part)), seen(list(at), list(v)))[0, 1])
 
 
 def test_lanes_by_hand() -> None:
-    part = LaneKeeping(strength=1.0, reach=2.0, half_width=0.6, follow=0.5)
+    part = LanesSpec(strength=1.0, reach=2.0, half_width=0.6, follow=0.5)
     near, far = math.exp(-0.5), math.exp(-1.0)
     # Away from who comes, 0.15 m to the left.
     away = -0.75 * near
@@ -149,7 +152,7 @@ def test_lanes_by_hand() -> None:
 
 
 def test_lanes_need_people_who_come() -> None:
-    part = LaneKeeping(strength=1.0)
+    part = LanesSpec(strength=1.0)
     assert aside(part, ((1.0, 0.3), GOES), ((2.0, -0.1), (0.0, 0.0))) == 0.0
     assert aside(part, ((1.0, 0.61), COMES)) == 0.0  # beside
     assert aside(part, ((-1.0, 0.1), COMES)) == 0.0  # behind
@@ -157,7 +160,7 @@ def test_lanes_need_people_who_come() -> None:
 
 @given(st.floats(0.1, 2.9), st.floats(0.01, 0.59), st.floats(0.1, 2.0))
 def test_lanes_are_the_same_left_and_right(along: float, side: float, speed: float) -> None:
-    part = LaneKeeping()
+    part = LanesSpec()
     left = aside(part, ((along, side), (-speed, 0.0)), ((1.0, -side), GOES))
     right = aside(part, ((along, -side), (-speed, 0.0)), ((1.0, side), GOES))
     assert left == pytest.approx(-right, abs=1e-12)
@@ -166,7 +169,7 @@ def test_lanes_are_the_same_left_and_right(along: float, side: float, speed: flo
 
 def test_wall_push_falls_off_with_the_gap() -> None:
     walls = np.array([[-5.0, 0.0, 5.0, 0.0]])
-    part = Steering(wall_push=WallPush(strength=2.0, reach=0.1))
+    part = Steering(SteeringSpec(wall_push=WallPushSpec(strength=2.0, reach=0.1)))
     view = seen([(0.0, 0.3), (0.0, -0.3), (0.0, 2.0)], [(0.0, 0.0)] * 3, walls)
     found = steered(part, view)
     assert found[0] == pytest.approx([0.0, 2.0 * math.exp(-1.0)])
@@ -176,7 +179,7 @@ def test_wall_push_falls_off_with_the_gap() -> None:
 
 def test_avoided_radius_is_what_parts_keep_clear_of() -> None:
     walls = np.array([[-5.0, 0.0, 5.0, 0.0]])
-    part = Steering(wall_push=WallPush(strength=2.0, reach=0.1))
+    part = Steering(SteeringSpec(wall_push=WallPushSpec(strength=2.0, reach=0.1)))
     found = steered(part, seen([(0.0, 0.35)], [(0.0, 0.0)], walls, avoided=0.25))
     assert found[0, 1] == pytest.approx(2.0 * math.exp(-1.0))
 
@@ -192,12 +195,13 @@ def test_wander_has_its_deviation_and_its_time() -> None:
 
 
 def test_wander_is_of_person_and_key_only() -> None:
-    part = Steering(wander=Wander(key=3))
+    part = Steering(SteeringSpec(wander=WanderSpec()), key=3)
     one = steered(part, seen([(0.0, 0.0), (5.0, 0.0)], [(1.0, 0.0)] * 2, time=2.5))
     more = steered(part, seen([(3.0, 0.0), (9.0, 0.0), (1.0, 4.0)], [(1.0, 0.0)] * 3, time=2.5))
     assert one.tolist() == more[:2].tolist()
     other = steered(
-        Steering(wander=Wander(key=4)), seen([(0.0, 0.0), (5.0, 0.0)], [(1.0, 0.0)] * 2, time=2.5)
+        Steering(SteeringSpec(wander=WanderSpec()), key=4),
+        seen([(0.0, 0.0), (5.0, 0.0)], [(1.0, 0.0)] * 2, time=2.5),
     )
     assert not np.allclose(one, other)
     assert not np.allclose(one[0], one[1])
@@ -271,7 +275,9 @@ def test_who_has_a_time_gap_slows_down_in_a_crowd() -> None:
     def pace(flat: Array) -> float:
         return float(s.view(flat)[1][:, s.VX].mean())
 
-    assert pace(walk(Steering(time_gap=TimeGap()), Straight())) < pace(walk(Steering(), Straight()))
+    assert pace(walk(Steering(SteeringSpec(time_gap=TimeGapSpec())), Straight())) < pace(
+        walk(Steering(), Straight())
+    )
 
 
 def test_a_run_that_goes_on_from_a_state_is_the_same() -> None:
