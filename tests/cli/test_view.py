@@ -25,7 +25,7 @@ from crowdbot.core.view.build import build_map_content, field_of_view
 from crowdbot.core.view.map_content import MapContent, extent
 from crowdbot.core.view.png import to_png
 from crowdbot.core.view.render import render
-from crowdbot.core.view.shapes import DARK, LIGHT, LOOKS
+from crowdbot.core.view.shapes import DARK, LIGHT, STYLES
 from crowdbot.core.view.shapes import Path as Line
 from crowdbot.core.view.svg import to_svg
 from crowdbot.core.view.world import LEFT, Map, nice
@@ -88,8 +88,8 @@ def test_counterflow_walks_to_the_first_portal(svg: ET.Element) -> None:
 
 def test_the_picture_is_clean_text(svg: ET.Element) -> None:
     used = {e.get("class", "") for e in svg.iter()} - {"", "view"}
-    assert used <= set(LOOKS)
-    colours = {look.fill for look in LOOKS.values()} | {look.stroke for look in LOOKS.values()}
+    assert used <= set(STYLES)
+    colours = {look.fill for look in STYLES.values()} | {look.stroke for look in STYLES.values()}
     assert colours - {""} <= set(LIGHT)
     assert set(LIGHT) == set(DARK)
 

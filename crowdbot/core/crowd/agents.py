@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.looks import Looks
 
 #: What happens at the end of a route: through the flow's portals and on; standing still; out of
 #: the world for good; from the first point again; back to where one came in; on in the direction
@@ -70,7 +70,7 @@ class Agents:
     origin: Array = field(default_factory=lambda: np.zeros((0, 5)))
     group: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     heading: Array = field(default_factory=lambda: np.zeros(0))
-    looks: Looks | None = None
+    looks: Appearance | None = None
     avoided_radius: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
@@ -117,7 +117,7 @@ class Agents:
         origins: Sequence[Sequence[float]] | None = None,
         group: ArrayLike = -1,
         heading: ArrayLike = 0.0,
-        looks: Looks | None = None,
+        looks: Appearance | None = None,
         avoided_radius: ArrayLike | None = None,
     ) -> Agents:
         """Agents from rows or single numbers; with routes they stop at the end, else portals.

@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core.population.draws import RngOf, draw_normal, draw_one
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario.people_kinds import LOOKS, LengthChoice, MassChoice, PeopleKind
+from crowdbot.dsl.scenario.people_kinds import USUAL_BODIES, LengthChoice, MassChoice, PeopleKind
 
 #: From the floor to the hip, of the height; see `crowdbot.core.sensing.body_model`.
 HIP = 0.53
@@ -73,7 +73,7 @@ def draw_bodies(
     for i in range(count):
         place = rng("kind", i).random() * edges[-1]
         kind = chosen[int(np.searchsorted(edges, place, side="right"))]
-        look = LOOKS[kind.look]
+        look = USUAL_BODIES[kind.look]
         if not fixed[0]:
             radius[i] = _one(rng, "radius", i, kind.radius, look.radius or float(radius[i]))
         if not fixed[1]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, get_args
 
-from crowdbot.dsl.scenario.people_kinds import LookName
+from crowdbot.dsl.scenario.people_kinds import AppearanceName
 
 Numbers = tuple[float, ...]
 
@@ -60,7 +60,7 @@ def _sized(rows: tuple[Numbers, ...], count: int, name: str) -> tuple[Numbers, .
 
 
 def _read_look(text: str) -> str:
-    if text not in get_args(LookName):
+    if text not in get_args(AppearanceName):
         raise ValueError(f"unknown look '{text}'")
     return text
 

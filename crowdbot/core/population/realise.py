@@ -27,7 +27,7 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.spawns import SpawnSampler
 from crowdbot.core.population.stream_sampler import StreamSampler
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.scenario.people_kinds import LOOKS
+from crowdbot.dsl.scenario.people_kinds import USUAL_BODIES
 from crowdbot.dsl.scenario.scenario import Crowd, Flow, Scenario
 from crowdbot.dsl.scenario.spawning import Agent
 from crowdbot.dsl.spec.assets import Asset
@@ -176,7 +176,7 @@ def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
 def _look_of(agent: Agent) -> Row:
     """The usual body of an explicit agent's look, where it has no number of its own."""
     assert agent.look is not None
-    look = LOOKS[agent.look]
+    look = USUAL_BODIES[agent.look]
     usual = {"radius": look.radius, "mass": look.mass[0] if look.mass else None}
     own = {name: getattr(agent, name) for name in usual if getattr(agent, name) is not None}
     return usual | own | {"height": agent.height or look.height[0]}

@@ -8,16 +8,16 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.sensing.appearance_model import gaits, heights, place_looks, place_things, things
 from crowdbot.core.sensing.body_model import DISC_COLUMNS, PARTS, place_people
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
-from crowdbot.core.sensing.look_model import gaits, heights, place_looks, place_things, things
 from crowdbot.core.sensing.other_robots import OtherRobot, OtherRobots
 from crowdbot.core.sensing.raycast import cast_rays
 from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
 from crowdbot.core.sensing.raycast_tilted import cast_tilted_rays
 from crowdbot.core.support.immutable import immutable, immutable_fields
+from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.looks import Looks
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState
 
@@ -46,7 +46,7 @@ class Scene:
             other robots.
         looks: what people look like; None: all as usual.
         others: the other robots of a fleet.
-        things: (T, 6) what they have with them, see `crowdbot.core.sensing.look_model`.
+        things: (T, 6) what they have with them, see `crowdbot.core.sensing.appearance_model`.
         robot: the robot's state, None before the first update or in a scene without one.
         push: force of people on the robot x, y (N, world frame), and its torque about the robot's
             base (N m), in the last tick.
@@ -60,7 +60,7 @@ class Scene:
         people_height: ArrayLike,
         pillars: ArrayLike = (),
         pillar_heights: ArrayLike = (0.0, 2.5),
-        looks: Looks | None = None,
+        looks: Appearance | None = None,
         robots: Sequence[OtherRobot] = (),
     ) -> None:
         self._walls = _constant(np.reshape(walls, (-1, 4)), (np.size(walls) // 4, 4))

@@ -18,8 +18,8 @@ from crowdbot.core.crowd.routing.from_spec import routing_of
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.core.types.looks import Looks
 from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
 from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.dsl.scenario.steering import SteeringSpec
@@ -120,11 +120,11 @@ def _ahead(queue: NDArray[np.int64]) -> NDArray[np.int64]:
     return ahead
 
 
-def _looks(drawn: Realisation) -> Looks | None:
+def _looks(drawn: Realisation) -> Appearance | None:
     """What sensors see of each, if not all are alike."""
     if not (any(drawn.look) or np.any(drawn.height) or np.any(drawn.phase)):
         return None
-    return Looks(
+    return Appearance(
         height=drawn.height, leg_length=drawn.leg_length, phase=drawn.phase, look=drawn.look
     )
 

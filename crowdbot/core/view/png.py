@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon, Rectangle
 from matplotlib.text import Text as Label
 
-from crowdbot.core.view.shapes import LIGHT, LOOKS, Disc, Drawing, Look, Path, Text
+from crowdbot.core.view.shapes import LIGHT, STYLES, Disc, Drawing, Path, Style, Text
 
 #: DepthRenderer of the picture for each px of the drawing.
 SCALE = 2.0
@@ -44,7 +44,7 @@ def to_png(drawing: Drawing) -> bytes:
 
 
 def _artist(shape: Path | Disc | Text) -> Line2D | Polygon | Circle | Label:
-    look = LOOKS[shape.role]
+    look = STYLES[shape.role]
     if isinstance(shape, Text):
         return _label(shape, look)
     stroke = LIGHT[look.stroke] if look.stroke else "none"
@@ -71,7 +71,7 @@ def _artist(shape: Path | Disc | Text) -> Line2D | Polygon | Circle | Label:
     )  # fmt: skip
 
 
-def _label(shape: Text, look: Look) -> Label:
+def _label(shape: Text, look: Style) -> Label:
     sides: dict[str, Literal["left", "center", "right"]]
     sides = {"start": "left", "middle": "center", "end": "right"}
     return Label(

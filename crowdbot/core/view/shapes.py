@@ -64,7 +64,7 @@ class Drawing:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Look:
+class Style:
     """What a role looks like: names of `LIGHT` and `DARK`, widths in px."""
 
     fill: str = ""
@@ -93,47 +93,47 @@ SPEEDS = ("#345a84", "#4a7097", "#6186aa", "#7a9dbd", "#94b3ce", "#afc8dd", "#c9
 for _palette in (LIGHT, DARK):
     _palette.update({f"speed_{i}": colour for i, colour in enumerate(SPEEDS)})
 
-LOOKS = {
-    "page": Look(fill="page"),
-    "floor": Look(fill="floor"),
-    "grid": Look(stroke="grid"),
-    "grid-strong": Look(stroke="grid_strong"),
-    "frame": Look(stroke="grid_strong"),
-    "zone": Look(fill="zone", opacity=0.09, stroke="zone", width=1.0, dash=(2.0, 3.0)),
-    "portal": Look(fill="portal", opacity=0.16, stroke="portal", width=1.2),
-    "goal-area": Look(fill="route", opacity=0.12, stroke="route", width=1.2, dash=(4.0, 3.0)),
-    "spawn": Look(fill="arrow", opacity=0.07, stroke="arrow", width=1.0, dash=(1.0, 3.0)),
-    "goal": Look(fill="goal", opacity=0.14, stroke="goal", width=2.0, dash=(7.0, 4.0)),
-    "wall": Look(stroke="wall", width=4.0),
-    "wall-robot": Look(stroke="robot", width=2.5, dash=(9.0, 5.0)),
-    "wall-crowd": Look(stroke="arrow", width=2.5, dash=(3.0, 4.0)),
-    "torus": Look(stroke="portal", width=2.0, dash=(10.0, 4.0, 2.0, 4.0)),
-    "pillar": Look(fill="wall"),
-    "sensor": Look(fill="sensor", opacity=0.05, stroke="sensor", width=1.0, dash=(5.0, 4.0)),
-    "group": Look(stroke="arrow", width=5.0, opacity=0.35),
-    "route": Look(stroke="route", width=1.0, dash=(3.0, 3.0)),
-    "mesh": Look(stroke="zone", width=1.0, dash=(1.5, 2.5)),
-    "mesh-link": Look(stroke="zone", width=0.5, opacity=0.25),
-    "solid": Look(fill="wall"),
-    "solid-low": Look(fill="wall", opacity=0.35, stroke="wall", width=1.0),
-    "solid-raised": Look(fill="wall", opacity=0.1, stroke="wall", width=1.5, dash=(5.0, 3.0)),
-    "robot-goal": Look(fill="goal", stroke="floor", width=1.5),
-    "route-end": Look(fill="route", stroke="floor", width=1.0),
+STYLES = {
+    "page": Style(fill="page"),
+    "floor": Style(fill="floor"),
+    "grid": Style(stroke="grid"),
+    "grid-strong": Style(stroke="grid_strong"),
+    "frame": Style(stroke="grid_strong"),
+    "zone": Style(fill="zone", opacity=0.09, stroke="zone", width=1.0, dash=(2.0, 3.0)),
+    "portal": Style(fill="portal", opacity=0.16, stroke="portal", width=1.2),
+    "goal-area": Style(fill="route", opacity=0.12, stroke="route", width=1.2, dash=(4.0, 3.0)),
+    "spawn": Style(fill="arrow", opacity=0.07, stroke="arrow", width=1.0, dash=(1.0, 3.0)),
+    "goal": Style(fill="goal", opacity=0.14, stroke="goal", width=2.0, dash=(7.0, 4.0)),
+    "wall": Style(stroke="wall", width=4.0),
+    "wall-robot": Style(stroke="robot", width=2.5, dash=(9.0, 5.0)),
+    "wall-crowd": Style(stroke="arrow", width=2.5, dash=(3.0, 4.0)),
+    "torus": Style(stroke="portal", width=2.0, dash=(10.0, 4.0, 2.0, 4.0)),
+    "pillar": Style(fill="wall"),
+    "sensor": Style(fill="sensor", opacity=0.05, stroke="sensor", width=1.0, dash=(5.0, 4.0)),
+    "group": Style(stroke="arrow", width=5.0, opacity=0.35),
+    "route": Style(stroke="route", width=1.0, dash=(3.0, 3.0)),
+    "mesh": Style(stroke="zone", width=1.0, dash=(1.5, 2.5)),
+    "mesh-link": Style(stroke="zone", width=0.5, opacity=0.25),
+    "solid": Style(fill="wall"),
+    "solid-low": Style(fill="wall", opacity=0.35, stroke="wall", width=1.0),
+    "solid-raised": Style(fill="wall", opacity=0.1, stroke="wall", width=1.5, dash=(5.0, 3.0)),
+    "robot-goal": Style(fill="goal", stroke="floor", width=1.5),
+    "route-end": Style(fill="route", stroke="floor", width=1.0),
     **{
-        f"person-{i}": Look(fill=f"speed_{i}", stroke="person_edge", width=1.0)
+        f"person-{i}": Style(fill=f"speed_{i}", stroke="person_edge", width=1.0)
         for i in range(len(SPEEDS))
     },
-    **{f"ramp-{i}": Look(fill=f"speed_{i}") for i in range(len(SPEEDS))},
-    "arrow": Look(stroke="arrow", width=1.4),
-    "robot": Look(fill="robot", stroke="robot_edge", width=1.8),
-    "robot-nose": Look(stroke="robot_edge", width=2.2),
-    "scale": Look(stroke="ink", width=2.5),
-    "text": Look(fill="ink"),
-    "text-strong": Look(fill="ink", bold=True),
-    "text-muted": Look(fill="muted"),
-    "text-zone": Look(fill="zone", bold=True),
-    "text-portal": Look(fill="portal", bold=True),
-    "text-goal": Look(fill="goal", bold=True),
-    "text-route": Look(fill="route", bold=True),
-    "text-robot": Look(fill="robot", bold=True),
+    **{f"ramp-{i}": Style(fill=f"speed_{i}") for i in range(len(SPEEDS))},
+    "arrow": Style(stroke="arrow", width=1.4),
+    "robot": Style(fill="robot", stroke="robot_edge", width=1.8),
+    "robot-nose": Style(stroke="robot_edge", width=2.2),
+    "scale": Style(stroke="ink", width=2.5),
+    "text": Style(fill="ink"),
+    "text-strong": Style(fill="ink", bold=True),
+    "text-muted": Style(fill="muted"),
+    "text-zone": Style(fill="zone", bold=True),
+    "text-portal": Style(fill="portal", bold=True),
+    "text-goal": Style(fill="goal", bold=True),
+    "text-route": Style(fill="route", bold=True),
+    "text-robot": Style(fill="robot", bold=True),
 }

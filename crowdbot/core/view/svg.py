@@ -9,12 +9,12 @@ from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.shapes import (
     DARK,
     LIGHT,
-    LOOKS,
+    STYLES,
     Disc,
     Drawing,
-    Look,
     Path,
     Shape,
+    Style,
     Text,
 )
 
@@ -51,13 +51,13 @@ def stylesheet() -> str:
     rules = [
         f".view text {{ font-family: {FONT}; stroke: none; }}",
         ".view path { stroke-linejoin: round; stroke-linecap: round; }",
-        *(f".view .{role} {{ {_form(look)} }}" for role, look in LOOKS.items()),
+        *(f".view .{role} {{ {_form(look)} }}" for role, look in STYLES.items()),
     ]
     light, dark = _colours(LIGHT), _colours(DARK)
     return "\n".join([*rules, *light, "@media (prefers-color-scheme: dark) {", *dark, "}"])
 
 
-def _form(look: Look) -> str:
+def _form(look: Style) -> str:
     parts = []
     if look.opacity != 1.0:
         parts.append(f"{'fill' if look.fill else 'stroke'}-opacity: {look.opacity:g};")
@@ -75,7 +75,7 @@ def _colours(palette: Mapping[str, str]) -> list[str]:
     return [
         f".view .{role} {{ fill: {palette[look.fill] if look.fill else 'none'};"
         f"{f' stroke: {palette[look.stroke]};' if look.stroke else ''} }}"
-        for role, look in LOOKS.items()
+        for role, look in STYLES.items()
     ]
 
 

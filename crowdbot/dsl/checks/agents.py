@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from crowdbot.dsl.checks.crowd import missing_speed
 from crowdbot.dsl.checks.facts import Facts
-from crowdbot.dsl.scenario.people_kinds import LOOKS
+from crowdbot.dsl.scenario.people_kinds import USUAL_BODIES
 from crowdbot.dsl.scenario.spawning import Agent
 from crowdbot.dsl.text.diagnostics import Diagnostic
 
@@ -49,7 +49,7 @@ def _check_overlaps(facts: Facts) -> Iterator[Diagnostic]:
     waves: dict[float, list[int]] = {}
     for i, agent in enumerate(agents):
         waves.setdefault(agent.start_time, []).append(i)
-    looks = [LOOKS[a.look].radius if a.look else None for a in agents]
+    looks = [USUAL_BODIES[a.look].radius if a.look else None for a in agents]
     discs = [(a.x, a.y, a.radius or look or default) for a, look in zip(agents, looks, strict=True)]
     for wave in waves.values():
         for one, other in overlapping([discs[i] for i in wave]):

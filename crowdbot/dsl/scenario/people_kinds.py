@@ -1,4 +1,4 @@
-"""Kinds of people: how a crowd is mixed, and how each kind differs. Sources: `LOOKS`."""
+"""Kinds of people: how a crowd is mixed, and how each kind differs. Sources: `USUAL_BODIES`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.spec.unions import AnyOf
 
 #: What a person looks like to sensors.
-LookName = Literal["adult", "child", "elderly", "wheelchair_user", "stroller", "suitcase"]
+AppearanceName = Literal["adult", "child", "elderly", "wheelchair_user", "stroller", "suitcase"]
 #: Draws from a normal distribution farther than this many standard deviations are drawn again.
 WIDEST = 2.5
 
@@ -55,7 +55,9 @@ MassChoice = Annotated[
 class PeopleKind(Spec):
     """One kind of people in a mixture; what is left out is as its look has it."""
 
-    look: LookName = Field(default="adult", description="What sensors see, and usual numbers.")
+    look: AppearanceName = Field(
+        default="adult", description="What sensors see, and usual numbers."
+    )
     share: Annotated[float, Gt(0)] = Field(
         default=1.0, description="Share of the people, on any scale."
     )
@@ -88,7 +90,7 @@ class UsualBody:
 
 
 #: Where these come from: docs/reference/people.md.
-LOOKS: dict[LookName, UsualBody] = {
+USUAL_BODIES: dict[AppearanceName, UsualBody] = {
     "adult": UsualBody((1.70, 0.09), (75.0, 13.0), None, 1.0),
     "child": UsualBody((1.27, 0.06), (25.5, 4.0), 0.20, 1.0),
     "elderly": UsualBody((1.64, 0.08), (71.0, 12.0), None, 0.8),
@@ -97,4 +99,4 @@ LOOKS: dict[LookName, UsualBody] = {
     "suitcase": UsualBody((1.70, 0.09), (75.0, 13.0), None, 0.95),
 }
 
-__all__ = ["LOOKS", "WIDEST", "LookName", "PeopleKind", "UsualBody"]
+__all__ = ["USUAL_BODIES", "WIDEST", "AppearanceName", "PeopleKind", "UsualBody"]

@@ -17,7 +17,7 @@ from pydantic import (
     model_validator,
 )
 
-from crowdbot.dsl.scenario.people_kinds import LookName
+from crowdbot.dsl.scenario.people_kinds import AppearanceName
 from crowdbot.dsl.spec.areas import Place
 from crowdbot.dsl.spec.parameters import (
     AccelerationSample,
@@ -234,7 +234,7 @@ class Agent(Spec):
         exclude_if=lambda pauses: not pauses,
         description="How long it stays at each goal, s; without it nowhere.",
     )
-    look: LookName | None = Field(
+    look: AppearanceName | None = Field(
         default=None,
         exclude_if=lambda look: look is None,
         description="What sensors see; its usual radius, mass and height where none is given.",

@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
-from crowdbot.dsl.scenario.people_kinds import LOOKS
+from crowdbot.dsl.scenario.people_kinds import USUAL_BODIES
 from tests.core.population.spawning_cases import hall
 
 MIX: dict[str, Any] = {
@@ -32,7 +32,7 @@ def test_shares_and_sizes() -> None:
     share = {name: np.mean(look == name) for name in ("adult", "child", "wheelchair_user")}
     assert share == pytest.approx({"adult": 0.6, "child": 0.2, "wheelchair_user": 0.2}, abs=0.07)
     kids = look == "child"
-    assert table.height[kids].mean() == pytest.approx(LOOKS["child"].height[0], abs=0.03)
+    assert table.height[kids].mean() == pytest.approx(USUAL_BODIES["child"].height[0], abs=0.03)
     assert set(table.radius[kids].tolist()) == {0.20}
     assert set(table.radius[look == "adult"].tolist()) == {0.33}
     chairs = table.radius[look == "wheelchair_user"]

@@ -21,7 +21,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.support.immutable import immutable_fields
 from crowdbot.core.trajectories import encounters, headway, preprocess
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.types.looks import Looks
+from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState
 from crowdbot.dsl.spec.component_specs import CrowdPolicySpec
@@ -31,7 +31,7 @@ from tests.core.sensing.sensing_worlds import REGISTRY
 
 def scene(robots: bool) -> Scene:
     """A wall, a pillar, three people who look different; perhaps two other robots."""
-    looks = Looks(
+    looks = Appearance(
         height=np.zeros(3), leg_length=np.zeros(3), phase=np.zeros(3),
         look=("", "stroller", "wheelchair_user"),
     )  # fmt: skip
@@ -114,7 +114,7 @@ def by_noise() -> list[Any]:
 
 
 def by_policies() -> list[Any]:
-    looks = Looks(height=np.zeros(1), leg_length=np.zeros(1), phase=np.zeros(1), look=("",))
+    looks = Appearance(height=np.zeros(1), leg_length=np.zeros(1), phase=np.zeros(1), look=("",))
     agents = Agents.of(x=np.zeros(1), y=np.zeros(1), routes=[[(9.0, 0.0)]], looks=looks)
     spec = REGISTRY.spec_model("crowd policy", "velocity_space").model_validate(
         {"kind": "velocity_space"}

@@ -12,17 +12,17 @@ from hypothesis import strategies as st
 
 from crowdbot.core.sensing.body_model import BOTTOM, PARTS, RADIUS, TOP, TRUNK
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.looks import Looks
-from crowdbot.dsl.scenario.people_kinds import LookName
+from crowdbot.dsl.scenario.people_kinds import AppearanceName
 from tests.core.sensing.sensing_worlds import crowd_of
 
 NO_WALLS = np.zeros((0, 4))
 
 
-def looks_of(*names: str, height: float = 0.0, leg: float = 0.0, phase: float = 0.0) -> Looks:
+def looks_of(*names: str, height: float = 0.0, leg: float = 0.0, phase: float = 0.0) -> Appearance:
     count = len(names)
-    return Looks(
+    return Appearance(
         height=np.full(count, height),
         leg_length=np.full(count, leg),
         phase=np.full(count, phase),
@@ -30,14 +30,14 @@ def looks_of(*names: str, height: float = 0.0, leg: float = 0.0, phase: float = 
     )
 
 
-def scene_of(looks: Looks | None, xyv: Array, way: Array, walked: Array) -> Scene:
+def scene_of(looks: Appearance | None, xyv: Array, way: Array, walked: Array) -> Scene:
     count = len(xyv)
     scene = Scene(NO_WALLS, (0.0, 2.5), np.full(count, 0.33), 1.7, looks=looks)
     scene.update(None, xyv, np.ones(count, np.bool_), way, walked)
     return scene
 
 
-def still(looks: Looks | None, x: float = 3.0) -> Scene:
+def still(looks: Appearance | None, x: float = 3.0) -> Scene:
     xyv = np.array([[x, 0.0, 0.0, 0.0]])
     return scene_of(looks, xyv, np.array([[0.0, 1.0]]), np.zeros(1))
 
@@ -66,7 +66,7 @@ def test_legs_are_as_long_as_they_are() -> None:
     assert bodies[TRUNK, TOP] == pytest.approx(1.5)
 
 
-@pytest.mark.parametrize("look", get_args(LookName))
+@pytest.mark.parametrize("look", get_args(AppearanceName))
 def test_what_each_look_adds(look: str) -> None:
     scene = still(looks_of(look))
     assert len(scene.cylinders) == PARTS + (look in ("wheelchair_user", "stroller", "suitcase"))
@@ -109,7 +109,7 @@ def test_children_are_thinner_and_shorter() -> None:
     radius = np.array([0.33, 0.2])
     scene = Scene(
         NO_WALLS, (0.0, 2.5), radius, 1.7,
-        looks=Looks(height=np.array([1.7, 1.27]), leg_length=np.zeros(2), phase=np.zeros(2),
+        looks=Appearance(height=np.array([1.7, 1.27]), leg_length=np.zeros(2), phase=np.zeros(2),
                     look=("adult", "child")),
     )  # fmt: skip
     scene.update(None, np.zeros((2, 4)), np.ones(2, np.bool_))

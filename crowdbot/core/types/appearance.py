@@ -1,4 +1,4 @@
-"""Looks: what sensors see of each person of a crowd."""
+"""Appearance: what sensors see of each person of a crowd."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from crowdbot.core.types.arrays import Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Looks:
+class Appearance:
     """Bodies of people as sensors see them; what touches is a disc all the same.
 
     Attributes:

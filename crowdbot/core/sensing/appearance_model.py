@@ -1,4 +1,4 @@
-"""People of different looks as sensors see them: legs of their own, wheelchairs, what they push.
+"""Appearances of people to sensors: legs of their own, wheelchairs, what they push.
 
 All upright cylinders, as in `crowdbot.core.sensing.body_model`. Where the sizes come from:
 docs/reference/people.md.
@@ -22,8 +22,8 @@ from crowdbot.core.sensing.body_model import (
     place_people,
 )
 from crowdbot.core.support.compile import kernel
+from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.looks import Looks
 
 #: Columns of a gait: height of the hip, length of a stride, phase at the start, how far the legs
 #: swing as a share of the usual, how far they are before the middle; m and rad.
@@ -45,27 +45,29 @@ _LEGS = {"wheelchair_user": (0.0, 0.38), "elderly": (0.8, 0.0)}
 _SEAT = 0.50  # m: where the trunk of somebody begins who sits
 
 
-def heights(looks: Looks, usual: float) -> Array:
+def heights(appearance: Appearance, usual: float) -> Array:
     """Heights (M,), m; those of whom nothing is said are as usual."""
-    found: Array = np.where(looks.height > 0.0, looks.height, usual)
+    found: Array = np.where(appearance.height > 0.0, appearance.height, usual)
     return found
 
 
-def gaits(looks: Looks, height: Array) -> Array:
+def gaits(appearance: Appearance, height: Array) -> Array:
     """How the legs of people (M,) are and move, columns as above."""
     found = np.zeros((len(height), 5))
-    for i, (look, tall) in enumerate(zip(looks.look, height.tolist(), strict=True)):
-        hip = looks.leg_length[i] or _USUAL_HIP * tall
+    for i, (look, tall) in enumerate(zip(appearance.look, height.tolist(), strict=True)):
+        hip = appearance.leg_length[i] or _USUAL_HIP * tall
         swing, ahead = _LEGS.get(look, (1.0, 0.0))
         stride = hip * _USUAL_STRIDE / _USUAL_HIP * (swing or 1.0)
         seat = _SEAT if look == "wheelchair_user" else hip
-        found[i] = seat, stride, looks.phase[i], swing, ahead
+        found[i] = seat, stride, appearance.phase[i], swing, ahead
     return found
 
 
-def things(looks: Looks) -> Array:
+def things(appearance: Appearance) -> Array:
     """What people have with them (T, 6), columns as above."""
-    rows = [(i, *thing) for i, look in enumerate(looks.look) for thing in _THINGS.get(look, ())]
+    rows = [
+        (i, *thing) for i, look in enumerate(appearance.look) for thing in _THINGS.get(look, ())
+    ]
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
