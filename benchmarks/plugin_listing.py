@@ -15,19 +15,16 @@ import time
 from pathlib import Path
 
 INIT = '''"""A plugin."""
-from crowdbot.hookspecs import hookimpl
-from {module}.words import PLANNER
+from crowdbot.plugin import hookimpl
 CROWDBOT_API = 1
 @hookimpl
-def crowdbot_planners():
-    return [PLANNER]
+def crowdbot_components():
+    return {{"planner": ["{module}.words:PLANNER"]}}
 '''
 WORDS = '''"""Words."""
 from typing import Literal
 from pydantic import Field
-from crowdbot.dsl.spec.component import Component
-from crowdbot.dsl.spec.component_specs import PlannerSpec
-from crowdbot.dsl.spec.quantities import PositiveLength, PositiveSpeed
+from crowdbot.plugin import Component, PlannerSpec, PositiveLength, PositiveSpeed
 class Spec(PlannerSpec):
     """A planner."""
     kind: Literal["{name}.go"] = "{name}.go"

@@ -1,14 +1,14 @@
-"""The hooks of crowdbot, nothing else.
+"""The hooks of crowdbot.
 
 Each is called once, while the registry is built, before any scenario is read. Keep them cheap:
-import spec modules only and name the build function as text. An exception disables the plugin
-that raised it, no other, and is shown by ``crowdbot plugins``.
+name components as text, so that a module is imported when somebody asks for its category. An
+exception disables the plugin that raised it, no other, and is shown by ``crowdbot plugins``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import pluggy
 
@@ -16,16 +16,6 @@ if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
 
     from crowdbot.dsl.spec.component import Component
-    from crowdbot.dsl.spec.component_specs import (
-        CostFunctionSpec,
-        CrowdPolicySpec,
-        EnvironmentSpec,
-        MetricSpec,
-        NoiseSpec,
-        PlannerSpec,
-        RobotSpec,
-        SensorSpec,
-    )
 
 #: Version of this file. A plugin module says ``CROWDBOT_API = 1``.
 API_VERSION = 1
@@ -37,178 +27,34 @@ hookimpl = pluggy.HookimplMarker("crowdbot")
 
 
 @hookspec
-def crowdbot_environments() -> Sequence[Component[EnvironmentSpec]]:  # type: ignore[empty-body]
-    """Return the places this package provides.
+def crowdbot_components() -> Mapping[str, Sequence[Component[Any] | str]]:  # type: ignore[empty-body]
+    """Return the components that this package provides, by category.
 
-    Places: floors with walls, blocks, pillars, zones, portals, borders.
+    The categories are ``environment``, ``robot``, ``sensor``, ``noise``, ``planner``,
+    ``crowd policy``, ``cost function`` and ``metric``. What is listed may be
 
-    Called once, while the registry is built, before any document is read. The components are
-    built later, once for each recording:
-    `crowdbot.plugin.BuildEnvironment`.
+    - ``"package.module:NAME"``: the component of this name;
+    - ``"package.folder.*"``: all components of this category whose specs are defined in the
+      modules of a package and of its subpackages, those that end in ``_build`` left out;
+    - a component itself.
+
+    Text is imported when its category is first asked for: a command that reads scenarios imports
+    no planner and no metric. Components are built later: see `crowdbot.plugin.BuildRobot` and its
+    like.
 
     Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
+        Category -> components; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the
+        entry point. An exception, or anything else, disables this plugin alone; a reference that
+        cannot be imported takes this plugin's components of the category away.
 
     Example::
 
         @hookimpl
-        def crowdbot_environments():
-            return [AISLES]
-    """
-
-
-@hookspec
-def crowdbot_robots() -> Sequence[Component[RobotSpec]]:  # type: ignore[empty-body]
-    """Return the robots this package provides.
-
-    Bodies, drives and limits.
-
-    Called once, while the registry is built, before any document is read. The components are
-    built later, once for each recording:
-    `crowdbot.plugin.BuildRobot`.
-
-    Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
-
-    Example::
-
-        @hookimpl
-        def crowdbot_robots():
-            return [OMNI]
-    """
-
-
-@hookspec
-def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:  # type: ignore[empty-body]
-    """Return the sensors this package provides.
-
-    What robots carry to see, feel and count their wheels.
-
-    Called once, while the registry is built, before any document is read. The components are
-    built later, when a run is prepared, and where they are simulated:
-    `crowdbot.plugin.BuildSensor`.
-
-    Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
-
-    Example::
-
-        @hookimpl
-        def crowdbot_sensors():
-            return [SONAR]
-    """
-
-
-@hookspec
-def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:  # type: ignore[empty-body]
-    """Return the noise generators this package provides.
-
-    Errors of sensors, for the map ``noise`` of every sensor that measures distances.
-
-    Called once, while the registry is built, before any document is read. The components are
-    built later, before their sensor, in the order of their names:
-    `crowdbot.plugin.BuildNoise`.
-
-    Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
-
-    Example::
-
-        @hookimpl
-        def crowdbot_noise_generators():
-            return [DRIFT]
-    """
-
-
-@hookspec
-def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:  # type: ignore[empty-body]
-    """Return the planners this package provides.
-
-    The things under test. Never part of a scenario.
-
-    Called once, while the registry is built, before any document is read. The components are
-    built later, once for each recording with a robot, also for the one without people:
-    `crowdbot.plugin.BuildPlanner`.
-
-    Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
-
-    Example::
-
-        @hookimpl
-        def crowdbot_planners():
-            return [SWERVE]
-    """
-
-
-@hookspec
-def crowdbot_crowd_policies() -> Sequence[Component[CrowdPolicySpec]]:  # type: ignore[empty-body]
-    """Return the crowd policies this package provides.
-
-    How people decide where to walk.
-
-    Called once, while the registry is built, before any document is read. The components are
-    built later, once for each recording with people:
-    `crowdbot.plugin.BuildPolicy`.
-
-    Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
-
-    Example::
-
-        @hookimpl
-        def crowdbot_crowd_policies():
-            return [SWARM]
-    """
-
-
-@hookspec
-def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:  # type: ignore[empty-body]
-    """Return the cost functions this package provides.
-
-    Costs over velocities, which a velocity-space policy minimises.
-
-    Called once, while the registry is built, before any document is read. The components are
-    built later, before the policy that minimises them:
-    `crowdbot.plugin.BuildCost`.
-
-    Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
-
-    Example::
-
-        @hookimpl
-        def crowdbot_cost_functions():
-            return [PATIENCE]
-    """
-
-
-@hookspec
-def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:  # type: ignore[empty-body]
-    """Return the metrics this package provides.
-
-    Functions of what was recorded; each is made by ``declare_metric`` and has a card.
-
-    Called once, while the registry is built, before any document is read. The components are
-    built later, once for each scoring:
-    `crowdbot.plugin.BuildMetric`.
-
-    Returns:
-        A list or tuple; each ``spec.kind`` is ``"NAME.something"``, NAME being that of the entry
-        point. An exception, or anything else, disables this plugin alone.
-
-    Example::
-
-        @hookimpl
-        def crowdbot_metrics():
-            return [COMFORT]
+        def crowdbot_components():
+            return {
+                "robot": ["crowdbot_acme.cart:CART"],
+                "metric": ["crowdbot_acme.metrics.*"],
+            }
     """
 
 

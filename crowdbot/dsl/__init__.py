@@ -11,7 +11,6 @@ from typing import Any
 
 def __getattr__(name: str) -> Any:
     from crowdbot import plugin
+    from crowdbot.old_names import old_name
 
-    if name not in plugin.__all__:
-        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    return getattr(plugin, name)
+    return old_name(__name__, plugin, name)

@@ -1,87 +1,38 @@
 """crowdbot's own components, registered through the entry point ``builtin``.
 
-They have the same rights as anybody's: what a third party cannot do, these cannot do either.
-Only what no scenario holds, metrics and planners, is imported when it is first asked for.
+They have the same rights as those of any plugin.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import Any
 
-from crowdbot.hookspecs import API_VERSION, hookimpl
-from crowdbot.plugin import (
-    Component,
-    CostFunctionSpec,
-    CrowdPolicySpec,
-    EnvironmentSpec,
-    MetricSpec,
-    NoiseSpec,
-    PlannerSpec,
-    RobotSpec,
-    SensorSpec,
-)
-from crowdbot.plugins import crowd, environments, noise, robots, sensors
+from crowdbot.plugin import Component, hookimpl
 
-CROWDBOT_API = API_VERSION
+CROWDBOT_API = 1
 
 
 @hookimpl
-def crowdbot_environments() -> Sequence[Component[EnvironmentSpec]]:
-    """Places."""
-    return environments.COMPONENTS
-
-
-@hookimpl
-def crowdbot_robots() -> Sequence[Component[RobotSpec]]:
-    """Robots."""
-    return robots.COMPONENTS
-
-
-@hookimpl
-def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:
-    """Sensors."""
-    return sensors.COMPONENTS
-
-
-@hookimpl
-def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:
-    """Errors of sensors."""
-    return noise.COMPONENTS
-
-
-@hookimpl
-def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:
-    """Planners."""
-    from crowdbot.plugins import planners
-
-    return planners.COMPONENTS
-
-
-@hookimpl
-def crowdbot_crowd_policies() -> Sequence[Component[CrowdPolicySpec]]:
-    """Crowd policies."""
-    return crowd.POLICIES
-
-
-@hookimpl
-def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:
-    """Cost functions."""
-    return crowd.COSTS
-
-
-@hookimpl
-def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:
-    """Metrics."""
-    from crowdbot.plugins import metrics
-
-    return metrics.COMPONENTS
+def crowdbot_components() -> Mapping[str, Sequence[Component[Any] | str]]:
+    """Return the components in the modules of the folders of this package."""
+    return {
+        "environment": ["crowdbot.plugins.environments.*"],
+        "robot": ["crowdbot.plugins.robots.*"],
+        "sensor": ["crowdbot.plugins.sensors.*"],
+        "noise": ["crowdbot.plugins.noise.*"],
+        "planner": ["crowdbot.plugins.planners.*"],
+        "crowd policy": ["crowdbot.plugins.crowd.policies.*"],
+        "cost function": ["crowdbot.plugins.crowd.cost_functions.*"],
+        "metric": ["crowdbot.plugins.metrics.*"],
+    }
 
 
 @hookimpl
 def crowdbot_scenario_dirs() -> Sequence[Traversable]:
-    """The suites: beside the package in a checkout, inside it in a wheel."""
+    """Return the suites: beside the package in a checkout, inside it in a wheel."""
     package = Path(__file__).parent.parent
     installed = package / "scenario_specs"
     return [installed if installed.is_dir() else package.parent / "scenario_specs"]

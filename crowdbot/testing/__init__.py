@@ -2,9 +2,9 @@
 
 ::
 
-    from crowdbot.testing import parametrize_with_checks
+    from crowdbot.testing import components_of, parametrize_with_checks
 
-    @parametrize_with_checks([OMNI, COMFORT])
+    @parametrize_with_checks(components_of("acme"))
     def test_conformance(check):
         check()
 
@@ -13,7 +13,7 @@ health. ``parametrize_with_checks`` needs pytest, `crowdbot.testing.strategies` 
 ``pip install crowdbot[testing]``. `checks_for` needs neither.
 """
 
-from crowdbot.testing.around import installed
+from crowdbot.testing.around import components_of, installed
 from crowdbot.testing.checks import bind, checks_for, checks_of
 from crowdbot.testing.crowd_views import random_view
 from crowdbot.testing.evaluated_costs import costs_at
@@ -23,6 +23,7 @@ __all__ = [
     "bind",
     "checks_for",
     "checks_of",
+    "components_of",
     "costs_at",
     "installed",
     "parametrize_with_checks",

@@ -162,8 +162,9 @@ def check_entry_point_yields_it(
     in the group ``crowdbot`` names another module, or no hook returns the component.
     """
     known = registry or installed()
-    failed = [f"{p.name}: {p.error}" for p in known.plugins if p.error]
-    assert component.kind in known.components(component.category), (
+    found_of = known.components(component.category)
+    failed = [f"{p.name}: {p.failure}" for p in known.plugins if p.failure]
+    assert component.kind in found_of, (
         f"no installed plugin provides it{'; ' + '; '.join(failed) if failed else ''}"
     )
     found = known.find(component.category, component.kind)

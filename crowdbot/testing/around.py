@@ -25,6 +25,22 @@ def installed() -> Registry:
     return discover()
 
 
+def components_of(plugin: str) -> tuple[Component[Any], ...]:
+    """Return all components of an installed plugin, for `parametrize_with_checks`.
+
+    Raises:
+        PluginError: it is not installed, or it failed.
+    """
+    known = [p for p in installed().plugins if p.name == plugin]
+    if not known:
+        raise PluginError(f"no plugin '{plugin}' is installed")
+    components = tuple(c for p in known for c in p.components)
+    for found in known:
+        if found.failure:
+            raise PluginError(f"plugin '{plugin}' ({found.distribution}) failed: {found.failure}")
+    return components
+
+
 def around(component: Component[Any], registry: Registry | None = None) -> Registry:
     """A registry with a component in it, in place of what has its kind.
 

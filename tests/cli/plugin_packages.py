@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field, field_validator
 from crowdbot.plugin import Component
 from crowdbot.plugin import PlannerSpec, RobotSpec
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 CROWDBOT_API = 1
 """
 PLANNER = """
@@ -28,8 +28,8 @@ class Spec(PlannerSpec):
 PLANNER = Component(spec=Spec, build="{build}", summary="drives")
 
 @hookimpl
-def crowdbot_planners():
-    return [PLANNER]
+def crowdbot_components():
+    return {{"planner": [PLANNER]}}
 """
 
 

@@ -18,7 +18,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.plugin import EnvironmentParts
-from crowdbot.plugins.environments import COMPONENTS
+from tests.built_in import built_in
 from tests.core.crowd.routing.floor_plans import crossings
 from tests.paths import ROOT
 
@@ -68,7 +68,7 @@ def _engine(name: str) -> tuple[CrowdEngine, EnvironmentParts]:
 
 
 def test_every_world_has_an_example() -> None:
-    kinds = {f"world_{c.kind}" for c in COMPONENTS}
+    kinds = {f"world_{c.kind}" for c in built_in("environment")}
     assert set(WORLDS) == kinds | {"world_floor_plan_grid", "world_floor_plan_wkt"}
     pictures = ROOT / "docs" / "images" / "worlds"
     assert {file.stem for file in pictures.glob("*.svg")} == set(WORLDS)

@@ -20,7 +20,7 @@ import numpy as np
 from crowdbot.plugin import Component
 from crowdbot.plugin import ScoreFactory, SensorInfo
 from crowdbot.plugin import CrowdPolicySpec, MetricSpec, SensorSpec, declare_metric
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 
 class SensorWords(SensorSpec):
     """A sensor."""
@@ -59,16 +59,12 @@ class Metric:
         {score}
 
 @hookimpl
-def crowdbot_sensors():
-    return [Component(spec=SensorWords, build="faulty:Sensor", summary="s")]
-
-@hookimpl
-def crowdbot_crowd_policies():
-    return [Component(spec=PolicyWords, build="faulty:Policy", summary="p")]
-
-@hookimpl
-def crowdbot_metrics():
-    return [METRIC]
+def crowdbot_components():
+    return {{
+        "sensor": [Component(spec=SensorWords, build="faulty:Sensor", summary="s")],
+        "crowd policy": [Component(spec=PolicyWords, build="faulty:Policy", summary="p")],
+        "metric": [METRIC],
+    }}
 '''
 FINE = {
     "init": "pass",

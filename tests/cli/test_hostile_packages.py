@@ -17,14 +17,14 @@ class Spec(PlannerSpec):
 {body}
 
 @hookimpl
-def crowdbot_planners():
-    return [Component(spec=Spec, build="a:b", summary="x")]
+def crowdbot_components():
+    return {{"planner": [Component(spec=Spec, build="a:b", summary="x")]}}
 """
 
 
 def returning(text: str) -> str:
     """A module whose hook returns something."""
-    return f"{HEAD}\n@hookimpl\ndef crowdbot_planners():\n    return {text}\n"
+    return f"{HEAD}\n@hookimpl\ndef crowdbot_components():\n    return {text}\n"
 
 
 def spec(kind: str, body: str = "") -> str:
@@ -43,25 +43,35 @@ BROKEN = {
     "text_api": (planner("text_api.go").replace("API = 1", "API = '1'"),
                  "CROWDBOT_API must be a whole number such as 1, not '1'"),
     "true_api": (planner("true_api.go").replace("API = 1", "API = True"), "not True"),
-    "misspelt": (planner("misspelt.go").replace("def crowdbot_planners", "def crowdbot_planers"),
-                 "unknown hook 'crowdbot_planers'; did you mean 'crowdbot_planners'?"),
+    "misspelt": (planner("misspelt.go").replace("def crowdbot_comp", "def crowdbot_conp"),
+                 "unknown hook 'crowdbot_conponents'; did you mean 'crowdbot_components'?"),
     "unmarked": (planner("unmarked.go").replace("@hookimpl\n", ""),
-                 "'crowdbot_planners' is not marked as a hook: write @hookimpl above it"),
+                 "'crowdbot_components' is not marked as a hook: write @hookimpl above it"),
     "empty": (HEAD, "has no hook"),
-    "argument": (returning("[]").replace("planners()", "planners(registry)"), "'registry'"),
+    "argument": (returning("{}").replace("components()", "components(registry)"), "'registry'"),
     "raises": (returning("1 / 0"), "ZeroDivisionError"),
-    "nothing": (returning("None"), "crowdbot_planners returned None; a list is wanted"),
-    "mapping": (returning("{'a': 1}"), "crowdbot_planners returned {'a': 1} (dict)"),
-    "number": (returning("[3]"), "crowdbot_planners returned 3 (int); a Component is wanted"),
+    "nothing": (returning("None"), "crowdbot_components returned None; a table is wanted"),
+    "list": (returning("[3]"), "crowdbot_components returned [3] (list); a table is wanted"),
+    "no_category": (returning("{'planers': []}"),
+                    "there is no category 'planers'; did you mean 'planner'?"),
+    "no_list": (returning("{'planner': 'a:B'}"), "planner: 'a:B' (str); a list is wanted"),
+    "number": (returning("{'planner': [3]}"),
+               "planner: 3 (int); a Component is wanted, or \"package.module:NAME\""),
+    "no_reference": (returning("{'planner': ['a.b']}"), "planner: 'a.b' is not a reference"),
+    "no_module": (returning("{'planner': ['nowhere:GO']}"),
+                  "planner: ModuleNotFoundError: No module named 'nowhere'"),
+    "no_name": (returning("{'planner': ['plugin_no_name:Component']}"),
+                "planner: 'plugin_no_name:Component': plugin_no_name has no component"),
     "bare": (planner("dwa"), "kind 'dwa' must start with 'bare.'"),
     "thief": (planner("good.go"), "kind 'good.go' must start with 'thief.'"),
     "blank": (planner("blank."), "letters, digits, _ and - only after the dot"),
-    "category": (planner("category.go").replace("crowdbot_planners", "crowdbot_robots"),
-                 "crowdbot_robots returned category.go, a planner"),
+    "category": (planner("category.go").replace('{"planner"', '{"robot"'),
+                 "category.go is listed as a robot, but it is a planner"),
     "no_literal": (spec("str = 'no_literal.go'"), "Spec: kind must be one literal"),
     "no_text": (spec("Literal[3] = 3"), "Spec: kind must be one literal"),
     "two_kinds": (spec("Literal['two_kinds.a', 'two_kinds.b'] = 'two_kinds.a'"), "one literal"),
-    "no_spec": (returning("[Component(spec=int, build='a:b', summary='')]"), "is not a spec"),
+    "no_spec": (returning("{'planner': [Component(spec=int, build='a:b', summary='')]}"),
+                "is not a spec"),
     "unknown_type": (spec("Literal['unknown_type.go'] = 'unknown_type.go'", "    x: 'Nowhere'"),
                      "unknown_type.go: Spec cannot be built"),
     "odd_type": (spec("Literal['odd_type.go'] = 'odd_type.go'", "    x: object() = 1"),
@@ -75,8 +85,8 @@ BROKEN = {
               "E301 planner 'twice.go' is provided twice"),
     "no_card": (HEAD + "from crowdbot.plugin import MetricSpec\n"
                 "class Spec(MetricSpec):\n    kind: Literal['no_card.m'] = 'no_card.m'\n"
-                "@hookimpl\ndef crowdbot_metrics():\n"
-                "    return [Component(spec=Spec, build='a:b', summary='')]",
+                "@hookimpl\ndef crowdbot_components():\n"
+                "    return {'metric': [Component(spec=Spec, build='a:b', summary='')]}",
                 "metric 'no_card.m' is not a MetricComponent; use declare_metric"),
     "folder": (HEAD + "@hookimpl\ndef crowdbot_scenario_dirs():\n    return ['suites']",
                "crowdbot_scenario_dirs returned 'suites' (str)"),

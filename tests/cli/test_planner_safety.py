@@ -21,7 +21,7 @@ import sys
 from typing import ClassVar, Literal
 from crowdbot.plugin import Component
 from crowdbot.plugin import PlannerSpec
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 CROWDBOT_API = 1
 
 class Spec(PlannerSpec):
@@ -39,8 +39,8 @@ class Go:
         {step}
 
 @hookimpl
-def crowdbot_planners():
-    return [Component(spec=Spec, build="unsafe:{build}", summary="unsafe")]
+def crowdbot_components():
+    return {{"planner": [Component(spec=Spec, build="unsafe:{build}", summary="unsafe")]}}
 '''
 QUIET = ("--no-references",)
 

@@ -13,7 +13,7 @@ from crowdbot.cli import main
 PLUGIN = '''
 from typing import Literal
 from crowdbot.plugin import Component
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 
 class Omni(Turtlebot2Spec):
@@ -27,8 +27,8 @@ class Fast(Turtlebot2Spec):
 BUILD = "crowdbot.plugins.robots.turtlebot2_build:build"
 
 @hookimpl
-def crowdbot_robots():
-    return [Component(spec=s, build=BUILD, summary="a robot") for s in (Omni, Fast)]
+def crowdbot_components():
+    return {"robot": [Component(spec=s, build=BUILD, summary="a robot") for s in (Omni, Fast)]}
 '''
 SCENARIO = """\
 crowdbot: 1

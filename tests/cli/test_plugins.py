@@ -26,7 +26,7 @@ def test_list_never_fails(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> 
     assert main(["plugins"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == ["plugin", "distribution", "api", "state", "provides"]
-    assert "robot: turtlebot2" in lines[1]
+    assert "robot: cuybot " in lines[1]
     assert lines[2].split(maxsplit=5)[-2:] == ["failed", "ImportError: no 'torch'"]
 
 

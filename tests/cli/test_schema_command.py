@@ -43,14 +43,14 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
         "from typing import Literal\n"
         "from crowdbot.dsl.spec.component import Component\n"
         "from crowdbot.plugin import EnvironmentSpec\n"
-        "from crowdbot.hookspecs import hookimpl\n"
+        "from crowdbot.plugin import hookimpl\n"
         "class RoomSpec(EnvironmentSpec):\n"
         '    """A room."""\n'
         "    kind: Literal['acme_rooms.room'] = 'acme_rooms.room'\n"
         "ROOM = Component(spec=RoomSpec, build='x:y', summary='a room')\n"
         "@hookimpl\n"
-        "def crowdbot_environments():\n"
-        "    return [ROOM]\n",
+        "def crowdbot_components():\n"
+        "    return {'environment': [ROOM]}\n",
         encoding="utf-8",
     )
     code = (

@@ -31,8 +31,8 @@ METRIC = declare_metric(Words, build="plugin_noisy:Metric", symbol="F", unit="m"
                         category="task", card="# noisy.m\\n")
 
 @hookimpl
-def crowdbot_metrics():
-    return [METRIC]
+def crowdbot_components():
+    return {"metric": [METRIC]}
 '''
 )
 

@@ -27,7 +27,7 @@ from crowdbot.plugin import Component
 from crowdbot.core.crowd.velocity_search.cost import BASE, CompiledCost, NumpyCost
 from crowdbot.plugin import EnvironmentParts, SensorInfo
 from crowdbot.plugin import CostFunctionSpec, CrowdPolicySpec, EnvironmentSpec, SensorSpec
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 
 class Cost(CostFunctionSpec):
     kind: Literal["odd.cost"] = "odd.cost"
@@ -136,20 +136,13 @@ def _all(category, spec, name):
     return Component(spec=spec, build=f"odd:{name}", summary=f"an odd {category}")
 
 @hookimpl
-def crowdbot_cost_functions():
-    return [_all("cost", Cost, "cost")]
-
-@hookimpl
-def crowdbot_crowd_policies():
-    return [_all("policy", Policy, "policy")]
-
-@hookimpl
-def crowdbot_environments():
-    return [_all("place", Place, "place")]
-
-@hookimpl
-def crowdbot_sensors():
-    return [_all("sensor", Look, "look")]
+def crowdbot_components():
+    return {
+        "cost function": [_all("cost", Cost, "cost")],
+        "crowd policy": [_all("policy", Policy, "policy")],
+        "environment": [_all("place", Place, "place")],
+        "sensor": [_all("sensor", Look, "look")],
+    }
 """
 SUITE = """\
 crowdbot: 1

@@ -36,6 +36,7 @@ def listing(
     from crowdbot.cli.output.plugin_table import as_dicts, as_text, tracebacks
 
     registry = installed(plugin, no_plugins, strict=False)
+    registry.import_components()
     if as_json:
         typer.echo(json.dumps(as_dicts(registry), indent=2))
         return
@@ -92,6 +93,7 @@ def check(
     if name is None and not plugin:
         raise typer.BadParameter("name a plugin or a kind, or give one by --plugin")
     registry = installed(plugin, no_plugins, strict=False)
+    registry.import_components()
     results: list[Result] = failed_plugins(registry, name)
     if not results:
         components = chosen(registry, name)

@@ -69,8 +69,8 @@ def _describable(plugin: list[Path] | None, no_plugins: bool) -> Registry:
     found = installed(plugin, no_plugins)
     described = describable(found)
     for old, new in zip(found.plugins, described.plugins, strict=True):
-        if new.error and not old.error:
-            _LOG.warning("warning: plugin '%s' is left out: %s", new.name, new.error)
+        if new.failure and not old.error:
+            _LOG.warning("warning: plugin '%s' is left out: %s", new.name, new.failure)
     return described
 
 

@@ -48,9 +48,9 @@ class Result:
 def failed_plugins(registry: Registry, name: str | None) -> list[Result]:
     """One failure for each plugin that is meant and could not be loaded."""
     return [
-        Result(plugin=p.name, kind="", check="loading", result="failed", reason=p.error)
+        Result(plugin=p.name, kind="", check="loading", result="failed", reason=p.failure)
         for p in registry.plugins
-        if p.error and (p.given if name is None else name.partition(".")[0] == p.name)
+        if p.failure and (p.given if name is None else name.partition(".")[0] == p.name)
     ]
 
 

@@ -28,22 +28,23 @@ def as_text(registry: Registry) -> str:
     why = f"not on the list {ALLOW}" if registry.allowed else "--no-plugins"
     rows += [[p.name, p.distribution, "–", "off", why] for p in registry.excluded]
     text = table([_HEAD, *rows])
-    if any(p.error and p.traceback for p in registry.plugins):
+    if any(p.failure and p.failure_traceback for p in registry.plugins):
         text += "\n-v shows tracebacks"
     return text
 
 
 def as_dicts(registry: Registry) -> list[dict[str, Any]]:
     """The same as JSON, with all components."""
-    found = [_as_dict(p, "failed" if p.error else "ok") for p in registry.plugins]
+    found = [_as_dict(p, "failed" if p.failure else "ok") for p in registry.plugins]
     return found + [_as_dict(p, "off") for p in registry.excluded]
 
 
 def tracebacks(registry: Registry) -> Iterator[str]:
     """What is known of the plugins that failed."""
     for plugin in registry.plugins:
-        if plugin.error:
-            yield f"\n{plugin.name} ({plugin.origin}):\n{plugin.traceback or plugin.error}".rstrip()
+        if plugin.failure:
+            text = plugin.failure_traceback or plugin.failure
+            yield f"\n{plugin.name} ({plugin.origin}):\n{text}".rstrip()
 
 
 def table(rows: Sequence[Sequence[str]]) -> str:
@@ -74,8 +75,8 @@ def _wrapped(before: str, last: str) -> list[str]:
 def _row(plugin: Plugin) -> list[str]:
     api = "–" if plugin.api is None else str(plugin.api)
     head = [plugin.name, plugin.distribution, api]
-    if plugin.error:
-        return [*head, "failed", " ".join(plugin.error.split())]
+    if plugin.failure:
+        return [*head, "failed", " ".join(plugin.failure.split())]
     provides = [f"{c}: {_few(kinds)}" for c, kinds in _provided(plugin).items()]
     provides += ["suites"] * bool(plugin.scenario_dirs)
     return [*head, "ok", "  ".join(provides) or "nothing"]
@@ -100,8 +101,8 @@ def _as_dict(plugin: Plugin, state: str) -> dict[str, Any]:
         "file": plugin.file,
         "api": plugin.api,
         "state": state,
-        "error": plugin.error,
-        "traceback": plugin.traceback,
+        "error": plugin.failure,
+        "traceback": plugin.failure_traceback,
         "provides": _provided(plugin),
         "components": [_component(c) for c in plugin.components],
         "scenario_dirs": [str(folder) for folder in plugin.scenario_dirs],

@@ -37,11 +37,14 @@ def installed(
         from crowdbot.core.registry.registry import discover
 
         registry = discover(extra=paths, allow=() if no_plugins else None)
+        given = [found for found in registry.plugins if strict and found.given]
+        for found in given:
+            found.import_components()
     log = logging.getLogger("crowdbot")
     for line in registry.unknown_allowed():
         log.warning(line)
-    for found in registry.plugins:
-        if strict and found.error and found.given:
-            log.debug(found.traceback)
-            raise PluginError(f"--plugin {found.distribution}: {found.error}")
+    for found in given:
+        if found.failure:
+            log.debug(found.failure_traceback)
+            raise PluginError(f"--plugin {found.distribution}: {found.failure}")
     return registry

@@ -6,6 +6,8 @@ import importlib
 import warnings
 from typing import Any
 
+from crowdbot.old_names import OldNameWarning
+
 NUMBERED_COLUMNS = {
     "AGENT_SIZE", "ASKED_RADIUS", "ASKED_X", "ASKED_Y", "AX", "AY", "BX", "BY", "D2", "DESCENDS",
     "FASTEST", "FROM_SURFACE", "GX", "GY", "MAX_ACCELERATION", "MAX_SPEED", "NEAR_COLUMNS", "NPX",
@@ -22,7 +24,7 @@ def numbered_column(name: str) -> Any:
         f"{name} goes with 1.0: fields of agents, neighbours and walls have names "
         "(agent.px, near[j].nvx, walls[s].d2), and as_rows gives names to work; see "
         "docs/reference/plugins.md",
-        DeprecationWarning,
+        OldNameWarning,
         stacklevel=3,
     )
     return getattr(importlib.import_module(_HOME), name)

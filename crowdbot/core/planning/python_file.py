@@ -17,6 +17,7 @@ from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
 from crowdbot.core.support.source_digest import imported_names
 from crowdbot.core.support.text_files import suggest_files
 from crowdbot.errors import CrowdbotError, InputError, PlannerError, did_you_mean, nearest
+from crowdbot.old_names import shown_old_names
 
 _METHODS = ("reset", "step")
 #: Libraries that take long to import and start no threads by that, and what makes them ready.
@@ -75,7 +76,7 @@ def _import(path: Path) -> ModuleType:
         str(path), sources=lambda: {str(file)}, error=PlannerError, passes=PlannerError
     )
     try:
-        with call("cannot be imported"):
+        with call("cannot be imported"), shown_old_names():
             spec.loader.exec_module(module)
     except BaseException as error:
         del sys.modules[unique]

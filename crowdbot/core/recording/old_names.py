@@ -8,6 +8,7 @@ from pathlib import Path
 from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.recording import Recording, RecordingInfo
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.old_names import OldNameWarning
 
 
 def read_trajectories(path: Path, robot: str | None = None) -> Trajectories:
@@ -35,7 +36,7 @@ def recording_info(path: Path) -> RecordingInfo:
 
 def _warn(old: str, new: str) -> None:
     text = f"{old} goes with crowdbot 1.0: write crowdbot.Recording(path).{new}"
-    warnings.warn(text, DeprecationWarning, stacklevel=3)
+    warnings.warn(text, OldNameWarning, stacklevel=3)
 
 
 __all__ = ["read_scans", "read_trajectories", "recording_info"]

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.dsl.spec.component import Component
 from crowdbot.errors import PluginError
+from crowdbot.old_names import shown_old_names
 
 Given = TypeVar("Given")
 
@@ -26,7 +27,7 @@ def load_build(component: Component[Any], call: PluginCall | None = None) -> Cal
     """
     call = call or PluginCall(f"{component.category} '{component.kind}'")
     module, _, name = component.build.partition(":")
-    with call(f"build '{component.build}' cannot be imported"):
+    with call(f"build '{component.build}' cannot be imported"), shown_old_names():
         try:
             function = getattr(importlib.import_module(module), name)
         except (ImportError, AttributeError) as error:

@@ -1,11 +1,15 @@
-"""The components of a plugin, by category; some are asked for when somebody wants to know."""
+"""The components of a plugin by category, each found when its category is first asked for."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Any, overload
 
+from crowdbot.core.registry.component_data import data_digest
+from crowdbot.core.registry.plugin_errors import is_user_interrupt
 from crowdbot.dsl.spec.component import Component
+from crowdbot.errors import CrowdbotError
 
 Components = tuple[Component[Any], ...]
 
@@ -13,30 +17,43 @@ Components = tuple[Component[Any], ...]
 class ComponentList(Sequence[Component[Any]]):
     """All components in the order of their categories.
 
-    crowdbot's own metrics and planners are the most, and no scenario holds one: a command that
-    reads documents ends without them.
+    Commands that read scenarios end without planners and metrics, which are the most and which no
+    scenario holds.
+
+    Attributes:
+        errors: category -> why it has no components, of those that were asked for.
 
     Args:
-        known: category -> components.
         later: category -> what finds its components, once.
     """
 
-    def __init__(
-        self, known: Mapping[str, Components], later: Mapping[str, Callable[[], Components]]
-    ) -> None:
-        self._found, self._later = dict(known), dict(later)
-        self._order = [*known, *later]
+    def __init__(self, later: Mapping[str, Callable[[], Components]]) -> None:
+        self._found: dict[str, Components] = {}
+        self._later = dict(later)
+        self._order = tuple(later)
+        self.errors: dict[str, CrowdbotError] = {}
 
     def of(self, category: str) -> Components:
-        """The components of one category."""
+        """Return the components of one category; none if they cannot be had, see `errors`."""
         if category in self._later:
-            self._found[category] = self._later.pop(category)()
+            try:
+                self._found[category] = self._later[category]()
+            except CrowdbotError as error:
+                if is_user_interrupt(error):
+                    raise
+                self.errors[category] = error
+            del self._later[category]
         return self._found.get(category, ())
+
+    @cached_property
+    def data_digest(self) -> str:
+        """SHA-256 of the files that their specs declare as data; empty without any."""
+        return data_digest(self)
 
     @property
     def known(self) -> Components:
-        """Those that were asked for."""
-        return tuple(c for found in self._found.values() for c in found)
+        """Those whose category was asked for."""
+        return tuple(c for category in self._order for c in self._found.get(category, ()))
 
     @property
     def _all(self) -> Components:
@@ -87,12 +104,12 @@ class ComponentsByKind(Mapping[str, Mapping[str, Component[Any]]]):
 
 
 def known_components(listed: Sequence[Component[Any]]) -> Sequence[Component[Any]]:
-    """Those of a plugin that are there already."""
+    """Return those of a plugin that are there already."""
     return listed.known if isinstance(listed, ComponentList) else listed
 
 
 def of_category(listed: Sequence[Component[Any]], category: str) -> Sequence[Component[Any]]:
-    """Those of a plugin that belong to one category; no other is asked for."""
+    """Return those of a plugin that belong to one category; no other is asked for."""
     if isinstance(listed, ComponentList):
         return listed.of(category)
     return [c for c in listed if c.category == category]

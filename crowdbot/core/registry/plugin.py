@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from traceback import format_exception
 from typing import Any
 
+from crowdbot.core.registry.component_list import ComponentList
 from crowdbot.dsl.spec.component import Component
+from crowdbot.errors import CrowdbotError
 
 #: The name under which crowdbot's own components are registered.
 BUILTIN = "builtin"
@@ -21,12 +24,11 @@ class Plugin:
         distribution: name and version of the package, or the path it was loaded from.
         pinned: whether it comes from an installed distribution, whose version says what it is;
             one that was installed to be edited is not.
-        given: whether somebody named its path; it need not be installed.
+        given: whether its path was named; it need not be installed.
         file: the file of its module, empty where nothing is known.
         api: the version of the hooks that it was written for; None if that is not known.
         sha256: of the files of a plugin that is not pinned; empty otherwise.
-        data: SHA-256 of the files that its components declare as their data; empty without any.
-        error: why it provides nothing; empty for a healthy one.
+        error: why it could not be loaded; empty for one that was.
         traceback: of the error, where there is one.
     """
 
@@ -37,7 +39,6 @@ class Plugin:
     file: str = ""
     api: int | None = None
     sha256: str = ""
-    data: str = ""
     components: Sequence[Component[Any]] = ()
     scenario_dirs: tuple[Any, ...] = ()
     error: str = ""
@@ -47,3 +48,29 @@ class Plugin:
     def origin(self) -> str:
         """The distribution, and the file where it is another one: for messages."""
         return f"{self.distribution} ({self.file})" if self.file else self.distribution
+
+    @property
+    def data(self) -> str:
+        """SHA-256 of the files that its components declare as their data; empty without any."""
+        listed = self.components
+        return listed.data_digest if isinstance(listed, ComponentList) else ""
+
+    def import_components(self) -> None:
+        """Import all that the plugin names as text; `failure` then says what cannot be had."""
+        len(self.components)
+
+    @property
+    def failure(self) -> str:
+        """Why it provides nothing, or not the categories that were asked for in vain."""
+        late = (f"{category}: {error}" for category, error in self._late_errors.items())
+        return self.error or "; ".join(late)
+
+    @property
+    def failure_traceback(self) -> str:
+        """The traceback of `failure`, where there is one."""
+        late = (error.__cause__ or error for error in self._late_errors.values())
+        return self.traceback or "\n".join("".join(format_exception(e)) for e in late)
+
+    @property
+    def _late_errors(self) -> Mapping[str, CrowdbotError]:
+        return self.components.errors if isinstance(self.components, ComponentList) else {}

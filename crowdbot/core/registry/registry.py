@@ -93,13 +93,18 @@ class Registry:
         """
         plugin = name.replace(":", ".").partition(".")[0]
         for p in self.plugins:
-            if p.name == plugin and p.error and plugin != BUILTIN:
-                return f"plugin '{plugin}' ({p.distribution}) failed: {p.error}"
+            if p.name == plugin and p.failure and plugin != BUILTIN:
+                return f"plugin '{plugin}' ({p.distribution}) failed: {p.failure}"
         for p in self.excluded:
             if p.name == plugin:
                 why = f"{ALLOW}={','.join(self.allowed)}" if self.allowed else "--no-plugins"
                 return f"plugin '{plugin}' ({p.distribution}) is installed but not allowed: {why}"
         return ""
+
+    def import_components(self) -> None:
+        """Import all that plugins name as text; `Plugin.failure` then says what cannot be had."""
+        for plugin in self.plugins:
+            plugin.import_components()
 
     def unknown_allowed(self) -> list[str]:
         """One line for each name on the allow-list that no plugin has."""
@@ -250,7 +255,7 @@ class Registry:
     def _union(self, category: str) -> Any:
         specs: Any = tuple(self.spec_model(category, kind) for kind in self._by_category[category])
         if not specs:
-            broken = [f"{p.name} ({p.error})" for p in self.plugins if p.error]
+            broken = [f"{p.name} ({p.failure})" for p in self.plugins if p.failure]
             why = f"; plugins that failed: {', '.join(broken)}" if broken else ""
             raise PluginError(f"no {category} is installed{why}")
         if len(specs) == 1:  # a discriminator needs two members
@@ -315,7 +320,7 @@ def _origins(plugins: Sequence[Plugin], name: str) -> str:
 def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
     owners: dict[tuple[str, str], list[int]] = {}
     for i, plugin in enumerate(plugins):
-        for component in known_components(plugin.components):  # no other's kind is like the rest
+        for component in known_components(plugin.components):
             owners.setdefault((component.category, component.kind), []).append(i)
     errors = {}
     for (category, kind), indices in owners.items():

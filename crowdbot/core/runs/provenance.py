@@ -86,7 +86,7 @@ def plugins(registry: Registry) -> list[dict[str, Any]]:
             "distribution": Path(p.distribution).resolve().name if p.given else p.distribution,
             "pinned": p.pinned,
             **({} if p.pinned else {"sha256": p.sha256}),
-            **({"data": p.data} if p.data else {}),
+            **({"data": p.data} if p.name != BUILTIN and p.data else {}),
         }
         for p in registry.plugins
         if not p.error

@@ -60,8 +60,3 @@ EVASIVE_ACCELERATION = declare(
         "excess": {"self_value": 0.0},
     },
 )
-
-COMPONENTS = (
-    PUSH_WORK,
-    EVASIVE_ACCELERATION,
-)

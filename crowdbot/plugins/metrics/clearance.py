@@ -99,12 +99,3 @@ SPACE_COMPLIANCE = declare(
     maximum=1.0,
     more_people="down",
 )
-
-COMPONENTS = (
-    MIN_CLEARANCE,
-    AVG_CLEARANCE,
-    INTIMATE_TIME_FRACTION,
-    PERSONAL_TIME_FRACTION,
-    SOCIAL_TIME_FRACTION,
-    SPACE_COMPLIANCE,
-)

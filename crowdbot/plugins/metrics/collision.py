@@ -107,10 +107,3 @@ COLLISIONS_AT_FAULT = declare(
     refinement="same",
     variants=("robot", "person"),
 )
-
-COMPONENTS = (
-    COLLISION_COUNT,
-    COLLISION_SEVERITY,
-    COLLISION_RATE,
-    COLLISIONS_AT_FAULT,
-)

@@ -53,9 +53,3 @@ class ContactTimeSpec(MetricSpec):
 CONTACT_TIME = declare(
     ContactTimeSpec, symbol="T_c", unit="s", better="lower", minimum=0.0, more_people="up"
 )
-
-COMPONENTS = (
-    MAX_CONTACT_FORCE,
-    CONTACT_IMPULSE,
-    CONTACT_TIME,
-)

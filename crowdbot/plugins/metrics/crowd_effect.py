@@ -105,11 +105,3 @@ CROWD_DEVIATION = declare(
     minimum=0.0,
     self_value=0.0,
 )
-
-COMPONENTS = (
-    EFFECT_ON_TIME,
-    EFFECT_ON_VELOCITY,
-    NEIGHBOURS_TIME_TO_GOAL,
-    NEIGHBOURS_VELOCITY,
-    CROWD_DEVIATION,
-)

@@ -76,8 +76,3 @@ CONTACTS_PER_KM = declare(
         "driven_way": {"unit": "km", "better": "none"},
     },
 )
-
-COMPONENTS = (
-    CONTACTS_AT_FAULT,
-    CONTACTS_PER_KM,
-)

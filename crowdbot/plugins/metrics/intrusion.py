@@ -42,5 +42,3 @@ INTRUSION = declare(
         "way": {"better": "none"},
     },
 )
-
-COMPONENTS = (INTRUSION,)

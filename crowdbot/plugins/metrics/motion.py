@@ -132,14 +132,3 @@ class DimensionlessJerkSpec(MetricSpec):
 DIMENSIONLESS_JERK = declare(
     DimensionlessJerkSpec, symbol="DLJ", unit="1", better="lower", experimental=True, minimum=0.0
 )
-
-COMPONENTS = (
-    TIME_NOT_MOVING,
-    STALLED_TIME,
-    CUMULATIVE_HEADING_CHANGE,
-    PATH_IRREGULARITY,
-    SPEED,
-    ACCELERATION,
-    JERK,
-    DIMENSIONLESS_JERK,
-)

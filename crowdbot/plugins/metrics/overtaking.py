@@ -36,5 +36,3 @@ OVERTAKING_COUNT = declare_metric(
     more_people="up",
     variants=("literal", "corrected"),
 )
-
-COMPONENTS = (OVERTAKING_COUNT,)

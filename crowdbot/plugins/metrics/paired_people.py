@@ -70,8 +70,3 @@ DELAY = declare(
         "whole": {"better": "none"},
     },
 )
-
-COMPONENTS = (
-    DISPLACEMENT,
-    DELAY,
-)

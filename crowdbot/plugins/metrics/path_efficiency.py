@@ -85,9 +85,3 @@ RELATIVE_JERK = declare(
         "legacy": {"minimum": 0.0, "changes_with": {"rotate": "|x| + |y| depends on the axes"}},
     },
 )
-
-COMPONENTS = (
-    RELATIVE_TIME_TO_GOAL,
-    RELATIVE_PATH_LENGTH,
-    RELATIVE_JERK,
-)

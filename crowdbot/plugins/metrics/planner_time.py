@@ -30,8 +30,3 @@ class MaxPlannerTimeSpec(MetricSpec):
 MAX_PLANNER_TIME = declare(
     MaxPlannerTimeSpec, symbol="t_p,max", spec_version=2, unit="s", better="none", minimum=0.0
 )
-
-COMPONENTS = (
-    MEAN_PLANNER_TIME,
-    MAX_PLANNER_TIME,
-)

@@ -26,5 +26,3 @@ REGRESS = declare(
     minimum=0.0,
     variants={"corrected": {}, "time_share": {"unit": "1", "maximum": 1.0}},
 )
-
-COMPONENTS = (REGRESS,)

@@ -87,10 +87,3 @@ LOCAL_DENSITY = declare(
     minimum=0.0,
     more_people="up",
 )
-
-COMPONENTS = (
-    PROXIMITY,
-    NORMALIZED_PROXIMITY,
-    NEIGHBOUR_COUNT,
-    LOCAL_DENSITY,
-)

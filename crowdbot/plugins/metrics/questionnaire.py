@@ -42,8 +42,3 @@ USE = declare(
     maximum=7.0,
     variants=("usefulness", "ease_of_use", "ease_of_learning", "satisfaction"),
 )
-
-COMPONENTS = (
-    NASA_TLX,
-    USE,
-)

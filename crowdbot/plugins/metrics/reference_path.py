@@ -63,10 +63,3 @@ class SdtwSpec(MetricSpec):
 
 
 SDTW = declare(SdtwSpec, symbol="SDTW", unit="1", better="higher", minimum=0.0, maximum=1.0)
-
-COMPONENTS = (
-    ADE_TO_REFERENCE,
-    FDE_TO_REFERENCE,
-    NDTW,
-    SDTW,
-)

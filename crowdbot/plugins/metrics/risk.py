@@ -127,11 +127,3 @@ MIN_TIME_TO_COLLISION = declare(
     more_people="down",
     variants=("corrected", "disc"),
 )
-
-COMPONENTS = (
-    RISK,
-    EXPECTED_SEVERITY,
-    TIME_EXPOSED,
-    INTEGRATED_TIME_TO_COLLISION,
-    MIN_TIME_TO_COLLISION,
-)

@@ -52,5 +52,3 @@ SAFE_EFFICIENCY = declare(
     maximum=1.0,
     more_people="down",
 )
-
-COMPONENTS = (SAFE_EFFICIENCY,)

@@ -63,9 +63,3 @@ FLUENCY = declare(
         "variation_rate": {"unit": "1/s", "better": "lower", "minimum": 0.0},
     },
 )
-
-COMPONENTS = (
-    AGREEMENT,
-    USER_INPUT_ENTROPY,
-    FLUENCY,
-)

@@ -183,16 +183,3 @@ AGGREGATED_TIME = declare(
     minimum=0.0,
     more_people="up",
 )
-
-COMPONENTS = (
-    SUCCESS,
-    SUCCESS_NO_COLLISION,
-    SPL,
-    STL,
-    TIMEOUT,
-    FINAL_DISTANCE_TO_GOAL,
-    MIN_DISTANCE_TO_GOAL,
-    PATH_EFFICIENCY,
-    FAILURE_TO_PROGRESS,
-    AGGREGATED_TIME,
-)

@@ -47,9 +47,3 @@ class AvgWallClearanceSpec(MetricSpec):
 
 
 AVG_WALL_CLEARANCE = declare(AvgWallClearanceSpec, symbol="WD_avg", unit="m", better="higher")
-
-COMPONENTS = (
-    WALL_CONTACT_COUNT,
-    MIN_WALL_CLEARANCE,
-    AVG_WALL_CLEARANCE,
-)

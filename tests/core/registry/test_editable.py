@@ -14,15 +14,15 @@ PLUGIN = """
 from typing import ClassVar, Literal
 from crowdbot.plugin import Component
 from crowdbot.dsl.spec.component_specs import PlannerSpec
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 
 class Spec(PlannerSpec):
     kind: Literal["{name}.wait"] = "{name}.wait"
     {data}
 
 @hookimpl
-def crowdbot_planners():
-    return [Component(spec=Spec, build="{name}_plug:build", summary="waits")]
+def crowdbot_components():
+    return {{"planner": [Component(spec=Spec, build="{name}_plug:build", summary="waits")]}}
 """
 
 

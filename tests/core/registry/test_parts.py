@@ -18,7 +18,7 @@ PLUGIN = '''
 from typing import Any, ClassVar, Literal
 from pydantic import Field, SerializeAsAny
 from crowdbot.plugin import Component, CrowdPolicySpec, CostFunctionSpec, NoiseSpec, SensorSpec
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 
 class MixSpec(CrowdPolicySpec):
     """A policy of costs of its own."""
@@ -30,8 +30,8 @@ def build(spec, terms, costs=None, agents=None):
     return [spec.kind, *terms]
 
 @hookimpl
-def crowdbot_crowd_policies():
-    return [Component(spec=MixSpec, build="made:build", summary="a mix")]
+def crowdbot_components():
+    return {"crowd policy": [Component(spec=MixSpec, build="made:build", summary="a mix")]}
 '''
 
 

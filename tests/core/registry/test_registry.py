@@ -20,7 +20,7 @@ PLUGIN = """
 from typing import ClassVar, Literal
 from crowdbot.plugin import Component
 from crowdbot.plugin import PlannerSpec, RobotSpec
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 CROWDBOT_API = {api}
 
 class Spec({base}):
@@ -29,7 +29,7 @@ class Spec({base}):
 
 @hookimpl
 def {hook}():
-    return [Component(spec=Spec, build="{name}:build", summary="test")]
+    return {{"{category}": [Component(spec=Spec, build="{name}:build", summary="test")]}}
 
 def build(spec):
     return spec
@@ -48,7 +48,8 @@ def plugin(folder: Path, name: str = "acme", **changes: Any) -> Path:
     given = {
         "api": 1,
         "kind": f"{name}.go",
-        "hook": "crowdbot_planners",
+        "hook": "crowdbot_components",
+        "category": "planner",
         "name": name,
         "base": "PlannerSpec",
     }
@@ -89,13 +90,13 @@ def test_equal_registries_have_one_model_of_scenarios(tmp_path: Path) -> None:
     assert found().scenario_model is found().scenario_model
     planner = found(plugin(tmp_path))
     assert planner.scenario_model is found().scenario_model  # no scenario holds a planner
-    other = plugin(tmp_path, "broken", hook="crowdbot_robots", base="RobotSpec")
+    other = plugin(tmp_path, "broken", category="robot", base="RobotSpec")
     more = found(other)
     assert more.scenario_model is not found().scenario_model
     assert more.scenario_model is more.scenario_model
 
 
-def test_planners_and_metrics_are_asked_for_once_when_they_are_wanted() -> None:
+def test_a_category_is_asked_for_once_when_it_is_wanted() -> None:
     asked: list[str] = []
 
     def later(category: str) -> Callable[[], tuple[Component[Any], ...]]:
@@ -106,27 +107,27 @@ def test_planners_and_metrics_are_asked_for_once_when_they_are_wanted() -> None:
         return ask
 
     registry = found()
-    robots = tuple(registry.components("robot").values())
-    listed = ComponentList({"robot": robots}, {c: later(c) for c in ("planner", "metric")})
-    assert listed.known == robots
+    listed = ComponentList({c: later(c) for c in ("robot", "planner", "metric")})
+    assert listed.known == ()
     by_kind = ComponentsByKind(("robot", "planner", "metric"), [listed])
     assert list(by_kind) == ["robot", "planner", "metric"]
     assert by_kind["robot"] == registry.components("robot")
-    assert asked == []
+    robots = listed.of("robot")
+    assert listed.known == robots
+    assert asked == ["robot"]
     assert by_kind["planner"] == registry.components("planner")
     assert list(by_kind["metric"]) == sorted(registry.components("metric"))
     assert listed.of("planner") == listed[len(robots) : len(robots) + len(listed.of("planner"))]
     assert len(listed) == sum(len(by_kind[c]) for c in by_kind)
-    assert asked == ["planner", "metric"]
+    assert asked == ["robot", "planner", "metric"]
     with pytest.raises(KeyError):
         by_kind["planer"]
 
 
-def test_nothing_of_what_is_asked_for_later_declares_data() -> None:
-    """What declares data is hashed with its plugin when that is loaded."""
-    for category in ("planner", "metric"):
-        for component in found().components(category).values():
-            assert declared_data(component.spec) == ()
+def test_nothing_of_our_own_declares_data() -> None:
+    """The hash of data is recorded of plugins only."""
+    for plugin in found().plugins:
+        assert [c.kind for c in plugin.components if declared_data(c.spec)] == []
 
 
 def test_a_plugin_adds_its_components(tmp_path: Path) -> None:
@@ -165,7 +166,7 @@ def test_a_broken_plugin_hurts_only_itself(text: str, message: str, tmp_path: Pa
     [
         ({"kind": "go"}, "must start with 'acme.'"),
         ({"kind": "dwa"}, "must start with 'acme.'"),
-        ({"hook": "crowdbot_robots"}, "crowdbot_robots returned acme.go, a planner"),
+        ({"category": "robot"}, "acme.go is listed as a robot, but it is a planner"),
         ({"hook": "crowdbot_planers"}, "crowdbot_planers"),
     ],
 )

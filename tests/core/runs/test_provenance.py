@@ -92,8 +92,8 @@ def test_a_plugin_is_the_same_however_its_path_is_written(
     """A campaign's workers get absolute paths; what they make must be what was planned."""
     (tmp_path / "here").mkdir()
     (tmp_path / "loose.py").write_text(
-        "from crowdbot.hookspecs import hookimpl\n\n\n@hookimpl\ndef crowdbot_planners():\n"
-        "    return []\n"
+        "from crowdbot.plugin import hookimpl\n\n\n@hookimpl\ndef crowdbot_components():\n"
+        "    return {}\n"
     )
     monkeypatch.chdir(tmp_path / "here")
     told = [

@@ -14,18 +14,18 @@ from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError, UnknownNameError
 from crowdbot.plugin import Component, MetricComponent, MetricSpec
-from crowdbot.plugins.metrics import COMPONENTS
+from tests.built_in import built_in
 from tests.plugins.metrics.scenes import REGISTRY, grid, line, random_scene, scene
 
 T = grid(2)
-STABLE = {c.kind for c in COMPONENTS if not c.experimental}
+STABLE = {c.kind for c in built_in("metric") if not c.experimental}
 RUN = scene(T, line(T, (0, 0), (1, 0)), [line(T, (5, 0), (-1, 0))], goal_time=2.0)
 COMMANDS = crowdbot.Commands.from_arrays(
     t=T, v_user=T, w_user=T, v_sc=T, w_sc=T, v_max=1.0, w_max=1.0
 )
 
 
-@pytest.mark.parametrize("component", COMPONENTS, ids=lambda c: c.kind)
+@pytest.mark.parametrize("component", built_in("metric"), ids=lambda c: c.kind)
 def test_every_score_says_what_its_metric_declares(component: MetricComponent[Any]) -> None:
     runs: list[tuple[Any, Any, Any]] = [
         (RUN, RUN, RUN),
@@ -90,7 +90,7 @@ class OldSpec(MetricSpec):
 
 def test_retired_metrics_name_their_successor() -> None:
     old = Component(spec=OldSpec, build="x:y", summary="old", successor="risk", card="# old\n")
-    plugins = [Plugin(name="builtin", distribution="crowdbot", components=COMPONENTS)]
+    plugins = [Plugin(name="builtin", distribution="crowdbot", components=built_in("metric"))]
     plugins += [Plugin(name="acme", distribution="acme 1", components=(old,))]
     registry = assemble(plugins)
     with pytest.raises(InputError, match=r"'acme.old' is retired; use 'risk'"):

@@ -10,7 +10,7 @@ from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.scoring.four_scores import MAIN_SCORES, PRIMARY, is_main, main_first
 from crowdbot.core.statistics import Table, headline_names, summarise
 from crowdbot.core.statistics.signed_rank import holm
-from crowdbot.plugins.metrics import COMPONENTS
+from tests.built_in import built_in_metrics
 from tests.core.statistics.made_up_results import censored, run, score
 
 OTHERS = [f"a{i:02d}" for i in range(30)]
@@ -34,7 +34,7 @@ def results(shift: float, others: float = 0.0) -> Results:
 
 
 def test_the_four_are_scored_by_metrics_that_exist() -> None:
-    known = {c.kind: c for c in COMPONENTS}
+    known = {c.kind: c for c in built_in_metrics()}
     for one in MAIN_SCORES:
         assert one.variant in known[one.metric].variants
         assert known[one.metric].variants[one.variant].better in ("higher", "lower")

@@ -28,13 +28,13 @@ from crowdbot.core.crowd.velocity_search.records import AGENT, NEIGHBOUR, WALL, 
 from crowdbot.core.support.records import RecordType, rows_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.plugin import CostFunctionSpec, Range
-from crowdbot.plugins.crowd import COSTS
+from tests.built_in import built_in
 from tests.examples import costly
 from tests.plugins.crowd import cost_formulas as formulas
 from tests.plugins.crowd.cost_formulas import Other, Scene
 
 OWN = {"ttca_dca", "rvo"}  # tested with the engine
-SPECS = {m.spec.model_fields["kind"].default: m.spec for m in COSTS}
+SPECS = {m.spec.model_fields["kind"].default: m.spec for m in built_in("cost function")}
 KINDS = sorted(set(SPECS) - OWN)
 FORMULAS = [k for k in KINDS if k != "random_function"]
 
@@ -81,7 +81,7 @@ def _solve(
 
 
 def compiled(spec: CostFunctionSpec) -> CompiledCost:
-    (found,) = (c for c in COSTS if c.spec is type(spec))
+    (found,) = (c for c in built_in("cost function") if c.spec is type(spec))
     module, name = found.build.split(":")
     build = getattr(importlib.import_module(module), name)
     return build(spec)  # type: ignore[no-any-return]

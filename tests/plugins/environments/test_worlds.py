@@ -11,12 +11,12 @@ import shapely  # type: ignore[import-untyped,unused-ignore]
 from pydantic import ValidationError
 
 from crowdbot.plugin import EnvironmentParts, EnvironmentSpec
-from crowdbot.plugins.environments import COMPONENTS
 from crowdbot.plugins.environments.corridor import CorridorSpec
 from crowdbot.plugins.environments.place_build import build
 from crowdbot.plugins.environments.walkways import WalkwaySpec
+from tests.built_in import built_in
 
-SPECS = {component.kind: component.spec for component in COMPONENTS}
+SPECS = {component.kind: component.spec for component in built_in("environment")}
 
 
 def _spec(kind: str, **fields: Any) -> EnvironmentSpec:
@@ -37,7 +37,7 @@ def _floor(parts: EnvironmentParts) -> Any:
     return shapely.difference(shapely.union_all(rings), solids)
 
 
-@pytest.mark.parametrize("component", COMPONENTS, ids=lambda c: c.kind)
+@pytest.mark.parametrize("component", built_in("environment"), ids=lambda c: c.kind)
 def test_their_places_lie_on_their_floor(component: Any) -> None:
     for example in component.examples:
         spec = component.spec.model_validate(example)

@@ -16,7 +16,7 @@ from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
-from crowdbot.plugins.metrics import COMPONENTS
+from tests.built_in import built_in
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ ROBOT_RADIUS = 0.18
 AGENT_RADIUS = 0.25
 REACH = ROBOT_RADIUS + AGENT_RADIUS
 REGISTRY: Registry = assemble(
-    [Plugin(name="builtin", distribution="crowdbot", components=COMPONENTS)]
+    [Plugin(name="builtin", distribution="crowdbot", components=built_in("metric"))]
 )
 
 

@@ -19,7 +19,7 @@ KINDS = sorted(discover(allow=(), entry_points=False).components("metric"))
 PLUGIN = """
 from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.hookspecs import hookimpl
+from crowdbot.plugin import hookimpl
 
 class HeightSpec(MetricSpec):
     '''Height.'''
@@ -27,8 +27,9 @@ class HeightSpec(MetricSpec):
     kind: Literal["acme_cards.height"] = "acme_cards.height"
 
 @hookimpl
-def crowdbot_metrics():
-    return [declare_metric(HeightSpec, symbol="h", unit="m", better="none", category="x"{card})]
+def crowdbot_components():
+    more = dict(category="x"{card})
+    return {{"metric": [declare_metric(HeightSpec, symbol="h", unit="m", better="none", **more)]}}
 """
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from crowdbot.plugins.metrics import COMPONENTS
+from tests.built_in import built_in_metrics
 
-BY_KIND = {c.kind: c for c in COMPONENTS}
+BY_KIND = {c.kind: c for c in built_in_metrics()}
 
 
 def directions(kind: str) -> dict[str, str]:

@@ -33,6 +33,7 @@ from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Pinhole, Reading, SensorInfo
 from crowdbot.core.types.task import Task
 from crowdbot.errors import CrowdbotError, InputError, printable
+from crowdbot.old_names import collected_old_names
 
 _TYPES = SimpleNamespace(
     Task=Task, Pose=Pose, RobotBody=RobotBody, RobotLimits=RobotLimits, SensorInfo=SensorInfo,
@@ -65,17 +66,25 @@ class OwnSide:
         """Find the planner and say what it is."""
         del sent
         find = self._file if "file" in self._what else self._kind
-        holder, call, self._build = find()
+        with collected_old_names() as old_names:
+            holder, call, self._build = find()
         with call("what it says of itself"):
             said = serving.described(holder)
-        return {"type": "hello", "protocol": serving.PROTOCOL, "arrays": "shared", **said}
+        return {
+            "type": "hello",
+            "protocol": serving.PROTOCOL,
+            "arrays": "shared",
+            "old_names": old_names,
+            **said,
+        }
 
     def reset(self, sent: Mapping[str, Any]) -> dict[str, Any]:
         """Make the planner and reset it."""
         assert self._build is not None
         self._decoder.open_memory(sent["memory"])
         who = planner_title(self._what["name"], self._what["origin"])
-        self._guarded = GuardedPlanner(self._build(), who)
+        with collected_old_names() as old_names:
+            self._guarded = GuardedPlanner(self._build(), who)
         decode = self._decoder
         self._guarded.reset(
             decode.task(sent["task"]),
@@ -83,7 +92,7 @@ class OwnSide:
             decode.sensors(sent["sensors"]),
             sent["seed"],
         )
-        return {"type": "ready"}
+        return {"type": "ready", "old_names": old_names}
 
     def observe(self, sent: dict[str, Any]) -> dict[str, Any]:
         """One step."""

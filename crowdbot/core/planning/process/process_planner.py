@@ -34,6 +34,7 @@ from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
 from crowdbot.errors import InputError, PlannerError, printable
+from crowdbot.old_names import say_old_names
 
 #: Seconds that a process has to go by itself, and to be gone after it closed its line.
 _LEAVES, _DIES = 1.0, 0.3
@@ -254,6 +255,8 @@ class ProcessPlanner:
         except BaseException:  # the user's interrupt
             self.close()
             raise
+        if self._plan.what is not None:
+            say_old_names(said.get("old_names", ()))
         if said.get("type") == "error":
             self._failed(said)
         if said.get("type") not in wanted or said.get("step", 0) != message.get("step", 0):

@@ -1,101 +1,35 @@
-"""One of everything that crowdbot can be extended with. Words only: nothing heavy is imported."""
+"""One of everything that crowdbot can be extended with."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-from crowdbot.plugin import (
-    Component,
-    CostFunctionSpec,
-    CrowdPolicySpec,
-    EnvironmentSpec,
-    MetricSpec,
-    NoiseSpec,
-    PlannerSpec,
-    RobotSpec,
-    SensorSpec,
-    hookimpl,
-)
-
-from crowdbot_acme.cart import CART
-from crowdbot_acme.drift import DRIFT
-from crowdbot_acme.glider import GLIDER
-from crowdbot_acme.hesitation import HESITATION
-from crowdbot_acme.office import OFFICE
-from crowdbot_acme.outside import OUTSIDE
-from crowdbot_acme.personal_space import PERSONAL_SPACE, PERSONAL_SPACE_NUMPY
-from crowdbot_acme.radar import RADAR
-from crowdbot_acme.speckle import SPECKLE
-from crowdbot_acme.swerve import SWERVE
+from crowdbot.plugin import hookimpl
 
 CROWDBOT_API = 1
 
-COMPONENTS = (
-    CART,
-    DRIFT,
-    GLIDER,
-    HESITATION,
-    OFFICE,
-    OUTSIDE,
-    PERSONAL_SPACE,
-    PERSONAL_SPACE_NUMPY,
-    RADAR,
-    SPECKLE,
-    SWERVE,
-)
-
 
 @hookimpl
-def crowdbot_environments() -> Sequence[Component[EnvironmentSpec]]:
-    """Places."""
-    return [OFFICE]
-
-
-@hookimpl
-def crowdbot_robots() -> Sequence[Component[RobotSpec]]:
-    """Robots."""
-    return [CART, GLIDER]
-
-
-@hookimpl
-def crowdbot_sensors() -> Sequence[Component[SensorSpec]]:
-    """Sensors."""
-    return [RADAR]
-
-
-@hookimpl
-def crowdbot_noise_generators() -> Sequence[Component[NoiseSpec]]:
-    """Errors of sensors."""
-    return [SPECKLE]
-
-
-@hookimpl
-def crowdbot_planners() -> Sequence[Component[PlannerSpec]]:
-    """Planners."""
-    return [SWERVE, OUTSIDE]
-
-
-@hookimpl
-def crowdbot_crowd_policies() -> Sequence[Component[CrowdPolicySpec]]:
-    """Crowd policies."""
-    return [DRIFT]
-
-
-@hookimpl
-def crowdbot_cost_functions() -> Sequence[Component[CostFunctionSpec]]:
-    """Cost functions."""
-    return [PERSONAL_SPACE, PERSONAL_SPACE_NUMPY]
-
-
-@hookimpl
-def crowdbot_metrics() -> Sequence[Component[MetricSpec]]:
-    """Metrics."""
-    return [HESITATION]
+def crowdbot_components() -> Mapping[str, Sequence[str]]:
+    """Return references, which are imported when their category is first asked for."""
+    return {
+        "environment": ["crowdbot_acme.office:OFFICE"],
+        "robot": ["crowdbot_acme.cart:CART", "crowdbot_acme.glider:GLIDER"],
+        "sensor": ["crowdbot_acme.radar:RADAR"],
+        "noise": ["crowdbot_acme.speckle:SPECKLE"],
+        "planner": ["crowdbot_acme.swerve:SWERVE", "crowdbot_acme.outside:OUTSIDE"],
+        "crowd policy": ["crowdbot_acme.drift:DRIFT"],
+        "cost function": [
+            "crowdbot_acme.personal_space:PERSONAL_SPACE",
+            "crowdbot_acme.personal_space:PERSONAL_SPACE_NUMPY",
+        ],
+        "metric": ["crowdbot_acme.hesitation:HESITATION"],
+    }
 
 
 @hookimpl
 def crowdbot_scenario_dirs() -> Sequence[Traversable]:
-    """The folder with office.yaml, found as ``acme:office``."""
+    """Return the folder with office.yaml, found as ``acme:office``."""
     return [files(__name__) / "suites"]

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from crowdbot.testing import parametrize_with_checks
-
-from crowdbot_acme import COMPONENTS
+from crowdbot.testing import components_of, parametrize_with_checks
 
 
-@parametrize_with_checks(COMPONENTS)
+@parametrize_with_checks(components_of("acme"))
 def test_conformance(check: Callable[[], None]) -> None:
     check()

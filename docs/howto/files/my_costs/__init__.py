@@ -35,5 +35,5 @@ QUICK_ELBOW_ROOM = Component(
 
 
 @hookimpl
-def crowdbot_cost_functions() -> list[Component[CostFunctionSpec]]:
-    return [ELBOW_ROOM, QUICK_ELBOW_ROOM]
+def crowdbot_components() -> dict[str, list[Component[CostFunctionSpec]]]:
+    return {"cost function": [ELBOW_ROOM, QUICK_ELBOW_ROOM]}

@@ -33,5 +33,5 @@ PUCK = Component(
 
 
 @hookimpl
-def crowdbot_robots() -> list[Component[RobotSpec]]:
-    return [TROLLEY, PUCK]
+def crowdbot_components() -> dict[str, list[Component[RobotSpec]]]:
+    return {"robot": [TROLLEY, PUCK]}

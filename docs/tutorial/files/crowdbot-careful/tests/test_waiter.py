@@ -1,8 +1,6 @@
-from crowdbot_careful.waiter import WAITER
-
-from crowdbot.testing import parametrize_with_checks
+from crowdbot.testing import components_of, parametrize_with_checks
 
 
-@parametrize_with_checks([WAITER])
+@parametrize_with_checks(components_of("careful"))
 def test_conformance(check):
     check()

@@ -1,0 +1,95 @@
+"""Old names of what plugins use: they work until crowdbot 1.0, with a warning that says the new."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from types import ModuleType
+from typing import Any, TextIO
+
+from crowdbot.errors import printable
+
+_LOG = logging.getLogger("crowdbot")
+#: Lists of `collected_old_names` that are open, the innermost last.
+_COLLECTED: list[list[str]] = []
+
+
+class OldNameWarning(DeprecationWarning):
+    """A name is old, and ends with crowdbot 1.0."""
+
+
+def old_name(module: str, new: ModuleType, name: str) -> Any:
+    """Return a name that has moved to another module, for the ``__getattr__`` of the old one.
+
+    Raises:
+        AttributeError: the new module has no such name.
+    """
+    if name not in new.__all__:
+        raise AttributeError(f"module '{module}' has no attribute '{name}'")
+    text = f"{module} is an old name that ends with crowdbot 1.0: import from {new.__name__}"
+    warnings.warn(text, OldNameWarning, stacklevel=3)
+    return getattr(new, name)
+
+
+@contextmanager
+def collected_old_names() -> Iterator[list[str]]:
+    """Collect warnings of old names, one line each, that are raised inside; others are shown."""
+    lines: list[str] = []
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+
+        def keep(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            if issubclass(category, OldNameWarning):
+                lines.append(f"{filename}:{lineno}: {message}")
+            else:
+                usual(message, category, filename, lineno, file, line)
+
+        warnings.showwarning = keep
+        if not _are_errors():
+            warnings.filterwarnings("default", category=OldNameWarning)
+        _COLLECTED.append(lines)
+        try:
+            yield lines
+        finally:
+            _COLLECTED.remove(lines)
+
+
+@contextmanager
+def shown_old_names() -> Iterator[None]:
+    """Show warnings of old names that are raised inside, one line each."""
+    lines: list[str] = []
+    try:
+        with collected_old_names() as lines:
+            yield
+    finally:
+        say_old_names(lines)
+
+
+def say_old_names(lines: Iterable[str]) -> None:
+    """Log lines of `collected_old_names`, each once in a process, or hand them on where asked."""
+    for line in lines:
+        if _COLLECTED:
+            _COLLECTED[-1].append(line)
+        else:
+            _say(line)
+
+
+@cache
+def _say(line: str) -> None:
+    _LOG.warning("warning: %s", printable(line))
+
+
+def _are_errors() -> bool:
+    """Return True if somebody asked for an exception in place of these warnings."""
+    kinds = [kind for action, _, kind, *_ in warnings.filters if action == "error"]
+    return any(issubclass(OldNameWarning, kind) for kind in kinds)
