@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any, get_args, get_origin
 
 from crowdbot import plugin
 from crowdbot.dsl.spec.quantities import UNITS, Quantity
+from crowdbot.plugin import for_crowds, for_metrics, for_sensors
 from crowdbot.plugin.homes import HOMES
 
+#: Tools that few components need.
+ROOMS = (for_metrics, for_sensors, for_crowds)
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
 
 _HEAD = """\
@@ -28,6 +32,12 @@ Names are imported when they are first used: a module that needs only `Command` 
 numba, and one that needs only names of the first two sections imports no numpy. The page
 [plugins](plugins.md) says what a component is, and what its methods are called with.
 """
+_HEAD_OF_ROOMS = """\
+## Tools for some components
+
+What crowdbot's own metrics, sensors and crowds use beside that. They are modules of their own, for
+the build side.
+"""
 #: What has no docstring of its own.
 _SAID = {
     "Better": "Which scores are better: `higher`, `lower`, those near the `reference`, or `none`.",
@@ -38,6 +48,12 @@ _SAID = {
     "PORTAL": "`Agents.at_goal`: leave through a portal and come in by its entrance.",
     "REMOVE": "`Agents.at_goal`: leave the world.",
     "STOP": "`Agents.at_goal`: stand there.",
+    "Answer": "An answer to a question, or None.",
+    "DISTANCE_TOLERANCE": "Slack of the rule who is near, m.",
+    "NO_RAYS": "An array of no rays.",
+    "MOST_MILLIMETRES": "Farthest depth that whole millimetres in 16 bits can say, m.",
+    "TLX_SCALES": "Scales of the questionnaire NASA-TLX.",
+    "USE_ITEMS": "Scale -> number of items of the questionnaire USE.",
     "hookimpl": "Marks a function as a hook: `@hookimpl`.",
     "Heights": "Bottom and top, m.",
     "CONTACT_STIFFNESS": "Push between overlapping people where a policy does not say, 1/s².",
@@ -57,6 +73,16 @@ _TOGETHER: Mapping[str, str] = {
     ),
     "WORK_COLUMNS": "Numbers in a row of `work`.",
     "COST_PARAMS": "The record of `CostParams`, for functions without parameters of their own.",
+    "X Y RADIUS BOTTOM TOP": (
+        "Columns of bodies of people: centre, radius, lower and upper end, m."
+    ),
+    "NEAR FAR LOW HIGH": (
+        "Columns of a fan of rays: where a body begins and ends along it, and its heights, m."
+    ),
+    "ZERO ALONG_PREFERRED PREFERRED_SPEED": (
+        "Of `Sampling`: no velocity as base, the preferred direction as axis, the preferred speed "
+        "as radius."
+    ),
 }
 #: Heading -> beginnings of the modules, below crowdbot.core, from which its names come.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
@@ -70,7 +96,7 @@ _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Crowd": ("crowd.agents", "crowd.desired", "crowd.engine", "crowd.from", "crowd.policy",
               "crowd.recorded", "crowd.world"),
     "Cost functions": ("crowd.velocity_search", "crowd.contact"),
-    "Arrays and compiled code": ("types.arrays", "support"),
+    "Arrays and compiled code": ("types.arrays", "support", "geometry.rotation", "geometry.rough"),
 }  # fmt: skip
 
 
@@ -81,6 +107,9 @@ def author_surface_page() -> str:
     parts.append(_table(_quantities()))
     for title in _GROUPS:
         parts += [f"## {title}\n", _table(_group(title))]
+    parts.append(_HEAD_OF_ROOMS)
+    for room in ROOMS:
+        parts += [f"### {room.__name__}\n", _table(_rows(room, room.__all__))]
     return "\n".join(parts).rstrip() + "\n"
 
 
@@ -116,13 +145,17 @@ def _is_quantity(value: object) -> bool:
 def _group(title: str) -> Iterator[tuple[str, str]]:
     of_documents = _of_documents()
     names = [n for n in plugin.__all__ if n not in of_documents and _title(n) == title]
+    yield from _rows(plugin, names)
+
+
+def _rows(module: ModuleType, names: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield a line on each name of a module, those that say what they mean together first."""
     together = {n: words for words in _TOGETHER for n in words.split()}
-    for words, text in _TOGETHER.items():
-        if words.split()[0] in names:
-            yield ", ".join(f"`{n}`" for n in words.split()), text
+    for words in dict.fromkeys(together[n] for n in names if n in together):
+        yield ", ".join(f"`{n}`" for n in words.split()), _TOGETHER[words]
     for name in names:
         if name not in together:
-            yield f"`{name}`", _line(name)
+            yield f"`{name}`", _line(name, module)
 
 
 def _title(name: str) -> str:
@@ -135,10 +168,10 @@ def _home(name: str) -> str:
     return next(m for m, names in HOMES.items() if name in names.split())
 
 
-def _line(name: str) -> str:
+def _line(name: str, module: ModuleType = plugin) -> str:
     """The first paragraph of a docstring, in one line."""
     if name in _SAID:
         return _SAID[name]
-    value: Any = getattr(plugin, name)
+    value: Any = getattr(module, name)
     text = inspect.getdoc(getattr(value, "py_func", value)) or ""
     return " ".join(text.partition("\n\n")[0].replace("``", "`").replace("|", "\\|").split())

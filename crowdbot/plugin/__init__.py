@@ -66,7 +66,10 @@ if TYPE_CHECKING:
     from crowdbot.core.crowd.world import CrowdWorld
     from crowdbot.core.environments.place_parts import place_parts
     from crowdbot.core.geometry.footprint import Footprint
+    from crowdbot.core.geometry.rotation import rotation
+    from crowdbot.core.geometry.rough_angle import rough_angle
     from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
+    from crowdbot.core.recording.from_mcap import Trajectories
     from crowdbot.core.recording.recording import Recording, RecordingInfo
     from crowdbot.core.robots.description import Description, read_description
     from crowdbot.core.robots.published import PublishedWheel, read_published
@@ -83,7 +86,8 @@ if TYPE_CHECKING:
     from crowdbot.core.sensing.range_model import RangeModel
     from crowdbot.core.sensing.scene import Scene
     from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
-    from crowdbot.core.support.compile import declared_kernel, kernel
+    from crowdbot.core.support.compile import array_kernel, declared_kernel, inline_kernel, kernel
+    from crowdbot.core.support.immutable import immutable
     from crowdbot.core.support.records import (
         RecordType,
         Rows,
@@ -92,6 +96,7 @@ if TYPE_CHECKING:
         record_type,
         record_values,
     )
+    from crowdbot.core.support.stable_order import stable_order
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.preprocess import (
         duration,
@@ -107,7 +112,6 @@ if TYPE_CHECKING:
         AgentTracks,
         ContactEvents,
         RobotTrack,
-        Trajectories,
         Trips,
     )
     from crowdbot.core.types.arrays import Array, Indices, Mask
@@ -122,13 +126,7 @@ if TYPE_CHECKING:
         RobotState,
     )
     from crowdbot.core.types.score import Score
-    from crowdbot.core.types.sensor import (
-        CameraFrame,
-        Pinhole,
-        Reading,
-        SensorInfo,
-        SensorMessage,
-    )
+    from crowdbot.core.types.sensor import CameraFrame, Pinhole, Reading, SensorInfo, SensorMessage
     from crowdbot.core.types.task import Task
     from crowdbot.dsl.spec import outlines
     from crowdbot.dsl.spec.assets import Asset
@@ -177,7 +175,7 @@ if TYPE_CHECKING:
     )
     from crowdbot.dsl.spec.range_sensor import MOST_RAYS, Incidence, RangeSensorSpec
     from crowdbot.dsl.spec.spec import ComponentSpec, Mount, Range, Rectangle, Spec, TiltableMount
-    from crowdbot.errors import InputError, PluginError, SimulationError
+    from crowdbot.errors import InputError, PluginError, SimulationError, did_you_mean, nearest
     from crowdbot.hookspecs import hookimpl
     from crowdbot.plugin.build_functions import (
         BuildCost,
@@ -334,22 +332,27 @@ __all__ = [
     "Truth",
     "VelocityPolicy",
     "WallRecord",
+    "array_kernel",
     "as_record",
     "as_rows",
     "declare_metric",
     "declared_kernel",
     "desired_acceleration",
+    "did_you_mean",
     "duration",
     "first_collision",
     "first_contact",
     "forward_speed",
     "hookimpl",
+    "immutable",
     "in_range",
+    "inline_kernel",
     "kernel",
     "list_approaching",
     "list_obstacles",
     "mount_pose",
     "mount_tilt",
+    "nearest",
     "nearest_on_segment",
     "outlines",
     "path_length",
@@ -360,9 +363,12 @@ __all__ = [
     "read_record",
     "record_type",
     "record_values",
+    "rotation",
+    "rough_angle",
     "sensor_pose_in_world",
     "sensor_rotation_in_world",
     "soonest_disc",
+    "stable_order",
     "time_to_disc",
     "time_to_segment",
     "time_weights",

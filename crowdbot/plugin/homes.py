@@ -25,6 +25,8 @@ HOMES = {
     "crowdbot.core.crowd.world": "CrowdWorld",
     "crowdbot.core.environments.place_parts": "place_parts",
     "crowdbot.core.geometry.footprint": "Footprint",
+    "crowdbot.core.geometry.rotation": "rotation",
+    "crowdbot.core.geometry.rough_angle": "rough_angle",
     "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Truth",
     "crowdbot.core.recording.from_mcap": "Trajectories",
     "crowdbot.core.recording.recording": "Recording RecordingInfo",
@@ -40,14 +42,16 @@ HOMES = {
     "crowdbot.core.sensing.range_model": "RangeModel",
     "crowdbot.core.sensing.scene": "Scene",
     "crowdbot.core.sensing.sensor": "DepthCamera NoiseGenerator Sensor SensorWithMemory",
-    "crowdbot.core.support.compile": "declared_kernel kernel",
+    "crowdbot.core.support.compile": "array_kernel declared_kernel inline_kernel kernel",
+    "crowdbot.core.support.immutable": "immutable",
     "crowdbot.core.support.records": "RecordType Rows as_record as_rows record_type record_values",
+    "crowdbot.core.support.stable_order": "stable_order",
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.preprocess": (
         "duration forward_speed path_length time_weights travel_time truncate_at_arrival yaw_rate"
     ),
     "crowdbot.core.trajectories.questionnaires": "Questionnaires",
-    "crowdbot.core.trajectories.trajectories": ("AgentTracks ContactEvents RobotTrack Trips"),
+    "crowdbot.core.trajectories.trajectories": "AgentTracks ContactEvents RobotTrack Trips",
     "crowdbot.core.types.arrays": "Array Indices Mask",
     "crowdbot.core.types.environment": "EnvironmentParts",
     "crowdbot.core.types.motion": "Command Pose",
@@ -76,7 +80,7 @@ HOMES = {
     ),
     "crowdbot.dsl.spec.range_sensor": "MOST_RAYS Incidence RangeSensorSpec",
     "crowdbot.dsl.spec.spec": "ComponentSpec Mount Range Rectangle Spec TiltableMount",
-    "crowdbot.errors": "InputError PluginError SimulationError",
+    "crowdbot.errors": "InputError PluginError SimulationError did_you_mean nearest",
     "crowdbot.hookspecs": "hookimpl",
     "crowdbot.plugin.build_functions": (
         "BuildCost BuildEnvironment BuildMetric BuildNoise BuildPlanner BuildPolicy "

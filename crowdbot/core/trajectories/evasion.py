@@ -20,12 +20,11 @@ from crowdbot.core.trajectories.encounters import (
 from crowdbot.core.trajectories.preprocess import samples_of_shorter
 from crowdbot.core.trajectories.touched import touched
 from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
+from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Two times closer than this are the same, s.
 SAME_TIME = 1e-6
-#: Slack of the rule who is near, m.
-DISTANCE_TOLERANCE = 1e-9
 
 _T = TypeVar("_T", bound=np.generic)
 _Both = tuple[Trajectories, Trajectories]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from crowdbot.errors import InputError, did_you_mean, nearest
+from crowdbot.plugin import InputError, did_you_mean, nearest
 
 #: Larger images than this are a mistake, px.
 MOST_PIXELS = 64_000_000

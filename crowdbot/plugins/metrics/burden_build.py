@@ -7,9 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import people
-from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run, own_legs
-from crowdbot.core.trajectories.headway import share_below
 from crowdbot.plugin import (
     References,
     Score,
@@ -17,6 +14,7 @@ from crowdbot.plugin import (
     Trajectories,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import Evasion, evasion, ghost_run, own_legs, people, share_below
 from crowdbot.plugins.metrics.burden import (
     EVASIVE_ACCELERATION,
     PUSH_WORK,

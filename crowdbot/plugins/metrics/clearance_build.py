@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.disc_around_robot import as_disc
-from crowdbot.core.trajectories.encounters import encounter
 from crowdbot.plugin import (
     Array,
     References,
@@ -19,6 +17,7 @@ from crowdbot.plugin import (
     time_weights,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import as_disc, encounter
 from crowdbot.plugins.metrics.clearance import (
     AVG_CLEARANCE,
     INTIMATE_TIME_FRACTION,

@@ -7,17 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import (
-    contact_runs,
-    encounter,
-    people,
-    people_speeds,
-    relative_velocity,
-    robot_of,
-    robot_velocities,
-    touching,
-)
-from crowdbot.core.trajectories.person_contacts import PersonContacts, person_contacts
 from crowdbot.plugin import (
     Array,
     References,
@@ -27,6 +16,18 @@ from crowdbot.plugin import (
     duration,
     path_length,
     truncate_at_arrival,
+)
+from crowdbot.plugin.for_metrics import (
+    PersonContacts,
+    contact_runs,
+    encounter,
+    people,
+    people_speeds,
+    person_contacts,
+    relative_velocity,
+    robot_of,
+    robot_velocities,
+    touching,
 )
 from crowdbot.plugins.metrics.collision import (
     COLLISION_COUNT,

@@ -10,8 +10,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import present
 from crowdbot.plugin import (
     Array,
     Footprint,
@@ -20,6 +18,7 @@ from crowdbot.plugin import (
     Trajectories,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import present, robot_of
 
 #: What is smaller came from rounding, m or J.
 _NOTHING = 1e-9

@@ -7,13 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import encounter, people, people_speeds
-from crowdbot.core.trajectories.preprocess import (
-    inf_to_nan,
-    samples_of_shorter,
-    truncate_to_shorter,
-)
-from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE, Durations, durations, meets_robot
 from crowdbot.plugin import (
     Array,
     References,
@@ -23,6 +16,18 @@ from crowdbot.plugin import (
     duration,
     time_weights,
     truncate_at_arrival,
+)
+from crowdbot.plugin.for_metrics import (
+    DISTANCE_TOLERANCE,
+    Durations,
+    durations,
+    encounter,
+    inf_to_nan,
+    meets_robot,
+    people,
+    people_speeds,
+    samples_of_shorter,
+    truncate_to_shorter,
 )
 from crowdbot.plugins.metrics.crowd_effect import (
     CROWD_DEVIATION,

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
-from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.plugin import (
     References,
     Score,
@@ -16,6 +13,7 @@ from crowdbot.plugin import (
     path_length,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import FaultRule, at_fault, person_contacts, robot_of
 from crowdbot.plugins.metrics.common_reference_build import way_made_good
 from crowdbot.plugins.metrics.fault import (
     CONTACTS_AT_FAULT,

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.trajectories.encounters import encounter, people
-from crowdbot.core.trajectories.evasion import DISTANCE_TOLERANCE, evasion
-from crowdbot.core.trajectories.headway import share_below
 from crowdbot.plugin import (
     References,
     Score,
@@ -15,6 +12,7 @@ from crowdbot.plugin import (
     Trajectories,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import DISTANCE_TOLERANCE, encounter, evasion, people, share_below
 from crowdbot.plugins.metrics.common_reference_build import rate_and_way
 from crowdbot.plugins.metrics.intrusion import INTRUSION, IntrusionSpec
 

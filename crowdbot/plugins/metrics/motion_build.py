@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import robot_of, robot_velocities
-from crowdbot.core.trajectories.preprocess import heading_changes, wrap
 from crowdbot.plugin import (
     Array,
     References,
@@ -22,6 +20,7 @@ from crowdbot.plugin import (
     truncate_at_arrival,
     yaw_rate,
 )
+from crowdbot.plugin.for_metrics import heading_changes, robot_of, robot_velocities, wrap
 from crowdbot.plugins.metrics.motion import (
     ACCELERATION,
     CUMULATIVE_HEADING_CHANGE,

@@ -13,14 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import inline_kernel
-from crowdbot.core.trajectories.encounters import (
-    people,
-    people_velocities,
-    robot_of,
-    robot_velocities,
-)
-from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps, valid_robot_steps
 from crowdbot.plugin import (
     Array,
     Mask,
@@ -28,8 +20,18 @@ from crowdbot.plugin import (
     Score,
     ScoreFactory,
     Trajectories,
+    inline_kernel,
     kernel,
     truncate_at_arrival,
+)
+from crowdbot.plugin.for_metrics import (
+    inf_to_nan,
+    people,
+    people_velocities,
+    robot_of,
+    robot_velocities,
+    valid_agent_steps,
+    valid_robot_steps,
 )
 from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCountSpec
 

@@ -8,12 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.paired_people import (
-    Effects,
-    Pairing,
-    meeting_effects,
-    whole_effects,
-)
 from crowdbot.plugin import (
     Array,
     References,
@@ -22,6 +16,7 @@ from crowdbot.plugin import (
     Trajectories,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import Effects, Pairing, meeting_effects, whole_effects
 from crowdbot.plugins.metrics.paired_people import (
     DELAY,
     DISPLACEMENT,

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import heading_changes, inf_to_nan, valid_robot_steps
 from crowdbot.plugin import (
     Array,
     References,
@@ -21,6 +19,7 @@ from crowdbot.plugin import (
     truncate_at_arrival,
     yaw_rate,
 )
+from crowdbot.plugin.for_metrics import heading_changes, inf_to_nan, robot_of, valid_robot_steps
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.path_efficiency import (
     RELATIVE_JERK,

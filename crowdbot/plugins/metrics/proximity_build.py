@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import encounter
-from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE
 from crowdbot.plugin import (
     Array,
     Mask,
@@ -21,6 +19,7 @@ from crowdbot.plugin import (
     time_weights,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import DISTANCE_TOLERANCE, encounter
 from crowdbot.plugins.metrics.proximity import (
     LOCAL_DENSITY,
     NEIGHBOUR_COUNT,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.trajectories.questionnaires import TLX_SCALES, USE_ITEMS, Answer
 from crowdbot.plugin import References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin.for_metrics import TLX_SCALES, USE_ITEMS, Answer
 from crowdbot.plugins.metrics.questionnaire import NASA_TLX, USE, NasaTlxSpec, UseSpec
 
 #: Number of pairs of scales that are compared.

@@ -7,9 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.dynamic_time_warping import least_warping, spaced
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
 from crowdbot.plugin import (
     Array,
     References,
@@ -17,6 +14,13 @@ from crowdbot.plugin import (
     ScoreFactory,
     Trajectories,
     truncate_at_arrival,
+)
+from crowdbot.plugin.for_metrics import (
+    inf_to_nan,
+    least_warping,
+    robot_of,
+    spaced,
+    valid_robot_steps,
 )
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 from crowdbot.plugins.metrics.reference_path import (

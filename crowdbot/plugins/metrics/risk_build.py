@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.disc_around_robot import as_disc
-from crowdbot.core.trajectories.encounters import approach
 from crowdbot.plugin import (
     Array,
     References,
@@ -19,6 +17,7 @@ from crowdbot.plugin import (
     time_weights,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import approach, as_disc
 from crowdbot.plugins.metrics.risk import (
     EXPECTED_SEVERITY,
     INTEGRATED_TIME_TO_COLLISION,

@@ -5,10 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.evasion import evasion, own_legs
-from crowdbot.core.trajectories.headway import share_below
-from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
 from crowdbot.plugin import (
     References,
     Score,
@@ -16,6 +12,14 @@ from crowdbot.plugin import (
     Trajectories,
     travel_time,
     truncate_at_arrival,
+)
+from crowdbot.plugin.for_metrics import (
+    at_fault,
+    evasion,
+    own_legs,
+    person_contacts,
+    robot_of,
+    share_below,
 )
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.fault_build import fault_rule

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.preprocess import wrap
 from crowdbot.plugin import Array, Commands, References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin.for_metrics import wrap
 from crowdbot.plugins.metrics.shared_control import (
     AGREEMENT,
     FLUENCY,

@@ -7,21 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import (
-    encounter,
-    people,
-    people_speeds,
-    people_velocities,
-    robot_of,
-    robot_velocities,
-)
-from crowdbot.core.trajectories.preprocess import heading_changes, valid_agent_steps, wrap
-from crowdbot.core.trajectories.trips import (
-    DISTANCE_TOLERANCE,
-    displacement,
-    durations,
-    walked_distances,
-)
 from crowdbot.plugin import (
     Array,
     References,
@@ -32,6 +17,21 @@ from crowdbot.plugin import (
     time_weights,
     travel_time,
     truncate_at_arrival,
+)
+from crowdbot.plugin.for_metrics import (
+    DISTANCE_TOLERANCE,
+    displacement,
+    durations,
+    encounter,
+    heading_changes,
+    people,
+    people_speeds,
+    people_velocities,
+    robot_of,
+    robot_velocities,
+    valid_agent_steps,
+    walked_distances,
+    wrap,
 )
 from crowdbot.plugins.metrics.common_reference_build import missed_goal
 from crowdbot.plugins.metrics.similarity import (

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import robot_of
-from crowdbot.core.trajectories.trips import durations
 from crowdbot.plugin import (
     References,
     Score,
@@ -19,6 +17,7 @@ from crowdbot.plugin import (
     travel_time,
     truncate_at_arrival,
 )
+from crowdbot.plugin.for_metrics import durations, robot_of
 from crowdbot.plugins.metrics.collision_build import events
 from crowdbot.plugins.metrics.common_reference_build import (
     goal_distance,

@@ -7,9 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import contact_events, robot_of
-from crowdbot.core.trajectories.footprint_of_run import footprint_of
-from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_robot_steps
 from crowdbot.plugin import (
     Array,
     Footprint,
@@ -20,6 +17,13 @@ from crowdbot.plugin import (
     Trajectories,
     time_weights,
     truncate_at_arrival,
+)
+from crowdbot.plugin.for_metrics import (
+    contact_events,
+    footprint_of,
+    inf_to_nan,
+    robot_of,
+    valid_robot_steps,
 )
 from crowdbot.plugins.metrics.walls import (
     AVG_WALL_CLEARANCE,

@@ -11,13 +11,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     Array,
     Pose,
     Scene,
     SensorContext,
     SensorInfo,
+    array_kernel,
     mount_pose,
     nearest_on_segment,
     sensor_pose_in_world,

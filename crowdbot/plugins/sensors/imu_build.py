@@ -16,7 +16,6 @@ import math
 
 import numpy as np
 
-from crowdbot.core.geometry.rotation import rotation
 from crowdbot.plugin import (
     Array,
     Pose,
@@ -27,6 +26,7 @@ from crowdbot.plugin import (
     kernel,
     mount_pose,
     mount_tilt,
+    rotation,
 )
 from crowdbot.plugins.sensors.imu import ImuSpec
 

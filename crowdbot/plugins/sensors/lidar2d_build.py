@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.core.sensing.raycast_columns import RayGrid
-from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
 from crowdbot.plugin import (
     Array,
     NoiseGenerator,
@@ -17,6 +15,7 @@ from crowdbot.plugin import (
     SensorContext,
     SensorInfo,
 )
+from crowdbot.plugin.for_sensors import NO_RAYS, RayGrid, grid_rays
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 
 

@@ -12,7 +12,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.sensing.body_model import trunk_radius
 from crowdbot.plugin import (
     Array,
     Indices,
@@ -23,6 +22,7 @@ from crowdbot.plugin import (
     mount_pose,
     sensor_pose_in_world,
 )
+from crowdbot.plugin.for_sensors import trunk_radius
 from crowdbot.plugins.sensors.people_tracker import PeopleTrackerSpec
 
 NOBODY = (-1.0, 0.0, 0.0, 0.0, 0.0)

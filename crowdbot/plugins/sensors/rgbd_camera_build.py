@@ -13,10 +13,6 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.sensing.depth_mm import depth_mm
-from crowdbot.core.sensing.depth_renderer import MOST_MILLIMETRES, DepthRenderer
-from crowdbot.core.sensing.raycast_columns import RayGrid
-from crowdbot.core.sensing.raycast_tilted import NO_RAYS
 from crowdbot.plugin import (
     Array,
     Pinhole,
@@ -30,6 +26,7 @@ from crowdbot.plugin import (
     sensor_pose_in_world,
     sensor_rotation_in_world,
 )
+from crowdbot.plugin.for_sensors import MOST_MILLIMETRES, NO_RAYS, DepthRenderer, RayGrid, depth_mm
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 
 Image = NDArray[np.float32]

@@ -13,20 +13,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
-from crowdbot.core.sensing.raycast_columns import (
-    FAR,
-    HIGH,
-    LOW,
-    NEAR,
-    GridArrays,
-    Obstacles,
-    RayGrid,
-    fill_columns,
-    heights_of,
-    meet,
-)
-from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
 from crowdbot.plugin import (
     Array,
     Indices,
@@ -37,6 +23,25 @@ from crowdbot.plugin import (
     SensorContext,
     SensorInfo,
     kernel,
+)
+from crowdbot.plugin.for_sensors import (
+    BOTTOM,
+    FAR,
+    HIGH,
+    LOW,
+    NEAR,
+    NO_RAYS,
+    RADIUS,
+    TOP,
+    GridArrays,
+    Obstacles,
+    RayGrid,
+    X,
+    Y,
+    fill_columns,
+    grid_rays,
+    heights_of,
+    meet,
 )
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 

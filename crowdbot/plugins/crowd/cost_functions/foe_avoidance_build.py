@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     COST_PARAMS,
     EXCESS,
@@ -17,6 +16,7 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     as_rows,
     declared_kernel,

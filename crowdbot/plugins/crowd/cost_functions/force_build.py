@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
     EXCESS,
@@ -16,6 +15,7 @@ from crowdbot.plugin import (
     OPTIMUM,
     AgentRecord,
     Pointer,
+    array_kernel,
     as_record,
     declared_kernel,
     record_type,

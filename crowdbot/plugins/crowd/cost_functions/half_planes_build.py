@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     Pointer,
+    array_kernel,
 )
 
 _PARALLEL = 1e-10

@@ -6,8 +6,6 @@ import math
 
 from numba import float32
 
-from crowdbot.core.crowd.contact.geometry import single_angle
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
     EXCESS,
@@ -20,6 +18,7 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     declared_kernel,
     first_collision,
@@ -27,6 +26,7 @@ from crowdbot.plugin import (
     record_type,
     record_values,
 )
+from crowdbot.plugin.for_crowds import single_angle
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
 _SOON, _MEDIUM, _LATE = 2.5, 6.0, 8.0  # s, fixed by the model

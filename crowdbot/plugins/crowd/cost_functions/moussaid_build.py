@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
     EXCESS,
@@ -21,6 +20,7 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     declared_kernel,
     first_contact,

@@ -7,7 +7,6 @@ from typing import Any
 
 from numba import float32
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
     EXCESS,
@@ -20,6 +19,7 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     as_rows,
     declared_kernel,

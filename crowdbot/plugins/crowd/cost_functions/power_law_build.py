@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     PREPARE,
     AgentRecord,
@@ -14,6 +13,7 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     declared_kernel,
     in_range,

@@ -5,7 +5,6 @@ The original draws between -1 and 1; adding 1 to every candidate changes no choi
 
 from __future__ import annotations
 
-from crowdbot.core.crowd.velocity_search.minstd import draw
 from crowdbot.plugin import (
     BASE,
     COST_PARAMS,
@@ -21,6 +20,7 @@ from crowdbot.plugin import (
     declared_kernel,
     record_values,
 )
+from crowdbot.plugin.for_crowds import draw
 from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
 
 

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     BASE,
     EXCESS,
@@ -19,6 +18,7 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     declared_kernel,
     first_collision,

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     PREPARE,
     AgentRecord,
@@ -18,12 +16,14 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     declared_kernel,
     in_range,
     record_type,
     record_values,
 )
+from crowdbot.plugin.for_crowds import opposite_taken_for_parallel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,

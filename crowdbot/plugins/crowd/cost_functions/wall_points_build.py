@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     AgentRecord,
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     in_range,
 )
 

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.errors import InputError, PluginError
-from crowdbot.plugin import Agents, Array, CrowdView
+from crowdbot.plugin import Agents, Array, CrowdView, InputError, PluginError
 from crowdbot.plugins.crowd.policies.jupedsim import JuPedSimSpec
 from crowdbot.plugins.crowd.policies.jupedsim_area_build import SLIT, WalkableAreas
 

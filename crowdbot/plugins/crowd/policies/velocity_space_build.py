@@ -5,19 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crowdbot.core.crowd.contact.geometry import is_clearly_longer, is_clearly_shorter
-from crowdbot.core.crowd.velocity_search.candidates import (
+from crowdbot.plugin import Agents, Array, CompiledCost, CrowdView, NumpyCost, kernel
+from crowdbot.plugin.for_crowds import (
     ALONG_PREFERRED,
     PREFERRED_SPEED,
     ZERO,
+    Descent,
+    Optimum,
+    Sampler,
     Sampling,
+    VelocityCandidates,
+    WeightedCosts,
+    is_clearly_longer,
+    is_clearly_shorter,
 )
-from crowdbot.core.crowd.velocity_search.gradient import Descent
-from crowdbot.core.crowd.velocity_search.optimum import Optimum
-from crowdbot.core.crowd.velocity_search.sampling import Sampler
-from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
-from crowdbot.core.types.candidates import VelocityCandidates
-from crowdbot.plugin import Agents, Array, CompiledCost, CrowdView, NumpyCost, kernel
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 
 _BASES = ("zero", "current_velocity")

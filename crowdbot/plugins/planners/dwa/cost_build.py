@@ -10,8 +10,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugin import Array, kernel
+from crowdbot.plugin import Array, array_kernel, kernel
 from crowdbot.plugins.planners.dwa.parameters_build import (
     A_MAX,
     ALPHA_MAX,

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.core.support.immutable import immutable
 from crowdbot.plugin import (
     Array,
     Command,
@@ -23,6 +22,7 @@ from crowdbot.plugin import (
     RobotLimits,
     SensorInfo,
     Task,
+    immutable,
 )
 from crowdbot.plugins.planners.dwa.cost_build import evaluate
 from crowdbot.plugins.planners.dwa.dead_ends.dead_ends_build import DeadEnds, Detour, compile_map

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugin import Array, kernel
+from crowdbot.plugin import Array, array_kernel, kernel
 from crowdbot.plugins.planners.dwa.rollouts_build import slewed_planar
 
 #: Directions that a robot which goes sideways tries, from the wanted one, rad.

@@ -13,8 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugin import Array, kernel
+from crowdbot.plugin import Array, array_kernel, kernel
 from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
 
 #: Points farther apart than this, and a share of their distance, belong to two bodies, m.

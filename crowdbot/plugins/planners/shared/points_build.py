@@ -6,10 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.geometry.rough_angle import rough_angle
-from crowdbot.core.support.compile import array_kernel
-from crowdbot.core.support.stable_order import stable_order
-from crowdbot.plugin import Array, Mask, kernel
+from crowdbot.plugin import Array, Mask, array_kernel, kernel, rough_angle, stable_order
 
 #: More than a rough angle is off, turns.
 _DOUBT = 5e-6

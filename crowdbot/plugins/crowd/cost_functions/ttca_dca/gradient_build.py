@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     GRADIENT,
     AgentRecord,
     Pointer,
+    array_kernel,
     as_record,
     as_rows,
     declared_kernel,

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.contact.geometry import opposite_taken_for_parallel
-from crowdbot.core.support.compile import array_kernel
 from crowdbot.plugin import (
     PREPARE,
     WORK_COLUMNS,
@@ -18,10 +16,12 @@ from crowdbot.plugin import (
     Pointer,
     Rows,
     WallRecord,
+    array_kernel,
     as_record,
     as_rows,
     declared_kernel,
 )
+from crowdbot.plugin.for_crowds import opposite_taken_for_parallel
 from crowdbot.plugins.crowd.cost_functions.ttca_dca.records_build import (
     CLOSEST,
     HEADER,

@@ -14,8 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugin import Array
+from crowdbot.plugin import Array, array_kernel
 from crowdbot.plugins.planners.shared.robot_outline_build import core_gap
 
 #: Side of a cell (m), and cells from the middle of the map to its border.

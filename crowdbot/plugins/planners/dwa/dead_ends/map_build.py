@@ -7,8 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import array_kernel
-from crowdbot.plugin import Array
+from crowdbot.plugin import Array, array_kernel
 
 #: Side of a cell (m) and cells from the centre of the map to its border.
 CELL, HALF = 0.1, 60

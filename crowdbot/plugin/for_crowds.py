@@ -1,0 +1,39 @@
+"""Tools of crowds, for the build side: search for velocities, geometry of discs and segments."""
+
+from __future__ import annotations
+
+from crowdbot.core.crowd.contact.geometry import (
+    is_clearly_longer,
+    is_clearly_shorter,
+    opposite_taken_for_parallel,
+    single_angle,
+)
+from crowdbot.core.crowd.velocity_search.candidates import (
+    ALONG_PREFERRED,
+    PREFERRED_SPEED,
+    ZERO,
+    Sampling,
+)
+from crowdbot.core.crowd.velocity_search.gradient import Descent
+from crowdbot.core.crowd.velocity_search.minstd import draw
+from crowdbot.core.crowd.velocity_search.optimum import Optimum
+from crowdbot.core.crowd.velocity_search.sampling import Sampler
+from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
+from crowdbot.core.types.candidates import VelocityCandidates
+
+__all__ = [
+    "ALONG_PREFERRED",
+    "PREFERRED_SPEED",
+    "ZERO",
+    "Descent",
+    "Optimum",
+    "Sampler",
+    "Sampling",
+    "VelocityCandidates",
+    "WeightedCosts",
+    "draw",
+    "is_clearly_longer",
+    "is_clearly_shorter",
+    "opposite_taken_for_parallel",
+    "single_angle",
+]
