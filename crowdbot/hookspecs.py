@@ -1,7 +1,7 @@
 """The hooks of crowdbot.
 
 Each is called once, while the registry is built, before any scenario is read. Keep them cheap:
-name components as text, so that a module is imported when somebody asks for its category. An
+name components as text, so that a module is imported when its category is first asked for. An
 exception disables the plugin that raised it, no other, and is shown by ``crowdbot plugins``.
 """
 

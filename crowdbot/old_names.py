@@ -90,6 +90,6 @@ def _say(line: str) -> None:
 
 
 def _are_errors() -> bool:
-    """Return True if somebody asked for an exception in place of these warnings."""
+    """Return True if these warnings are to be exceptions."""
     kinds = [kind for action, _, kind, *_ in warnings.filters if action == "error"]
     return any(issubclass(OldNameWarning, kind) for kind in kinds)
