@@ -213,7 +213,6 @@ def run(world: str | int, seconds: float) -> None:
             choice=choice,
             seed=0,
             recording=Path(folder) / "run.mcap",
-            record="used",
             stage="benchmark",
             progress=None,
             stop=lambda: False,

@@ -20,6 +20,7 @@ import numpy as np
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import build_run
@@ -68,8 +69,9 @@ def simulate(text: str, registry: Registry, seed: int = 0) -> tuple[Any, float, 
         choice = resolve_planner("dwa", registry)
         setup = RunSetup(
             scenario=scenario, agents=population(scenario, registry).agents, registry=registry,
-            choice=choice, seed=seed, recording=Path(folder) / "run.mcap", record="none",
-            stage="run", progress=None, stop=lambda: False, on_hang=None,
+            choice=choice, seed=seed, recording=Path(folder) / "run.mcap",
+            options=RunOptions(record="none"), stage="run",
+            progress=None, stop=lambda: False, on_hang=None,
         )  # fmt: skip
         robots = tuple(scenario.robots)
         builts = {n: build_run(scenario, registry, choice, "none", n) for n in robots}

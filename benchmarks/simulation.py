@@ -39,6 +39,7 @@ from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.task import robot_task
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import build_run
@@ -105,7 +106,7 @@ def whole(case: Case) -> float:
             choice=choice,
             seed=0,
             recording=Path(folder) / "run.mcap",
-            record=case.record,
+            options=RunOptions(record=case.record),
             stage="benchmark",
             progress=None,
             stop=lambda: False,

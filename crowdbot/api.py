@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from crowdbot.core.planning.given_planner import GivenPlanner
     from crowdbot.core.results.results import Results
     from crowdbot.core.runs.outcome import Progress
-    from crowdbot.core.runs.run import Recorded, Run
+    from crowdbot.core.runs.run import Run
+    from crowdbot.core.runs.run_options import Recorded
     from crowdbot.core.scoring.evaluate import MetricParameters, Scores
     from crowdbot.core.trajectories.commands import Commands
     from crowdbot.core.trajectories.questionnaires import Questionnaires
@@ -155,6 +156,7 @@ def simulate(
         Interrupted: ``stop`` returned True; a ``.partial`` directory is left.
     """
     from crowdbot.core.planning.choice import PlannerPlace
+    from crowdbot.core.runs.run_options import RunOptions
     from crowdbot.core.sim.simulate import simulate as simulate_it
 
     expect("scenario", scenario, Scenario, hint="crowdbot.load(SUITE, ID) reads one")
@@ -168,13 +170,15 @@ def simulate(
         seed=seed,
         out=None if out is None else path_of("out", out),
         suite=suite,
-        record=record,
-        references=references,
-        force=force,
-        metrics=_patterns(metrics),
-        replay=replay,
-        step_budget=step_budget,
-        place=PlannerPlace(in_process=in_process, memory=_bytes(planner_memory)),
+        options=RunOptions(
+            record=record,
+            replay=replay,
+            references=references,
+            force=force,
+            metrics=_patterns(metrics),
+            step_budget=step_budget,
+            place=PlannerPlace(in_process=in_process, memory=_bytes(planner_memory)),
+        ),
         progress=progress,
         stop=stop,
     )

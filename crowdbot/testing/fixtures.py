@@ -12,6 +12,7 @@ import pytest
 
 import crowdbot.testing.tiny as tiny
 from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.scenario.scenario import Scenario
 
@@ -49,5 +50,7 @@ def run_directory(
     from crowdbot.core.sim.simulate import simulate
 
     out = tmp_path_factory.mktemp("runs")
-    run = simulate(tiny_scenario, registry, planner="goal_seek", out=out, references=False)
+    run = simulate(
+        tiny_scenario, registry, planner="goal_seek", out=out, options=RunOptions(references=False)
+    )
     return run.directory

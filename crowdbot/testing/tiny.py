@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.spec import ComponentSpec
@@ -72,7 +73,11 @@ def run_of(scenario: Scenario, registry: Registry, planner: str = "goal_seek") -
     with tempfile.TemporaryDirectory(prefix="crowdbot-kit-") as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
         run = simulate(
-            scenario, registry, planner=planner, out=Path(folder), references=False, metrics=()
+            scenario,
+            registry,
+            planner=planner,
+            out=Path(folder),
+            options=RunOptions(references=False, metrics=()),
         )
         assert not run.failed, run.record.reason
         return run.trajectories

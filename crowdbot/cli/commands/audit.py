@@ -51,6 +51,7 @@ def audit(
     """
     from crowdbot.core.campaign.plan import make_plan
     from crowdbot.core.campaign.request import CampaignRequest
+    from crowdbot.core.runs.run_options import RunOptions
 
     request = CampaignRequest(
         suites=[suite],
@@ -60,7 +61,7 @@ def audit(
         only=only,
         sample=scenarios,
         out=out,
-        replay=False,
+        options=RunOptions(replay=False),
         overrides=overrides or (),
         plugins=plugin or (),
     )

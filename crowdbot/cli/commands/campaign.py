@@ -90,8 +90,15 @@ def campaign(
     """
     from crowdbot.core.campaign.plan import make_plan
     from crowdbot.core.campaign.request import CampaignRequest
+    from crowdbot.core.runs.run_options import RunOptions
 
-    place = planner_place(in_process, planner_memory, lenient=True)
+    options = RunOptions(
+        record=record.value,
+        replay=replay,
+        retry_failed=retry_failed,
+        force=force,
+        place=planner_place(in_process, planner_memory, lenient=True),
+    )
     registry = installed(plugin, no_plugins)
     request = CampaignRequest(
         suites=suites,
@@ -101,14 +108,10 @@ def campaign(
         only=only,
         crowds=[name.strip() for name in (crowds or "").split(",") if name.strip()],
         out=out,
-        record=record.value,
-        replay=replay,
+        options=options,
         overrides=overrides or (),
         planner_settings=planner_set or (),
         plugins=plugin or (),
-        retry_failed=retry_failed,
-        force=force,
-        place=place,
     )
     plan = make_plan(request, registry)
     size = worker_count(jobs)

@@ -184,6 +184,7 @@ def _request(
     what: _What, how: _Serving, scenario: Scenario, choice: PlannerChoice, seed: int
 ) -> Request:
     from crowdbot.core.runs.run import Request
+    from crowdbot.core.runs.run_options import RunOptions
 
     expansion = what.expansion
     return Request(
@@ -193,10 +194,10 @@ def _request(
         seed=seed,
         out=how.out,
         suite=expansion.folder,
-        metrics=expansion.metrics,
         axes=expansion.axes.get(scenario.id, {}),
         words=expansion.words_of(scenario.id),
         position=expansion.scenarios.index(scenario),
-        record=how.record.value,
-        references=how.references,
+        options=RunOptions(
+            record=how.record.value, references=how.references, metrics=expansion.metrics
+        ),
     )

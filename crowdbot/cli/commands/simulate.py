@@ -79,10 +79,10 @@ def simulate(
         print_run,
     )
     from crowdbot.cli.shared.progress import show_progress
+    from crowdbot.core.runs.run_options import RunOptions
     from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
-    place = planner_place(in_process, planner_memory)
     with stdout_to_stderr():
         registry = installed(plugin, no_plugins)
         expansion = open_spec(spec, registry, overrides or ())
@@ -98,18 +98,20 @@ def simulate(
                 seed=seed,
                 out=out,
                 suite=expansion.folder,
-                metrics=expansion.metrics,
+                options=RunOptions(
+                    record=record.value,
+                    references=references,
+                    force=force,
+                    metrics=expansion.metrics,
+                    step_budget=step_budget,
+                    place=planner_place(in_process, planner_memory),
+                ),
                 axes=expansion.axes.get(chosen.id, {}),
                 words=expansion.words_of(chosen.id),
                 position=expansion.scenarios.index(chosen),
-                record=record.value,
-                references=references,
-                force=force,
                 progress=progress,
                 stop=stop,
                 on_hang=end_hung_process,
-                step_budget=step_budget,
-                place=place,
                 watchers=watchers,
             )
     print_run(run, as_json=as_json)

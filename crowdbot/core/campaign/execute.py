@@ -65,7 +65,9 @@ def _execute(
 ) -> str:
     request = replace(_request(job), progress=progress, on_hang=on_hang)
     registry, populate = _registry(job.source), _populate(job.source)
-    prepared = prepare(request.scenario, registry, populate=populate)
+    prepared = prepare(
+        request.scenario, registry, references=request.options.references, populate=populate
+    )
     _check_loaded(job, request, prepared)
     if job.kind == "run":
         if prepared.run.spec != job.spec_hash:
@@ -75,7 +77,7 @@ def _execute(
         return make_run(request, prepared).status
     for reference in references_of(request, prepared):
         if reference.run_id == job.key:
-            there = None if job.force else reference.complete
+            there = None if job.options.force else reference.complete
             return there.status if there else make_reference(request, reference).status
     raise InputError(f"{job.source.spec} changed since the campaign began")
 
@@ -102,23 +104,21 @@ def _request(job: Job) -> Request:
     out = Path(job.out)
     request = Request(
         scenario=scenario,
-        choice=_choice(job.planner, job.settings, job.source, job.place),
+        choice=_choice(job.planner, job.settings, job.source, job.options.place),
         registry=registry,
         seed=job.seed,
         out=out,
         suite=job.suite,
-        record=job.record,
-        replay=job.replay,
+        options=replace(job.options, metrics=expansion.metrics),
         references_finished=True,
-        metrics=expansion.metrics,
         axes=expansion.axes.get(scenario.id, {}),
         words=expansion.words_of(scenario.id),
         position=job.index,
-        force=job.force,
     )
-    if job.retry_failed and job.kind == "run" and not job.force:
+    if job.options.retry_failed and job.kind == "run" and not job.options.force:
         there = RunRecord.find(request.directory)
-        return replace(request, force=there is not None and has_failed(there.status))
+        failed = there is not None and has_failed(there.status)
+        return replace(request, options=replace(request.options, force=failed))
     return request
 
 

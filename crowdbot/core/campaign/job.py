@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
-from crowdbot.core.runs.run import Recorded
+from crowdbot.core.runs.run_options import RunOptions
 
 Kind = Literal["crowd_alone", "robot_alone", "run"]
 
@@ -42,10 +41,9 @@ class Job:
         label: the planner's folder.
         out: absolute root of the results.
         directory: what is made, relative to ``out``.
-        force: make it again although it is there.
+        options: how; the metrics are those of the suite.
         depends_on: keys of the calibration runs that must have ended before.
         cost: expected processor time, s.
-        place: where the planner runs.
     """
 
     key: str
@@ -61,13 +59,9 @@ class Job:
     seed: int
     out: str
     directory: str
-    record: Recorded
-    replay: bool
-    retry_failed: bool = False
-    force: bool = False
+    options: RunOptions
     depends_on: tuple[str, ...] = ()
     cost: float = 0.0
-    place: PlannerPlace = ANYWHERE
 
     @property
     def title(self) -> str:

@@ -135,7 +135,12 @@ class _PlanBuilder:
     def add(self, suite: SelectedSuite) -> None:
         position = {s.id: i for i, s in enumerate(suite.expansion.scenarios)}
         everything = [
-            prepare(scenario, self._registry, populate=self._populate)
+            prepare(
+                scenario,
+                self._registry,
+                references=self._campaign.options.references,
+                populate=self._populate,
+            )
             for scenario in suite.scenarios
         ]
         wanted = self._campaign.sample
@@ -166,8 +171,7 @@ class _PlanBuilder:
                     seed=seed,
                     out=self._out,
                     suite=suite.name,
-                    record=self._campaign.record,
-                    replay=self._campaign.replay,
+                    options=self._campaign.options,
                     axes=suite.expansion.axes.get(scenario.id, {}),
                     words=suite.expansion.words_of(scenario.id),
                     position=position,
@@ -182,8 +186,8 @@ class _PlanBuilder:
         record = reusable_record(request, key, compared=bool(references))
         if record is not None:
             self._learn(request, record, prepared)
-            failed = self._campaign.retry_failed and has_failed(record.status)
-            if failed or self._campaign.force:
+            failed = self._campaign.options.retry_failed and has_failed(record.status)
+            if failed or self._campaign.options.force:
                 record = None
         if record is None and not self._can_run(entry, request):
             return
@@ -220,7 +224,7 @@ class _PlanBuilder:
     ) -> bool:
         """Whether a calibration run has to be made first; then there is a job for it."""
         if reference.run_id not in self._jobs:
-            there = reference.complete is not None and not self._campaign.force
+            there = reference.complete is not None and not self._campaign.options.force
             if self._references[reference.run_id] or there:
                 self._references[reference.run_id] = True
                 return False
@@ -260,11 +264,7 @@ class _PlanBuilder:
             seed=request.seed,
             out=str(self._out),
             directory=directory.relative_to(self._out).as_posix(),
-            record=request.record,
-            replay=request.replay,
-            retry_failed=self._campaign.retry_failed,
-            force=self._campaign.force,
-            place=self._campaign.place,
+            options=request.options,
             depends_on=tuple(r.run_id for r in depends_on),
             cost=expected_seconds(kind, people, longest(request.scenario)),
         )

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core.campaign.job import SuiteSource
-from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.fleet_choice import planners_by_robot
 from crowdbot.core.planning.resolve import PlannerChoice, kinds_of_role, resolve_planner
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs.run import Recorded
+from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.scenarios.library import open_spec, select
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -34,9 +33,7 @@ class CampaignRequest:
         sample: run so many scenarios of each suite, drawn; None: all.
         planner_settings: ``key=value`` texts, for all planners.
         crowds: names of crowds, in each of which every scenario is run; none: in its own.
-        retry_failed: run again what ended with a planner that failed.
-        force: run everything again, calibration runs too.
-        place: where planners run.
+        options: how; ``force`` makes calibration runs again, too.
     """
 
     suites: Sequence[str]
@@ -47,14 +44,10 @@ class CampaignRequest:
     only: str | None = None
     sample: int | None = None
     out: Path = Path("runs")
-    record: Recorded = "used"
-    replay: bool = True
+    options: RunOptions = USUAL
     overrides: Sequence[str] = ()
     planner_settings: Sequence[str] = ()
     plugins: Sequence[Path] = ()
-    retry_failed: bool = False
-    force: bool = False
-    place: PlannerPlace = ANYWHERE
     crowds: Sequence[str] = ()
 
 
@@ -133,7 +126,7 @@ def open_planners(request: CampaignRequest, registry: Registry) -> list[PlannerE
     entries = [
         PlannerEntry(
             text=_planner(p),
-            choice=resolve_planner(p, registry, settings, request.place),
+            choice=resolve_planner(p, registry, settings, request.options.place),
             settings=settings,
         )
         for p in dict.fromkeys(request.planners)
@@ -158,7 +151,7 @@ def _by_role(request: CampaignRequest, registry: Registry) -> list[PlannerEntry]
     found = []
     for role in (*request.roles, *(r for r in sampled if r not in request.roles)):
         for kind in kinds_of_role(role, registry):
-            choice = resolve_planner(kind, registry, place=request.place)
+            choice = resolve_planner(kind, registry, place=request.options.place)
             is_sampled = role not in request.roles
             found.append(PlannerEntry(text=kind, choice=choice, optional=True, sampled=is_sampled))
     return found

@@ -22,6 +22,7 @@ from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.read_and_score import score_robots
 from crowdbot.core.runs.run import Request, Run
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.sim.simulate import make_run
@@ -142,15 +143,17 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
             seed=claimed.entry.seed,
             out=Path(folder),
             suite=setup.expansion.folder,
-            metrics=setup.expansion.metrics,
             words=setup.expansion.words_of(scenario.id),
-            record="none",
-            references=compared,
-            replay=False,
+            options=RunOptions(
+                record="none",
+                replay=False,
+                references=compared,
+                metrics=setup.expansion.metrics,
+                step_budget=claimed.record.step_budget,
+            ),
             progress=setup.progress,
             stop=setup.stop,
             on_hang=setup.on_hang,
-            step_budget=claimed.record.step_budget,
         )
         run = make_run(request, prepare(scenario, setup.registry, references=compared))
         rows = read_scores_csv(run.directory / files.SCORES)

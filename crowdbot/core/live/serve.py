@@ -111,14 +111,16 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     manner = service.manner
     request = service.request(scenario, choice, session.seed)
     stop = lambda: session.must_stop  # noqa: E731
-    request = replace(request, force=True, stop=stop, watchers=service.watchers)
+    request = replace(
+        request, options=replace(request.options, force=True), stop=stop, watchers=service.watchers
+    )
     built = _built(request)
     scene.append(_scene(request, built))
     session.robot = scene[0].name
     session.begin(scenario.id, session.seed)
     state: State = "ended"
     try:
-        prepared = prepare(scenario, request.registry, references=request.references)
+        prepared = prepare(scenario, request.registry, references=request.options.references)
         run = make_run(request, prepared, builts={built.name: built})
         state = Ending(run.status)
     except Interrupted:

@@ -15,7 +15,8 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import IdentityHashes, PlannerPart, PluginPart
-from crowdbot.core.runs.run import Recorded, Request
+from crowdbot.core.runs.run import Request
+from crowdbot.core.runs.run_options import Recorded
 from crowdbot.core.runs.run_record import (
     ReferenceIdentity,
     ReferenceRecord,
@@ -189,8 +190,8 @@ def longest(scenario: Scenario) -> float:
 def _budget(request: Request) -> dict[str, Any]:
     """What a planner may take, where that is not the usual."""
     found: dict[str, Any] = {}
-    if request.step_budget is not None:
-        found["step_budget"] = request.step_budget
+    if request.options.step_budget is not None:
+        found["step_budget"] = request.options.step_budget
     if not request.choice.in_process and request.choice.memory != MEMORY:
         found["planner_memory"] = request.choice.memory
     return found
@@ -242,7 +243,7 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> RunReco
         return None
     if not _holds(record, request) or (compared and not record.references):
         return None
-    if request.replay and not (place / files.REPLAY).exists():
+    if request.options.replay and not (place / files.REPLAY).exists():
         return None
     return record
 
@@ -250,7 +251,7 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> RunReco
 def _holds(record: RunRecord, request: Request) -> bool:
     """True if as much was recorded as is wanted, or more."""
     levels = get_args(Recorded)
-    return record.recorded in levels[: levels.index(request.record) + 1]
+    return record.recorded in levels[: levels.index(request.options.record) + 1]
 
 
 def recorded_otherwise(request: Request, identity: RunIdentity) -> tuple[str, ...]:
@@ -266,7 +267,7 @@ def recorded_otherwise(request: Request, identity: RunIdentity) -> tuple[str, ..
     for key in dict.fromkeys([*wanted, *there]):
         a, b = _flat(key, there.get(key)), _flat(key, wanted.get(key))
         found += sorted(name for name in a.keys() | b.keys() if a.get(name) != b.get(name))
-    return (*found, *["recorded"] * (before.recorded != request.record))
+    return (*found, *["recorded"] * (before.recorded != request.options.record))
 
 
 def _flat(name: str, value: Any) -> dict[str, Any]:

@@ -66,7 +66,7 @@ def make_record(
         role=request.choice.role,
         planner_process=request.choice.process,
         allowed_plugins=None if registry.allowed is None else list(registry.allowed),
-        recorded=request.record,
+        recorded=request.options.record,
         **ending(outcome),
         **_robots(request, outcome, runs),
         references={
@@ -77,7 +77,7 @@ def make_record(
         conditions=_conditions(scenario, runs),
         crowd="" if scenario.crowd is None else fingerprint(scenario.crowd),
         metrics=_metrics(registry, scores),
-        suite_metrics=_named(request.metrics, scores),
+        suite_metrics=_named(request.options.metrics, scores),
         worst_moment=_worst(runs.values()),
         machine=provenance.machine(),
         agents=people.source,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.recording import Recording
@@ -15,6 +15,7 @@ from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.evaluate import Scores
 from crowdbot.core.scoring.metric import References
@@ -26,9 +27,6 @@ from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.axis_words import AxisWords
 from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import InputError
-
-#: What is recorded, most first: what a run has holds all that the levels after it ask for.
-Recorded = Literal["all", "used", "none"]
 
 
 @dataclass(frozen=True)
@@ -144,20 +142,15 @@ class Request:
         seed: of the run: sensor noise and planner.
         out: root of the run directories.
         suite: first folder below it.
-        record: which sensors are simulated and recorded.
-        references: whether calibration runs are made where they are missing.
-        force: whether a complete run is made again.
-        metrics: patterns of the metrics to score; None is all.
+        options: how.
         axes: axis of the suite -> label, in the suite's order.
         words: axis -> what it varies and the value here, in words.
         position: of the scenario in its suite.
-        replay: whether to write the replay page.
         references_finished: whoever asks has seen to the references; those in which the planner
             failed are not tried again.
         progress: called several times a simulated second.
         stop: asked several times a simulated second; True ends the run as interrupted.
         on_hang: called when a planner cannot be interrupted; should end the process.
-        step_budget: seconds of wall time that a planner step may take; None sets no limit.
         watchers: show the run, not its references, while it goes on.
     """
 
@@ -167,19 +160,14 @@ class Request:
     seed: int
     out: Path
     suite: str = "scenarios"
-    record: Recorded = "used"
-    references: bool = True
-    force: bool = False
-    metrics: Sequence[str] | None = None
+    options: RunOptions = USUAL
     axes: Mapping[str, str] = field(default_factory=dict)
     words: Mapping[str, AxisWords] = field(default_factory=dict)
     position: int = 0
-    replay: bool = True
     references_finished: bool = False
     progress: Callable[[Progress], None] | None = None
     stop: Callable[[], bool] = lambda: False
     on_hang: Callable[[], object] | None = None
-    step_budget: float | None = None
     watchers: Sequence[Watcher] = ()
 
     @property

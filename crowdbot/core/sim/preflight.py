@@ -23,7 +23,7 @@ def preflight(request: Request) -> dict[str, BuiltRun]:
         raise InputError(
             f"only a run of one robot can be watched; {request.scenario.id} has {len(robots)}"
         )
-    builts = build_runs(request.scenario, request.registry, request.choice, request.record)
+    builts = build_runs(request.scenario, request.registry, request.choice, request.options.record)
     cameras = (info.camera for built in builts.values() for info in built.infos.values())
     if any(camera is not None and camera.colour for camera in cameras):
         from crowdbot.core.sim.rendering import check_egl

@@ -91,7 +91,7 @@ def header_of(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
 
 def description_of(setup: RunSetup, built: BuiltRun) -> str:
     """The robot's URDF, where it is recorded."""
-    return to_urdf(built.model, built.infos, built.name) if setup.record != "none" else ""
+    return to_urdf(built.model, built.infos, built.name) if setup.options.record != "none" else ""
 
 
 @contextmanager
@@ -123,7 +123,7 @@ def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Itera
         planner = _build(choice, watchdog)
         host = PlannerHost(
             planner, choice.name, limits,
-            budget=setup.step_budget, watchdog=watchdog, origin=choice.origin,
+            budget=setup.options.step_budget, watchdog=watchdog, origin=choice.origin,
             copies=not isinstance(planner, ProcessPlanner),
         )  # fmt: skip
         # Halved, so that planners may hand the seed to generators of signed integers.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from crowdbot.core.runs import provenance
@@ -62,7 +63,7 @@ def _record_alone(setup: RunSetup) -> Outcome:
     """A run of its own: what sensors and planner remember is not that of the run with people."""
     from crowdbot.core.sim.record_all import record_all  # imports Drake
 
-    builts = build_runs(setup.scenario, setup.registry, setup.choice, setup.record)
+    builts = build_runs(setup.scenario, setup.registry, setup.choice, setup.options.record)
     return record_all(setup, builts)
 
 
@@ -75,12 +76,11 @@ def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
         choice=request.choice,
         seed=request.seed,
         recording=folder / files.RECORDING,
-        record="none",
         stage=reference.name.replace("_", " "),
         progress=request.progress,
         stop=request.stop,
         on_hang=request.on_hang,
-        step_budget=request.step_budget,
+        options=replace(request.options, record="none"),
         hashes=provenance.recording_hashes(reference.identity),
     )
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +24,7 @@ from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
+from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.crowd_only import run_crowd
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -41,12 +41,11 @@ class RunSetup:
     choice: PlannerChoice
     seed: int
     recording: Path
-    record: Literal["all", "used", "none"]
     stage: str
     progress: Callable[[Progress], None] | None
     stop: Callable[[], bool]
     on_hang: Callable[[], object] | None
-    step_budget: float | None = None
+    options: RunOptions = USUAL
     hashes: Mapping[str, str] = field(default_factory=dict)
     watchers: Sequence[Watcher] = ()
 
@@ -100,7 +99,7 @@ def recording(
     writer = RecordingWriter(
         setup.recording,
         header,
-        record=setup.record,
+        record=setup.options.record,
         choosers=choosers(engine),
         description=description,
     )

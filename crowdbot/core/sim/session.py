@@ -22,6 +22,7 @@ from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.outcome import Outcome
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun, build_run
@@ -129,7 +130,7 @@ class Session:
             choice=self._choice,
             seed=self._seed,
             recording=Path(os.devnull) if self._recording is None else self._partial(),
-            record="none" if self._recording is None else "used",
+            options=RunOptions(record="none" if self._recording is None else "used"),
             stage="session",
             progress=None,
             stop=lambda: exchange.closed,

@@ -5,13 +5,11 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
-from typing import get_args
 
 from crowdbot.core.crowd.compile_ahead import crowd_compiled_ahead
-from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
-from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.recording.reading.images import ImageCollector, ReplayImages
 from crowdbot.core.recording.reading.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
@@ -36,11 +34,8 @@ from crowdbot.core.runs.read_and_score import (
     score_robots,
 )
 from crowdbot.core.runs.replayed import images_of_replay, shown_run
-from crowdbot.core.runs.run import (
-    Recorded,
-    Request,
-    Run,
-)
+from crowdbot.core.runs.run import Request, Run
+from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.runs.run_record import RunIdentity, RunRecord
 from crowdbot.core.scoring.evaluate import Scores, metric_specs
 from crowdbot.core.scoring.scores_csv import write_scores_csv
@@ -50,7 +45,7 @@ from crowdbot.core.sim.preflight import preflight
 from crowdbot.core.sim.record_all import record_all
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
 from crowdbot.core.sim.run_setup import RunSetup
-from crowdbot.core.support.arguments import expect, expect_function, number_of, whole_number_of
+from crowdbot.core.support.arguments import expect, expect_function, whole_number_of
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.axis_words import AxisWords
 from crowdbot.dsl.text.path_names import path_problem
@@ -66,19 +61,13 @@ def simulate(
     seed: int = 0,
     out: Path | None = None,
     suite: str = "scenarios",
-    record: Recorded = "used",
-    references: bool = True,
-    force: bool = False,
-    metrics: Sequence[str] | None = None,
+    options: RunOptions = USUAL,
     axes: Mapping[str, str] | None = None,
     words: Mapping[str, AxisWords] | None = None,
     position: int = 0,
-    replay: bool = True,
     progress: Callable[[Progress], None] | None = None,
     stop: Callable[[], bool] = lambda: False,
     on_hang: Callable[[], object] | None = None,
-    step_budget: float | None = None,
-    place: PlannerPlace = ANYWHERE,
     watchers: Sequence[Watcher] = (),
 ) -> Run:
     """Simulate and score one run; a complete run with the same hashes is reused.
@@ -91,11 +80,8 @@ def simulate(
         seed: run seed: sensor noise and planner.
         out: root of the run directories; None uses a temporary one that lives as long as the
             result.
-        suite, record, references, force, metrics, axes, words, position, replay: as in
-            `Request`.
-        progress, stop, on_hang, step_budget: as in `Request`.
-        watchers: as in `Request`.
-        place: where the planner runs: by default in a process of its own, but for crowdbot's.
+        suite, options, axes, words, position: as in `Request`.
+        progress, stop, on_hang, watchers: as in `Request`.
 
     Raises:
         InputError: the scenario has no robot, the planner, the folder or an option is wrong, or
@@ -106,11 +92,11 @@ def simulate(
         Interrupted: ``stop`` said so; a ``.partial`` directory is left.
     """
     seed = whole_number_of("seed", seed)
-    _check_options(suite, record, step_budget)
+    _check_suite(suite)
     _check_callbacks(progress, stop)
-    choice = choose_planner(planner, registry, planner_settings, place)
-    if metrics is not None:
-        metric_specs(registry, metrics, {})  # a wrong name ends the run before it begins
+    choice = choose_planner(planner, registry, planner_settings, options.place)
+    if options.metrics is not None:
+        metric_specs(registry, options.metrics, {})  # a wrong name ends the run before it begins
     keep = None
     if out is None:
         keep = tempfile.TemporaryDirectory(prefix="crowdbot-")
@@ -122,22 +108,17 @@ def simulate(
         seed=seed,
         out=out,
         suite=suite,
-        record=record,
-        references=references,
-        force=force or not choice.repeatable,
-        metrics=metrics,
+        options=replace(options, force=options.force or not choice.repeatable),
         axes=axes or {},
         words=words or {},
         position=position,
-        replay=replay,
         progress=progress,
         stop=stop,
         on_hang=on_hang,
-        step_budget=step_budget,
         watchers=watchers,
     )
     with crowd_compiled_ahead() if scenario.crowd else nullcontext():
-        return make_run(request, prepare(scenario, registry, references=request.references), keep)
+        return make_run(request, prepare(scenario, registry, references=options.references), keep)
 
 
 def _check_callbacks(progress: object, stop: object) -> None:
@@ -151,23 +132,15 @@ def _check_callbacks(progress: object, stop: object) -> None:
     expect_function("stop", stop)
 
 
-def _check_options(suite: str, record: str, step_budget: float | None) -> None:
-    """Refuse values that types cannot exclude.
+def _check_suite(suite: str) -> None:
+    """Refuse what cannot be the name of a folder.
 
     Raises:
-        InputError: one is wrong.
+        InputError: it cannot.
     """
     expect("suite", suite, str)
     if suite != Path(suite).name or path_problem(suite):
         raise InputError(f"suite '{suite}' is not the name of a folder")
-    if record not in get_args(Recorded):
-        choices = " or ".join(map(repr, get_args(Recorded)))
-        raise InputError(f"record must be {choices}, not {record!r}")
-    if step_budget is not None and not 0.0 < number_of("step_budget", step_budget) < STEP_LIMIT:
-        raise InputError(
-            f"the budget of a step must be above 0 and below {STEP_LIMIT:g} s, "
-            f"after which it counts as hung; not {step_budget:g}"
-        )
 
 
 def make_run(
@@ -188,7 +161,7 @@ def make_run(
     builts = preflight(request) if builts is None else builts
     identity = run_identity(request, prepared.run)
     references = references_of(request, prepared)
-    if not request.force:
+    if not request.options.force:
         record = reusable_record(request, identity.id(), compared=bool(references))
         if record is not None:
             return Run(request.directory, record, reused=True, _keep=keep)
@@ -219,7 +192,7 @@ def _record_run(
             request.registry,
             runs,
             references_by_robot(references, tuple(builts)),
-            metrics="*" if request.metrics is None else request.metrics,
+            metrics="*" if request.options.metrics is None else request.options.metrics,
         )
         people = prepared.run.people
         record = make_record(
@@ -236,7 +209,8 @@ def _images(
 ) -> ImageCollector | None:
     """For the images that the page shows; None where it shows none."""
     infos = [info for built in builts.values() for info in built.infos.values()]
-    shows = request.replay and request.record != "none" and any(info.camera for info in infos)
+    options = request.options
+    shows = options.replay and options.record != "none" and any(info.camera for info in infos)
     return images_of_replay(recording) if shows else None
 
 
@@ -253,7 +227,7 @@ def _write_files(
     scenario = request.scenario
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
-    if request.replay:
+    if request.options.replay:
         _write_replay(request, builts, folder, seen, images, scores, record)
     files.attach_files(folder, record.document())
     whole = record.model_copy(update={"files": files.sizes(folder)})
@@ -290,12 +264,11 @@ def _setup(request: Request, prepared: Prepared, folder: Path, identity: RunIden
         choice=request.choice,
         seed=request.seed,
         recording=folder / files.RECORDING,
-        record=request.record,
+        options=request.options,
         stage="run",
         progress=request.progress,
         stop=request.stop,
         on_hang=request.on_hang,
-        step_budget=request.step_budget,
         hashes=provenance.recording_hashes(identity),
         watchers=request.watchers,
     )

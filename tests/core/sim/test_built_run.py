@@ -17,7 +17,8 @@ from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs.run import Recorded, Request
+from crowdbot.core.runs.run import Request
+from crowdbot.core.runs.run_options import Recorded, RunOptions
 from crowdbot.core.sim.built_run import build_run
 from crowdbot.core.sim.session import Session
 from crowdbot.core.sim.simulate import simulate
@@ -51,8 +52,8 @@ def counted(
     """How often each kind was built by a run, and how often the scenario names it."""
     counting = Counting()
     simulate(
-        world, counting, planner="goal_seek", out=out, record=record,
-        references=references, replay=False,
+        world, counting, planner="goal_seek", out=out,
+        options=RunOptions(record=record, references=references, replay=False),
     )  # fmt: skip
     one = world.robots["robot"]
     named = [world.environment, one.model, *one.sensors.values()]
@@ -96,7 +97,11 @@ def test_a_recording_with_images_is_read_in_one_pass(
     world = scenario(SHORT)
     assert any(sensor.kind == "rgbd_camera" for sensor in world.robots["robot"].sensors.values())
     run = simulate(
-        world, registry(), planner=planner, out=tmp_path, references=False, record=record
+        world,
+        registry(),
+        planner=planner,
+        out=tmp_path,
+        options=RunOptions(references=False, record=record),
     )
     assert passes == {"run.mcap": 1}
     assert "-images0" in (run.directory / "replay.html").read_text(encoding="utf-8")
@@ -117,7 +122,7 @@ def test_several_robots_share_one_environment(tmp_path: Path) -> None:
     counting = Counting()
     world = fleet_scenario(tmp_path, registry(), robots)
     simulate(
-        world, counting, planner="goal_seek", out=tmp_path, replay=False,
+        world, counting, planner="goal_seek", out=tmp_path, options=RunOptions(replay=False),
     )  # fmt: skip
     assert counting.built == {
         "environment floor": 1, "robot turtlebot2": 2, "sensor lidar2d": 2,
@@ -145,7 +150,8 @@ def test_a_live_run_shows_clients_what_is_simulated(tmp_path: Path) -> None:
     def request(scenario: Scenario, choice: PlannerChoice, seed: int) -> Request:
         return Request(
             scenario=scenario, choice=choice, registry=counting,
-            seed=seed, out=tmp_path, references=False, replay=False,
+            seed=seed, out=tmp_path,
+            options=RunOptions(references=False, replay=False),
         )  # fmt: skip
 
     manner = Manner(rate=None, budget=0.001, wait=0.0)

@@ -14,6 +14,7 @@ import crowdbot.core.sim
 from crowdbot.core.planning.given_planner import choose_planner
 from crowdbot.core.runs.identity import prepare, references_of
 from crowdbot.core.runs.run import Request
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.sim.references import make_reference
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.sim.weak_callback import weak_callback
@@ -23,6 +24,8 @@ from tests.core.sim.sim_worlds import registry, scenario
 
 _MODES = ("differential_drive", "force", "kinematic")
 _HELD = (Diagram, DiagramBuilder, LeafSystem)
+
+QUICK = RunOptions(references=False, replay=False)
 
 
 def _systems() -> list[type]:
@@ -61,7 +64,7 @@ def test_a_weak_callback_calls_and_lets_go() -> None:
 def test_a_finished_run_is_thrown_away(mode: str, tmp_path: Path) -> None:
     before = _alive()
     world = tiny_scenario(registry(), control=mode, time_limit=0.125)
-    simulate(world, registry(), planner="goal_seek", out=tmp_path, references=False, replay=False)
+    simulate(world, registry(), planner="goal_seek", out=tmp_path, options=QUICK)
     assert _alive() - before == set()
 
 

@@ -16,6 +16,7 @@ from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.check import check_model
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import BuiltRun, build_run
 from crowdbot.core.sim.record import record_robot
@@ -138,7 +139,7 @@ class _Outlined:
 
 
 def _built(setup: RunSetup) -> BuiltRun:
-    return build_run(setup.scenario, setup.registry, setup.choice, setup.record)
+    return build_run(setup.scenario, setup.registry, setup.choice, setup.options.record)
 
 
 @pytest.mark.slow
@@ -147,7 +148,8 @@ def test_the_outline_is_recorded(tmp_path: Path) -> None:
     setup = RunSetup(
         scenario=world, agents=population(world, registry()).agents,
         registry=_Outlined(BOX), choice=resolve_planner("goal_seek", registry(), ()),  # type: ignore[arg-type]
-        seed=0, recording=tmp_path / "run.mcap", record="none", stage="run", progress=None,
+        seed=0, recording=tmp_path / "run.mcap", options=RunOptions(record="none"),
+        stage="run", progress=None,
         stop=lambda: False, on_hang=None,
     )  # fmt: skip
     record_robot(setup, _built(setup))

@@ -17,6 +17,7 @@ import crowdbot.plugins.planners.dwa.parameters_build as entries
 import crowdbot.plugins.planners.dwa.rollouts_build as rollout
 import crowdbot.plugins.planners.dwa.window_build as window
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -219,7 +220,8 @@ def run(folder: Path, text: str, *sets: str) -> tuple[str, Trajectories]:
     registry = discover()
     scenario = open_spec(str(file), registry, sets).scenarios[0]
     done = simulate(
-        scenario, registry, out=folder, planner="dwa", references=False, replay=False
+        scenario, registry, out=folder, planner="dwa",
+        options=RunOptions(references=False, replay=False),
     )  # fmt: skip
     return done.status, done.trajectories
 

@@ -64,7 +64,7 @@ def record_fleet(setup: RunSetup, builts: Mapping[str, BuiltRun]) -> Outcome:
     fates = {n: Fate(leaves=b.robot.task.when_ended == "leave") for n, b in builts.items()}
     with contextlib.ExitStack() as stack:
         root = RecordingWriter(
-            setup.recording, shared, record=setup.record, choosers=choosers(engine)
+            setup.recording, shared, record=setup.options.record, choosers=choosers(engine)
         )
         stack.callback(_close, root, fates)
         fleet = [
@@ -100,7 +100,7 @@ def _member(
     writer = RecordingWriter(
         setup.recording,
         header,
-        record=setup.record,
+        record=setup.options.record,
         beside=root,
         description=description_of(setup, built),
     )

@@ -15,6 +15,7 @@ import pytest
 from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.planning.resolve import resolve_planner
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.plugin import RobotBody
@@ -49,8 +50,11 @@ def drive(planner: str, in_process: bool | None, folder: Path) -> str:
     suite = open_spec("challenge-2020", REGISTRY, ["robots.robot.task.time_limit=0.5 s"])
     world = pick(suite, "in-d0125-slow-c01-r02")
     run = simulate(
-        world, REGISTRY, planner=planner, place=PlannerPlace(in_process=in_process),
-        out=folder, references=False, metrics=(), replay=False, force=True,
+        world, REGISTRY, planner=planner, out=folder,
+        options=RunOptions(
+            references=False, metrics=(), replay=False, force=True,
+            place=PlannerPlace(in_process=in_process),
+        ),
     )  # fmt: skip
     assert run.status == "timeout", run.record.reason
     return run.record.hashes.trajectory

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -61,7 +62,11 @@ def scenario(
     return open_spec(str(file), registry, ()).scenarios[0]
 
 
-def run(scenario: Scenario, registry: Registry, out: Path, **options: Any) -> Any:
+def run(
+    scenario: Scenario, registry: Registry, out: Path, planner: str = "goal_seek", **options: Any
+) -> Any:
     """Simulate it, without calibration runs and without a page."""
-    given = {"planner": "goal_seek", "references": False, "replay": False, **options}
-    return simulate(scenario, registry, out=out, **given)
+    given = {"references": False, "replay": False, **options}
+    seed = given.pop("seed", 0)
+    chosen = RunOptions(**given)
+    return simulate(scenario, registry, planner=planner, seed=seed, out=out, options=chosen)
