@@ -1,7 +1,9 @@
-"""Counts the rooms of crowdbot, the arrows between them, imports that go up, and import circles.
+"""Count the rooms of crowdbot, the arrows between them, imports that go up, and import circles.
 
-Imports under TYPE_CHECKING and inside functions count like all others. The floors are those of
-the layers contracts in pyproject.toml. Ends with 1 when something is out of place.
+Imports under TYPE_CHECKING and inside functions count like all others, and so do those that are
+written as text (`import_module`, `lazy_names`), except in the lazy faces for users and authors.
+The floors are those of the layers contracts in pyproject.toml. Ends with 1 when something is out
+of place.
 
 Examples:
     .venv/bin/python scripts/architecture.py
@@ -24,11 +26,16 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from scripts.imports_as_text import LAZY_FACES, faces_imported_within, imports_as_text
+
 ROOT = Path(__file__).parent.parent
 CORE = ROOT / "crowdbot" / "core"
 PAGE = ROOT / "docs" / "decisions" / "0002-floors.md"
 BEGIN = "<!-- Written by make generate: -->\n"
 END = "<!-- end -->\n"
+#: Most files in one folder, without those below; and the folders that may have more.
+MOST_FILES = 30
+MAY_BE_FULL = ("crowdbot/plugins/metrics",)
 
 #: Typing-only imports that may go up: the words of messages and hooks, which nothing executes.
 MAY_GO_UP = {
@@ -65,6 +72,8 @@ class Architecture:
     circles: list[list[str]]
     room_circles: list[list[str]]
     allowed_upward: list[Import]
+    own_faces: list[Import]
+    full_folders: dict[str, int]
 
     @property
     def arrows(self) -> int:
@@ -73,8 +82,9 @@ class Architecture:
 
     @property
     def in_order(self) -> bool:
-        """Whether no file is loose, no import goes up and no files import in a circle."""
-        return not (self.loose_files or self.upward or self.circles or self.room_circles)
+        """True if no file is loose, no import goes up or in a circle, and no folder is too full."""
+        wrong = (self.loose_files, self.upward, self.circles, self.room_circles)
+        return not any((*wrong, self.own_faces, self.full_folders))
 
     def counts(self) -> dict[str, int]:
         """Measure -> number."""
@@ -85,16 +95,19 @@ class Architecture:
             "imports that go up": len(self.upward),
             "import circles of files": len(self.circles),
             "import circles of rooms": len(self.room_circles),
+            "imports of the own package's face": len(self.own_faces),
+            f"folders of more than {MOST_FILES} files": len(self.full_folders),
         }
 
 
 def measure() -> Architecture:
-    """Reads the sources of crowdbot and counts."""
+    """Read the sources of crowdbot and count."""
     graph = grimp.build_graph("crowdbot", cache_dir=None)
     executed = grimp.build_graph("crowdbot", exclude_type_checking_imports=True, cache_dir=None)
     imports = [(a, b) for a in graph.modules for b in graph.find_modules_directly_imported_by(a)]
+    imports += imports_as_text(ROOT, sorted(graph.modules))
     upward = sorted(pair for pair in imports if goes_up(*pair))
-    typing_only = {pair for pair in upward if not _has(executed, pair)}
+    typing_only = {p for p in upward if _has(graph, p) and not _has(executed, p)}
     allowed = [p for p in upward if p in OLD_NAMES or (p in typing_only and _may_go_up(p))]
     arrows = {(a, b) for a, b in ((_room(a), _room(b)) for a, b in imports) if a and b and a != b}
     loose = sorted(file.stem for file in CORE.glob("*.py") if file.stem != "__init__")
@@ -105,6 +118,12 @@ def measure() -> Architecture:
         circles=circles(imports),
         room_circles=circles(sorted(arrows)),
         allowed_upward=allowed,
+        own_faces=[
+            pair
+            for pair in faces_imported_within(ROOT, sorted(graph.modules))
+            if pair[1] not in LAZY_FACES
+        ],
+        full_folders=_full_folders(),
     )
 
 
@@ -117,6 +136,13 @@ def circles(imports: Sequence[Import]) -> list[list[str]]:
     _, group = connected_components(matrix, connection="strong")
     members = [[names[i] for i in np.flatnonzero(group == g)] for g in np.unique(group)]
     return [found for found in members if len(found) > 1]
+
+
+def _full_folders() -> dict[str, int]:
+    """Folder -> number of its files, where it has too many."""
+    folders = [d for d in (ROOT / "crowdbot").rglob("*/") if d.is_dir()]
+    counts = {d.relative_to(ROOT).as_posix(): len(list(d.glob("*.py"))) for d in sorted(folders)}
+    return {d: n for d, n in counts.items() if n > MOST_FILES and d not in MAY_BE_FULL}
 
 
 def _floors(container: str | None) -> dict[str, int]:
@@ -136,7 +162,7 @@ _PACKAGE_FLOORS, _CORE_FLOORS = _floors(None), _floors("crowdbot.core")
 
 
 def goes_up(importer: str, imported: str) -> bool:
-    """Whether an import leaves its floor in any direction but down."""
+    """True if an import leaves its floor in any direction but down."""
     both = (_PACKAGE_FLOORS, _CORE_FLOORS)
     return any(_not_down(_layer(importer, f), _layer(imported, f), f) for f in both)
 
@@ -209,6 +235,8 @@ def plain(found: Architecture) -> str:
     lines += [f"goes up: {a} -> {b}" for a, b in found.upward]
     lines += [f"goes up, allowed: {a} -> {b}" for a, b in found.allowed_upward]
     lines += [f"circle: {' <-> '.join(names)}" for names in (*found.circles, *found.room_circles)]
+    lines += [f"imports its own package's face: {a} -> {b}" for a, b in found.own_faces]
+    lines += [f"{n} files: {folder}" for folder, n in found.full_folders.items()]
     return "\n".join(lines) + "\n"
 
 

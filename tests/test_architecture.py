@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import crowdbot
-from scripts import architecture
+from scripts import architecture, imports_as_text
 from tests.paths import TESTS
 
 PACKAGE = Path(crowdbot.__file__).parent
@@ -33,6 +33,55 @@ def test_no_import_goes_up_not_even_for_types(found: architecture.Architecture) 
 def test_no_files_import_in_a_circle_not_even_for_types(found: architecture.Architecture) -> None:
     assert found.circles == []
     assert found.room_circles == []
+
+
+def test_no_module_imports_the_face_of_its_own_package(found: architecture.Architecture) -> None:
+    assert found.own_faces == []
+
+
+def test_no_folder_has_more_files_than_one_can_look_through(
+    found: architecture.Architecture,
+) -> None:
+    assert found.full_folders == {}
+
+
+TEXTS = {
+    "crowdbot.core.low": 'from importlib import import_module\nimport_module("crowdbot.core.high")',
+    "crowdbot.core.high": 'importlib.import_module(f"crowdbot.core.rooms.{name}")',
+    "crowdbot.core.lazy": (
+        '_HOMES = {"crowdbot.core.high": "a b"}\n_above = lazy_names(__name__, _HOMES)'
+    ),
+    "crowdbot.core.named": 'import_module(name)\nimport_module("numpy.linalg")',
+    "crowdbot.core.rooms": "from crowdbot.core.rooms.own import b",
+    "crowdbot.core.rooms.own": "from crowdbot.core.rooms import b\nb = 1",
+    "crowdbot.core.rooms.other": "import crowdbot.core.rooms.own as own",
+}
+
+
+@pytest.fixture
+def made_up(tmp_path: Path) -> Path:
+    """A package that imports in all the ways that a graph does not show."""
+    for name, text in TEXTS.items():
+        place = tmp_path / name.replace(".", "/")
+        inside = any(other.startswith(f"{name}.") for other in TEXTS)
+        file = place / "__init__.py" if inside else place.with_suffix(".py")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    return tmp_path
+
+
+def test_imports_that_are_written_as_text_count(made_up: Path) -> None:
+    assert imports_as_text.imports_as_text(made_up, [*TEXTS]) == [
+        ("crowdbot.core.high", "crowdbot.core.rooms"),
+        ("crowdbot.core.lazy", "crowdbot.core.high"),
+        ("crowdbot.core.low", "crowdbot.core.high"),
+    ]
+
+
+def test_a_module_that_imports_its_own_face_is_found(made_up: Path) -> None:
+    assert imports_as_text.faces_imported_within(made_up, [*TEXTS]) == [
+        ("crowdbot.core.rooms.own", "crowdbot.core.rooms")
+    ]
 
 
 def test_circles_are_found_through_others_and_chains_are_none() -> None:

@@ -8,12 +8,14 @@ from pathlib import Path
 
 import pytest
 
+from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios import lock as locks
 from crowdbot.core.scenarios.library import open_spec, open_suite
 from crowdbot.core.scenarios.lock import make_lock, population, write_lock
 from crowdbot.core.scenarios.lock_check import differences
+from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.identity.canonical import dump_scenario_yaml
 from crowdbot.dsl.scenario.agent_tables import join_tables, split_tables, table_hash
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -161,7 +163,18 @@ def test_tables_are_kept_although_they_would_be_drawn_differently(
     suite: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = suite.with_name("s.agents.csv").read_text()
-    monkeypatch.setattr(locks, "realise", lambda s, parts: realise(s.model_copy(deep=True), parts))
+
+    def draw_others(scenario: Scenario, parts: EnvironmentParts) -> Realisation:
+        other = scenario.model_copy(deep=True)
+        if other.crowd is not None:
+            seed = other.crowd.seed.model_copy(update={"root": other.crowd.seed.root + 1})
+            other = other.model_copy(
+                update={"crowd": other.crowd.model_copy(update={"seed": seed})}
+            )
+            assert realise(other, parts).hash != realise(scenario, parts).hash
+        return realise(other, parts)
+
+    monkeypatch.setattr(locks, "realise", draw_others)
     suite.write_text(SUITE.replace("{crowd.speed.mean: 2}", "{crowd.speed.mean: 3}"))
     assert relock(suite) == 2
     after = suite.with_name("s.agents.csv").read_text()

@@ -41,3 +41,12 @@ def test_one_that_is_censored_makes_the_fleet_censored() -> None:
     fleet = fleet_scores({"a": [score(value=4.0)], "b": [late]})[0]
     assert (fleet.status, fleet.value, fleet.lower, fleet.upper) == ("censored", None, 7.0, None)
     assert fleet.reason == "b: not_reached"
+
+
+def test_bounds_of_a_censored_fleet_are_the_means_of_bounds_and_values() -> None:
+    late = score(status="censored", reason="not_reached", lower=10.0, upper=20.0)
+    fleet = fleet_scores({"a": [score(value=4.0)], "b": [late]})[0]
+    assert (fleet.lower, fleet.upper) == (7.0, 12.0)
+    early = score(status="censored", reason="left", upper=2.0)
+    fleet = fleet_scores({"a": [late], "b": [early]})[0]
+    assert (fleet.lower, fleet.upper) == (None, 11.0)

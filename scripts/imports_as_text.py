@@ -1,0 +1,102 @@
+"""Imports that are written as text, which no import graph shows: `import_module`, `lazy_names`."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+PACKAGE = "crowdbot"
+_IMPORTERS = ("import_module", "__import__", "resolve_name")
+_LAZY = "lazy_names"
+#: Modules whose names come from everywhere, for users and for authors of plugins.
+LAZY_FACES = (PACKAGE, f"{PACKAGE}.plugin")
+
+Import = tuple[str, str]
+
+
+def imports_as_text(root: Path, modules: Sequence[str]) -> list[Import]:
+    """Importer and imported module of all imports that modules write as text.
+
+    Args:
+        root: the folder that holds the package.
+        modules: names of all modules; a text may also name one of their attributes.
+    """
+    known = set(modules)
+    found: list[Import] = []
+    for module in modules:
+        tree = ast.parse(_file(root, module).read_text("utf-8"))
+        found += [(module, _module_of(text, known)) for text in _texts(tree, module)]
+    return sorted(pair for pair in set(found) if pair[1])
+
+
+def faces_imported_within(root: Path, modules: Sequence[str]) -> list[Import]:
+    """Modules that import from the ``__init__`` of a package they lie in, if it imports modules.
+
+    Such a module and the package import each other, whatever it takes from there.
+    """
+    trees = {m: ast.parse(_file(root, m).read_text("utf-8")) for m in modules}
+    faces = {m for m in modules if _is_package(root, m) and _imports_own(trees[m])}
+    return [
+        (module, package)
+        for module in sorted(modules)
+        for package in sorted(_imported_names(trees[module]) & faces)
+        if module.startswith(f"{package}.")
+    ]
+
+
+def _texts(tree: ast.Module, module: str) -> Iterator[str]:
+    """Names of modules in calls that import what a text names."""
+    tables = {
+        target.id: node.value
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call) or not node.args:
+            continue
+        called = node.func.attr if isinstance(node.func, ast.Attribute) else ""
+        called = node.func.id if isinstance(node.func, ast.Name) else called
+        if called in _IMPORTERS:
+            yield _literal(node.args[0])
+        elif called == _LAZY and module not in LAZY_FACES:
+            homes = node.args[1]
+            table = tables.get(homes.id, homes) if isinstance(homes, ast.Name) else homes
+            if not isinstance(table, ast.Dict):
+                raise SystemExit(f"{module}: write the homes of lazy names as a dictionary")
+            yield from (_literal(key) for key in table.keys if key is not None)
+
+
+def _literal(node: ast.expr) -> str:
+    """The text of an expression, of an f-string as far as it is fixed; empty of any other."""
+    if isinstance(node, ast.JoinedStr) and node.values:
+        return _literal(node.values[0]).rstrip(".")
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
+
+
+def _module_of(text: str, known: set[str]) -> str:
+    """The longest module that a text names; empty if it is none of ours."""
+    name = text.partition(":")[0]
+    while name and name not in known:
+        name = name.rpartition(".")[0]
+    return name
+
+
+def _imports_own(tree: ast.Module) -> bool:
+    return any(name.startswith(f"{PACKAGE}.") for name in _imported_names(tree))
+
+
+def _imported_names(tree: ast.Module) -> set[str]:
+    """What stands after ``from`` in a module's imports, wherever they are."""
+    return {n.module for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module}
+
+
+def _is_package(root: Path, module: str) -> bool:
+    return (root / module.replace(".", "/") / "__init__.py").is_file()
+
+
+def _file(root: Path, module: str) -> Path:
+    place = root / module.replace(".", "/")
+    return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
