@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, settings
 
 from tests import processor_time
 from tests.long_tests import LONG, VARIANTS
+from tests.skipped_summary import skipped_line
 
 # A shell without job control starts what runs in the background with SIGINT ignored; tests that
 # interrupt, and the processes that they start, would inherit that.
@@ -58,3 +59,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     config.hook.pytest_deselected(items=long)
     left = set(long)
     items[:] = [item for item in items if item not in left]
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say in one line what this machine could not test."""
+    if line := skipped_line(terminalreporter.stats.get("skipped", [])):
+        terminalreporter.write_line(line, yellow=True)
