@@ -26,9 +26,9 @@ from crowdbot.core.trajectories.raw_table import (
 )
 from crowdbot.core.trajectories.recording_options import (
     DEFAULTS,
-    BagOptions,
     DataSetOptions,
     TableOptions,
+    TopicOptions,
     takes,
 )
 from crowdbot.errors import InputError, RecordingWarning
@@ -149,14 +149,14 @@ class FromRecordings:
         return _made(cls, in_seconds(tables, frame_rate), options)
 
     @classmethod
-    @takes(BagOptions, resample="robot")
+    @takes(TopicOptions, resample="robot")
     def from_rosbag(
         cls,
         path: Path | str,
         *,
         robot: str | None = None,
         people: str | None = None,
-        **options: Unpack[BagOptions],
+        **options: Unpack[TopicOptions],
     ) -> Self:
         """Read topics of a bag of ROS 1 or ROS 2; times are counted from the robot's first.
 

@@ -48,11 +48,11 @@ class DataSetOptions(PeopleOptions, TaskOptions):
     """What can be given beside a data set of people."""
 
 
-class BagOptions(PeopleOptions, TimeOptions, TaskOptions):
+class TopicOptions(PeopleOptions, TimeOptions, TaskOptions):
     """What can be given beside the topics of a bag."""
 
 
-class TableOptions(BagOptions, total=False):
+class TableOptions(TopicOptions, total=False):
     """What can be given beside tables."""
 
     planner_step_time: ArrayLike | None
