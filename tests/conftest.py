@@ -61,7 +61,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [item for item in items if item not in left]
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+@pytest.hookimpl(wrapper=True, tryfirst=True)  # outside the others: the last line but one
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> Iterator[None]:
     """Say in one line what this machine could not test."""
-    if line := skipped_line(terminalreporter.stats.get("skipped", [])):
-        terminalreporter.write_line(line, yellow=True)
+    try:
+        return (yield)
+    finally:
+        if line := skipped_line(terminalreporter.stats.get("skipped", [])):
+            terminalreporter.write_line(line, yellow=True)

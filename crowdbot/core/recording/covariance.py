@@ -1,4 +1,4 @@
-"""How far off odometry may be: covariances of its pose and twist, carried on from its noise.
+"""Covariances of pose and twist of odometry, propagated from its noise.
 
 The error of the pose grows by the Jacobian of a motion along the heading, as in the prediction of
 an extended Kalman filter (Thrun, Burgard, Fox, "Probabilistic Robotics", 2005, section 7.4).
@@ -13,7 +13,7 @@ from struct import Struct
 #: m^2, rad^2, (m/s)^2: where nothing is known to be worse. A matrix of zeros means "not known".
 LEAST = 1e-6
 _MATRIX = Struct("<36d")
-#: Bits of the numbers: nobody needs more of a covariance, and short ones take less room.
+#: Bits of the numbers: a covariance needs no more, and short ones take less room.
 _BITS = 12
 
 

@@ -164,8 +164,8 @@ def with_tilts(sensors: Mapping[str, SensorInfo], message: Any) -> dict[str, Sen
     if not len(message.sensor) == len(message.roll) == len(message.pitch):
         raise InputError("the recording lists tilts of sensors of unequal number")
     tilts = zip(message.roll.tolist(), message.pitch.tolist(), strict=True)
-    told = dict(zip(message.sensor, tilts, strict=True))
-    return {n: replace(s, tilt=told[n]) if n in told else s for n, s in sensors.items()}
+    tilt_of = dict(zip(message.sensor, tilts, strict=True))
+    return {n: replace(s, tilt=tilt_of[n]) if n in tilt_of else s for n, s in sensors.items()}
 
 
 def with_frames(header: RecordingHeader) -> RecordingHeader:

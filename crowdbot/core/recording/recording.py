@@ -237,7 +237,7 @@ class Recording:
             self._first = topic
 
     def _taker(self, topic: str) -> Callable[[Record], None] | None:
-        """What takes the records of a topic; None: nothing does."""
+        """The function that takes the records of a topic; None: nothing does."""
         for known in RobotRecords.TOPICS:
             if topic.endswith(known):
                 prefix = topic.removesuffix(known)

@@ -1,4 +1,4 @@
-"""What a recording says for tools of ROS and for 3-D viewers; scores need none of it."""
+"""Topics for tools of ROS and for 3-D viewers; scores need none of them."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from crowdbot.core.recording.people import MARKER, PEOPLE, PeopleMessages
 from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning
 from crowdbot.core.recording.template import Template
 from crowdbot.core.recording.topics import Topic, is_odometry, usual_names
-from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotWay
+from crowdbot.core.recording.viewers import ARROWS_TYPE, PEOPLE_RATE, PeopleArrows, RobotPath
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 
 
 class ToolFile(Protocol):
-    """Takes messages: a recording, or whoever wants to have them."""
+    """Takes messages, such as a recording."""
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
         """A message, logged at ``ns`` nanoseconds of simulated time."""
@@ -53,7 +53,7 @@ class ToolTopics:
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
         self._people_due, self._pose_due = Thinning(PEOPLE_RATE), Thinning(REPLAY_RATE)
-        self._way = None if robot is None else RobotWay(robot.radius)
+        self._path_so_far = None if robot is None else RobotPath(robot.radius)
         self._clock, self._twist = template.clock(), template.twist()
         self._namespace = header.namespace
         base, odom = (in_namespace(self._namespace, f) for f in (scenery.BASE, "odom"))
@@ -79,8 +79,8 @@ class ToolTopics:
             self._put(Topic.TF, ns, self._truth, *parts)
         if self._whole:
             self._put(Topic.POSE, ns, self._pose, *parts)
-        if self._way is not None:
-            self._way.add(ns / 1e9, x, y, yaw)
+        if self._path_so_far is not None:
+            self._path_so_far.add(ns / 1e9, x, y, yaw)
 
     def _crowd(self, ns: int, agents: Array) -> None:
         if self._people is None or self._arrows is None:
@@ -113,14 +113,14 @@ class ToolTopics:
 
     def contact(self, t0: float, ns: int, agent: int, bearing: float) -> None:
         """A contact that began at ``t0`` (s) and ended at ``ns``."""
-        if self._way is not None:
-            touch = self._way.touch(t0, agent, bearing)
+        if self._path_so_far is not None:
+            touch = self._path_so_far.touch(t0, agent, bearing)
             self._file.put(Topic.CONTACT_MARKERS, ns, touch)
 
     def path(self, ns: int) -> None:
-        """The way so far."""
-        if self._way is not None and self._way.known:
-            self._file.put(Topic.PATH, ns, self._way.path(ns))
+        """The path so far."""
+        if self._path_so_far is not None and self._path_so_far.known:
+            self._file.put(Topic.PATH, ns, self._path_so_far.path(ns))
 
     def _scenery(self, header: RecordingHeader, description: str) -> None:
         frames = scenery.static_frames(header)

@@ -1,4 +1,4 @@
-"""What never moves, as messages: frames on the robot, walls, map, goal, the robot's description."""
+"""Messages on what never moves: frames on the robot, walls, map, goal, robot description."""
 
 from __future__ import annotations
 

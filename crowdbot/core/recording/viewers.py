@@ -1,4 +1,4 @@
-"""What 3-D viewers show of people, way and contacts: markers one by one, and a path."""
+"""Messages for 3-D viewers: people and contacts as markers, one by one, and the path."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 
 PATH_TYPE, ARROWS_TYPE = "nav_msgs/msg/Path", "visualization_msgs/msg/MarkerArray"
-#: People one by one are large, and a path is written anew again and again, Hz.
+#: People one by one are large, and a path is written again and again, Hz.
 PEOPLE_RATE, PATH_RATE = 4.0, 2.0
 #: Slower people keep the heading they had, m/s.
 HEADING_MIN_SPEED = 0.1
@@ -80,7 +80,7 @@ def _arrows(count: int) -> Template:
     return Template(markers.marker_array([gone, *[arrow] * count]), ANY_STAMP, *of_each * count)
 
 
-class RobotWay:
+class RobotPath:
     """Where a robot has been: a path for viewers, and where it was at any time so far."""
 
     def __init__(self, radius: float) -> None:
@@ -98,11 +98,11 @@ class RobotWay:
 
     @property
     def known(self) -> bool:
-        """Whether it has begun."""
+        """True if it has begun."""
         return bool(self._rows)
 
     def path(self, ns: int) -> Any:
-        """``nav_msgs/Path`` of the way so far."""
+        """``nav_msgs/Path`` of the path so far."""
         poses = [_coarse(*row) for row in self._path]
         return ros.new("nav_msgs/Path", header=ros.header(ns, "map"), poses=poses)
 

@@ -169,8 +169,8 @@ def _resampled_robot(rows: Mapping[str, Array], t: Array) -> dict[str, Array]:
     """All columns between their samples; headings turn the shorter way."""
     known = rows["t"]
     made = {n: interpolated(known, v, t) for n, v in rows.items() if n not in ("t", "theta")}
-    told = np.isfinite(rows["theta"])
-    made["theta"] = interpolated(known[told], np.unwrap(rows["theta"][told]), t)
+    finite = np.isfinite(rows["theta"])
+    made["theta"] = interpolated(known[finite], np.unwrap(rows["theta"][finite]), t)
     return {**made, "t": t}
 
 
@@ -186,8 +186,8 @@ def _people_columns(
     for name, default in defaults.items():
         values = np.full(len(ids), default)
         if name in rows:
-            said = np.isfinite(rows[name])
-            values[column[said]] = rows[name][said]
+            given = np.isfinite(rows[name])
+            values[column[given]] = rows[name][given]
         made[f"agent_{name}"] = values
     if gap is None:
         return made | _on_samples(table, rows, t, ids, column)

@@ -1,4 +1,4 @@
-"""What can be given beside tables of a recording: keywords that several constructors share."""
+"""Options beside the tables of a recording: keywords that several constructors share."""
 
 from __future__ import annotations
 
@@ -45,15 +45,24 @@ class TaskOptions(TypedDict, total=False):
 
 
 class DataSetOptions(PeopleOptions, TaskOptions):
-    """What can be given beside a data set of people."""
+    """Options beside a data set of people."""
 
 
+<<<<<<< HEAD
 class TopicOptions(PeopleOptions, TimeOptions, TaskOptions):
     """What can be given beside the topics of a bag."""
 
 
 class TableOptions(TopicOptions, total=False):
     """What can be given beside tables."""
+=======
+class BagOptions(PeopleOptions, TimeOptions, TaskOptions):
+    """Options beside the topics of a bag."""
+
+
+class TableOptions(BagOptions, total=False):
+    """Options beside tables."""
+>>>>>>> 97f1869f (Recording: standard words: targets, paths, summaries, True if)
 
     planner_step_time: ArrayLike | None
     robot_footprint: ArrayLike | None

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from rosbags.highlevel import AnyReader
 
 from crowdbot.core.recording.covariance import LEAST, OdometryCovariance
-from crowdbot.core.recording.viewers import PeopleArrows, RobotWay
+from crowdbot.core.recording.viewers import PeopleArrows, RobotPath
 from crowdbot.testing.sensor_scenes import context
 from tests.core.recording.recording_cases import URDF, random_run, write_run
 
@@ -99,7 +99,7 @@ def test_every_person_has_its_arrow(count: int, seed: int) -> None:
 
 
 def test_a_path_grows_by_two_poses_a_second() -> None:
-    way = RobotWay(0.2)
+    way = RobotPath(0.2)
     for k in range(65):
         way.add(k / 16, 0.05 * k, 0.0, 0.1)
     poses = way.path(4 * 10**9).poses

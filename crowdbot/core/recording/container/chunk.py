@@ -59,7 +59,7 @@ class OpenChunk:
 
     def _clear(self) -> None:
         self._parts: list[Piece] = []
-        # Of a channel: time, offset, time, offset, …
+        # for each channel: time, offset, time, offset, …
         self._entries = defaultdict[int, list[int]](list)
         self.size = 0
 
@@ -77,7 +77,7 @@ class OpenChunk:
         self.size += _PREFIX + length
 
     def pack(self, at: int) -> PackedChunk:
-        """Compress what was collected, and begin anew.
+        """Compress what was collected, and begin a new one.
 
         Args:
             at: where in the file the chunk is going to be.

@@ -1,4 +1,4 @@
-"""What follows the data of an MCAP file: end of data, index, footer. Layout: https://mcap.dev/spec."""
+"""The end of an MCAP file: end of data, index, footer. Layout: https://mcap.dev/spec."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ END_OF_DATA_SIZE = len(_END_OF_DATA)
 
 @dataclass(frozen=True, kw_only=True)
 class FileIndex:
-    """What a summary says of a file."""
+    """The facts about a file in its summary."""
 
     schemas: Sequence[Schema]
     channels: Sequence[Channel]

@@ -1,4 +1,4 @@
-"""An MCAP file of ROS 2 messages, written in a deterministic way.
+"""An MCAP file of ROS 2 messages, written deterministically.
 
 No wall clock and no library version enters the file: log time is simulated time, so that equal
 runs give equal bytes. Layout: https://mcap.dev/spec.

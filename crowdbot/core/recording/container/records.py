@@ -1,4 +1,4 @@
-"""Reads messages out of an MCAP file that may be cut off, damaged or hostile.
+"""Read messages from an MCAP file that may be cut off, damaged or hostile.
 
 A run that was killed leaves a file without index and footer; it is read front to back up to its
 last whole chunk. What follows a broken chunk must be nothing: damage in the middle is an error.
@@ -75,10 +75,10 @@ class Record(NamedTuple):
 
 
 class Records:
-    """Iterates over the messages of a file, once; then tells what else was in it.
+    """Iterates over the messages of a file, once; then knows what else was in it.
 
     Attributes:
-        finished: whether it had its footer.
+        finished: True if it had its footer.
         attachments: name -> bytes of the files that are attached.
     """
 
@@ -132,11 +132,15 @@ class Records:
                 self._count(1)
                 yield from self._messages([record])
 
-    def _compare(self, told: Statistics) -> None:
-        """Whether all is there that was written."""
-        if told.message_count != self._seen:
+    def _compare(self, summary: Statistics) -> None:
+        """Refuse a file that lacks something that was written.
+
+        Raises:
+            InputError: messages or attached files are missing.
+        """
+        if summary.message_count != self._seen:
             raise InputError(f"{self._path}: damaged: messages are missing")
-        if told.attachment_count != self._attached:
+        if summary.attachment_count != self._attached:
             raise InputError(f"{self._path}: damaged: attached files are missing")
 
     def _top_level(self, data: mmap.mmap) -> Iterator[McapRecord]:
@@ -187,7 +191,7 @@ class Records:
         return data
 
     def _count(self, records: int) -> None:
-        """A small file can hold more messages than anybody can look at."""
+        """A small file can hold more messages than any program can read."""
         self._left -= records
         if self._left < 0:
             raise InputError(f"{self._path}: refused: holds more messages than a recording may")
@@ -224,7 +228,7 @@ def _mapped(fileno: int) -> mmap.mmap:
 
 
 def _framed(data: mmap.mmap) -> Iterator[McapRecord]:
-    """The records of a file that anybody looks at, from magic to magic; indices are stepped over.
+    """The records of a file that are used, from magic to magic; indices are skipped.
 
     Raises:
         ValueError, McapError, struct.error: it ends before that, or is damaged.
@@ -275,7 +279,7 @@ def _read(kind: Any, data: bytes) -> McapRecord:
     return record
 
 
-#: How the records are read that anybody looks at.
+#: Readers of the records that are used.
 _READERS: Mapping[int, Callable[[bytes], McapRecord]] = {
     Opcode.MESSAGE: _message,
     **{

@@ -12,7 +12,7 @@ from crowdbot.core.recording.container.chunk import Piece
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.ros_topics import ToolTopics
 from crowdbot.core.recording.topics import Topic
-from crowdbot.core.recording.viewers import RobotWay
+from crowdbot.core.recording.viewers import RobotPath
 from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
 
 #: Of samples, and recorded less often where not everything is.
@@ -44,14 +44,14 @@ def extras(
         if markers or extra.topic != Topic.PEOPLE_MARKERS:
             yield extra
     if run.robot is not None:
-        way = _way(run, run.robot)
-        yield _told(Topic.PATH, 0, way.path(0), latched=True)
+        path = _path(run, run.robot)
+        yield _extra(Topic.PATH, 0, path.path(0), latched=True)
         if markers:
-            yield from _contacts(run, way)
+            yield from _contacts(run, path)
 
 
 class _Kept:
-    """Keeps the messages that it is told."""
+    """Keeps the messages that it gets."""
 
     def __init__(self) -> None:
         self.messages: list[Extra] = []
@@ -82,23 +82,23 @@ def _tools(header: RecordingHeader, run: Trajectories, description: str) -> list
     return kept.messages
 
 
-def _told(topic: Topic, ns: int, message: Any, *, latched: bool = False) -> Extra:
+def _extra(topic: Topic, ns: int, message: Any, *, latched: bool = False) -> Extra:
     return Extra(str(topic), ns, message.__msgtype__, ros.to_cdr(message), latched)
 
 
-def _way(run: Trajectories, robot: RobotTrack) -> RobotWay:
-    way = RobotWay(robot.radius)
+def _path(run: Trajectories, robot: RobotTrack) -> RobotPath:
+    path = RobotPath(robot.radius)
     for row in zip(run.t, robot.x, robot.y, robot.theta, strict=True):
-        way.add(*map(float, row))
-    return way
+        path.add(*map(float, row))
+    return path
 
 
-def _contacts(run: Trajectories, way: RobotWay) -> Iterator[Extra]:
+def _contacts(run: Trajectories, path: RobotPath) -> Iterator[Extra]:
     """A ball where each contact began, from its beginning on."""
     events = run.contacts
     if events is None:
         return
     for i in np.argsort(events.t0, kind="stable").tolist():
         t = float(events.t0[i])
-        touch = way.touch(t, int(events.agent[i]), float(events.bearing[i]))
-        yield _told(Topic.CONTACT_MARKERS, ros.nanoseconds(t), touch)
+        touch = path.touch(t, int(events.agent[i]), float(events.bearing[i]))
+        yield _extra(Topic.CONTACT_MARKERS, ros.nanoseconds(t), touch)

@@ -101,7 +101,7 @@ def write_parquet(run: Trajectories, out: Path) -> list[str]:
 
 
 def geojson(run: Trajectories) -> str:
-    """Walls, goal zone and the ways of robot and people as lines; metres, not degrees."""
+    """Walls, goal zone and the paths of robot and people as lines; metres, not degrees."""
     features = [*_scenery(run), *_ways(run)]
     document = {
         "type": "FeatureCollection",
@@ -128,20 +128,20 @@ def _scenery(run: Trajectories) -> Iterator[dict[str, Any]]:
 
 def _ways(run: Trajectories) -> Iterator[dict[str, Any]]:
     if run.robot is not None and len(run.t) > 1:
-        way = np.column_stack((run.robot.x, run.robot.y)).tolist()
-        yield _feature("LineString", way, what="robot", t=run.t.tolist())
+        path = np.column_stack((run.robot.x, run.robot.y)).tolist()
+        yield _feature("LineString", path, what="robot", t=run.t.tolist())
     people = run.agents
     for i in range(0 if people is None else len(people.id)):
         assert people is not None
         jumps = None if people.jump is None else people.jump[:, i]
         for rows in _pieces(people.x[:, i], jumps):
-            way = np.column_stack((people.x[rows, i], people.y[rows, i])).tolist()
+            path = np.column_stack((people.x[rows, i], people.y[rows, i])).tolist()
             who = {"what": "person", "id": int(people.id[i]), "radius": float(people.radius[i])}
-            yield _feature("LineString", way, **who, t=run.t[rows].tolist())
+            yield _feature("LineString", path, **who, t=run.t[rows].tolist())
 
 
 def _pieces(x: Array, jumps: Any) -> list[Any]:
-    """Samples of somebody who is there, cut where he was teleported; at least two each."""
+    """Samples of a person who is present, cut at teleports; at least two each."""
     there = np.isfinite(x)
     cut = np.flatnonzero(~(there[1:] & there[:-1]) | (False if jumps is None else jumps)) + 1
     return [p for p in np.split(np.arange(len(x)), cut) if len(p) > 1 and there[p].all()]

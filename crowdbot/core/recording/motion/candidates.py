@@ -1,4 +1,4 @@
-"""What a recording says about choices of people: among which velocities, and which goals."""
+"""Choices of people in a recording: the velocities they choose among, and their goals."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Choosers:
 
     @property
     def fits(self) -> bool:
-        """Whether choices can be recorded as one byte."""
+        """True if choices can be recorded as one byte."""
         return 0 < len(self.candidates.unit) <= MOST_CANDIDATES
 
     def to_message(self) -> Any:

@@ -1,9 +1,9 @@
 """Packs the motion of people without losing a bit: differences from a prediction.
 
 Where it is known among which velocities people choose, and where their goals are, the choice says
-it all, unless somebody is pushed. Else they are predicted from their two samples before. Somebody
-who goes on wanting the same velocity u comes closer to it by the same share in each step,
-``v + (u - v) / gain``; and who turns mostly keeps the speed that is wanted, so that of two
+it all, unless they are pushed. Else they are predicted from their two samples before. A person
+who keeps the same target velocity u comes closer to it by the same share in each step,
+``v + (u - v) / gain``; and a person who turns mostly keeps the target speed, so that of two
 components of u the larger one follows from the smaller one. Positions follow from velocities tick
 by tick, as the simulation adds them up. What is stored is the difference between the bits of a
 number and those of its prediction: 0 for nine numbers of ten where choices are known.
@@ -36,14 +36,14 @@ from crowdbot.core.recording.motion.prediction import (
     moved,
     predicted,
     prefer,
+    target_velocity,
     towards,
-    wanted,
 )
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 
-#: Steps in which somebody would reach the velocity that is wanted, one of which is chosen.
+#: Steps in which a person would reach the target velocity, one of which is chosen.
 GAINS = (8.0, 4.0, 2.0, 16.0, 1.0)
 _SAMPLES_FOR_GAIN = 4
 #: Longer steps, or those that are not whole ticks, are predicted as one tick.
@@ -53,7 +53,7 @@ _POSITIVE = 2**63 - 1
 _VX, _VY = 2, 3
 #: Predictions from here on follow a candidate: how far it is from the one before, in their order.
 _CHOICE = SPEEDS + 1
-#: Of each gain, the share of a change of velocity that is left in the next step.
+#: For each gain, the share of a change of velocity that is left in the next step.
 _LEFT = np.array([(gain - 1.0) / gain for gain in GAINS])[:, np.newaxis, np.newaxis, np.newaxis]
 
 
@@ -75,7 +75,7 @@ class _Samples(NamedTuple):
     """What is packed or unpacked, as the compiled loops hand it to each other.
 
     Attributes:
-        packs: whether to pack.
+        packs: True to pack, False to unpack.
         values, bits: (K, 4, M), the same memory.
         scratch, scratch_bits: (1,), the same memory.
         taken: (K, M) which predictions.
@@ -96,7 +96,7 @@ class _Past(NamedTuple):
 
     Attributes:
         last: (2, 4, M) the sample before, and the one before that.
-        speeds: (M, SPEEDS) wanted lately, m/s.
+        speeds: (M, SPEEDS) the latest target speeds, m/s.
         oldest: (M,) which of them is replaced next.
     """
 
@@ -110,7 +110,7 @@ class MotionCodec:
 
     Args:
         people: how many there are.
-        choosers: those whose candidates are known; nobody is in two groups.
+        choosers: those whose candidates are known; no person is in two groups.
     """
 
     def __init__(self, people: int, choosers: Sequence[Choosers] = ()) -> None:
@@ -129,7 +129,7 @@ class MotionCodec:
 
         Args:
             t: (K,) times, s.
-            motion: (K, 4, M) x, y, vx, vy; NaN where somebody is absent.
+            motion: (K, 4, M) x, y, vx, vy; NaN where a person is absent.
             goals: (K, 2, M) to which people went in the step before each sample; None: not known.
         """
         values = np.ascontiguousarray(motion, np.float64)
@@ -148,9 +148,9 @@ class MotionCodec:
         values = np.zeros((len(t), 4, self._people))
         taken, difference = self._space(len(t))
         data = np.frombuffer(packed.data, np.uint8).copy()  # as `carry` is compiled
-        told = data[: taken.size]
-        rest = np.count_nonzero((told & EXACT) == 0)
-        if len(told) != taken.size or data.size != taken.size + 32 * rest:
+        marks = data[: taken.size]
+        rest = np.count_nonzero((marks & EXACT) == 0)
+        if len(marks) != taken.size or data.size != taken.size + 32 * rest:
             raise ValueError(f"{data.size} bytes of {len(t)} samples of {self._people} people")
         carry(False, taken, difference, data)
         self._code(t, values, goals, packed.gain, taken, difference, packs=False)
@@ -284,7 +284,7 @@ def _choose(
 
 @inline_kernel
 def _follow(samples: _Samples, k: int, i: int, vx: float, vy: float) -> bool:
-    """Velocities from an acceleration; returns whether that is how they really are."""
+    """Velocities from an acceleration; returns True if they are exact."""
     samples.scratch[0] = vx
     _transfer(samples, k, _VX, i)
     samples.scratch[0] = vy
@@ -298,13 +298,13 @@ def _extrapolate(samples: _Samples, past: _Past, k: int, i: int, ticks: int, gai
     """Velocities from those of the two samples before."""
     last, speeds, scratch = past.last, past.speeds[i], samples.scratch
     values, taken = samples.values, samples.taken
-    ux = wanted(last[1, _VX, i], last[0, _VX, i], gain)
-    uy = wanted(last[1, _VY, i], last[0, _VY, i], gain)
+    ux = target_velocity(last[1, _VX, i], last[0, _VX, i], gain)
+    uy = target_velocity(last[1, _VY, i], last[0, _VY, i], gain)
     # The component that is the smaller one: the other follows better from it.
     p, q, up, uq = (_VX, _VY, ux, uy) if abs(ux) <= abs(uy) else (_VY, _VX, uy, ux)
     scratch[0] = known(towards(last[0, p, i], up, gain, ticks))
     _transfer(samples, k, p, i)
-    up = wanted(last[0, p, i], values[k, p, i], gain)
+    up = target_velocity(last[0, p, i], values[k, p, i], gain)
     if samples.packs:
         taken[k, i] = best_speed(
             samples.bits[k, q, i], last[0, q, i], up, uq, gain, ticks, speeds, scratch,
@@ -312,7 +312,7 @@ def _extrapolate(samples: _Samples, past: _Past, k: int, i: int, ticks: int, gai
         )  # fmt: skip
     scratch[0] = predicted(taken[k, i], last[0, q, i], up, uq, gain, ticks, speeds)
     _transfer(samples, k, q, i)
-    uq = wanted(last[0, q, i], values[k, q, i], gain)
+    uq = target_velocity(last[0, q, i], values[k, q, i], gain)
     speed = math.sqrt(up * up + uq * uq)
     if taken[k, i] == 0 and math.isfinite(speed):
         speeds[past.oldest[i]] = speed

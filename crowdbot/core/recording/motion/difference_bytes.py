@@ -1,4 +1,4 @@
-"""How differences from predictions lie in bytes: compiled parts of the codec."""
+"""Differences from predictions as bytes: compiled parts of the codec."""
 
 from __future__ import annotations
 

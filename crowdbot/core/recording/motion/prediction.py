@@ -1,4 +1,4 @@
-"""How the motion of people is predicted from their two samples before: compiled parts of the codec.
+"""Predict the motion of people from their two samples before: compiled parts of the codec.
 
 Only additions, multiplications, divisions and square roots of float64 are used, which every
 machine rounds alike.
@@ -19,7 +19,7 @@ from crowdbot.core.types.arrays import Array
 #: Speeds remembered of each person.
 SPEEDS = 3
 _MOST = 2**63 - 1
-#: Whoever accelerates so much otherwise than towards a candidate is pushed, m^2/s^4.
+#: A person whose acceleration differs by more from that towards a candidate is pushed, m^2/s^4.
 _NEAR = 1e-12
 #: More than its square root, m/s^2.
 _BESIDE = 1e-5
@@ -37,7 +37,7 @@ def best_speed(
     scratch: Array,
     scratch_bits: NDArray[np.int64],
 ) -> int:
-    """Which speed, from 1, predicts the larger component best; 0: none, but constant wishes."""
+    """Number, from 1, of the speed that predicts the larger component best; 0: constant target."""
     best, least = 0, _MOST
     for s in range(SPEEDS + 1):
         scratch[0] = predicted(s, v, up, uq, gain, ticks, speeds)
@@ -54,9 +54,9 @@ def predicted(
     """The larger component of the velocity.
 
     Args:
-        taken: which speed is wanted, from 1; 0: what was wanted before, ``uq``.
+        taken: number of the target speed, from 1; 0: the target before, ``uq``.
         v: the component before.
-        up: what is wanted of the smaller component.
+        up: target of the smaller component.
     """
     if 1 <= taken <= SPEEDS:
         speed = speeds[taken - 1]
@@ -66,16 +66,16 @@ def predicted(
 
 
 @kernel
-def wanted(before: float, now: float, gain: float) -> float:
-    """The velocity that was aimed at in a step; what there is where the step is unknown."""
-    wanted = before + gain * (now - before)
-    return wanted if math.isfinite(wanted) else now
+def target_velocity(before: float, now: float, gain: float) -> float:
+    """The target velocity of a step; the present one where the step is unknown."""
+    target = before + gain * (now - before)
+    return target if math.isfinite(target) else now
 
 
 @kernel
-def towards(v: float, wanted: float, gain: float, ticks: int) -> float:
+def towards(v: float, target: float, gain: float, ticks: int) -> float:
     """Velocity one step later, added up tick by tick."""
-    change = (wanted - v) / (gain * ticks)
+    change = (target - v) / (gain * ticks)
     for _ in range(ticks):
         v += change
     return v
@@ -133,10 +133,10 @@ def chosen_candidate(
 def _points_elsewhere(
     table: CandidateTable, i: int, c: int, ex: float, ey: float, before: Array, ax: float, ay: float
 ) -> bool:
-    """Whether the acceleration towards a candidate surely has not the direction of (ax, ay).
+    """Return True if the acceleration towards a candidate surely points elsewhere than (ax, ay).
 
-    Said without a division, of most candidates: of two accelerations at most sqrt(_NEAR) apart,
-    the one is at most so far beside the line along the other.
+    It needs no division, and excludes most candidates: of two accelerations at most sqrt(_NEAR)
+    apart, the one is at most that far beside the line along the other.
     """
     k = table.first[i] + c
     cx, cy = table.unit[k, 0], table.unit[k, 1]

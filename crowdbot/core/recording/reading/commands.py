@@ -1,4 +1,4 @@
-"""Reads what a user and shared control commanded from the topics of a recording."""
+"""Read the commands of a user and of shared control from the topics of a recording."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def read_commands(
 
     Args:
         path: a recording.
-        user_topic: what the user wanted.
-        command_topic: what shared control made of it.
+        user_topic: commands of the user.
+        command_topic: final commands, of shared control.
         v_max: largest speed, m/s; default: that of the robot in a recording of crowdbot.
         w_max: largest yaw rate, rad/s; likewise.
 
@@ -43,18 +43,18 @@ def read_commands(
             unknown.
         UnknownNameError: there is no such topic.
     """
-    said: dict[str, list[tuple[int, float, float]]] = {user_topic: [], command_topic: []}
+    by_topic: dict[str, list[tuple[int, float, float]]] = {user_topic: [], command_topic: []}
     topics: set[str] = set()
     limits: tuple[float, float] | None = None
     end = 0
     for record in Records(path):
         topics.add(record.topic)
         end = max(end, record.ns)
-        if record.topic in said:
-            said[record.topic].append(_twist(path, record))
+        if record.topic in by_topic:
+            by_topic[record.topic].append(_twist(path, record))
         elif record.topic.endswith(Topic.HEADER) and record.msgtype == _HEADER:
             limits = limits or _limits(record)
-    for topic, rows in said.items():
+    for topic, rows in by_topic.items():
         if not rows:
             raise UnknownNameError(f"topic of {path}", topic, topics)
     if v_max is None or w_max is None:
@@ -63,7 +63,7 @@ def read_commands(
                 f"{path}: the robot's limits are not recorded; v_max, w_max are needed"
             )
         v_max, w_max = limits[0] if v_max is None else v_max, limits[1] if w_max is None else w_max
-    t, user, final, t_end = _merged(said[user_topic], said[command_topic], end)
+    t, user, final, t_end = _merged(by_topic[user_topic], by_topic[command_topic], end)
     try:
         return Commands.from_arrays(
             t=t,

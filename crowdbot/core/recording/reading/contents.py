@@ -1,4 +1,4 @@
-"""What is in a recording, crowdbot's or anybody's: topics with counts, rates and sizes."""
+"""Contents of any MCAP file: topics with counts, rates and sizes."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class RecordingContents:
         finished: the file has its end; an interrupted one has not.
         complete: besides, the run itself came to its end.
         status: why the run ended, ``recovered`` after that; empty where nothing says so.
-        is_run: whether crowdbot recorded it.
+        is_run: True if crowdbot recorded it.
         end: of the last message, s.
         size: of the file, bytes.
         attachments: name -> bytes of the files inside.

@@ -1,4 +1,4 @@
-"""Reads images out of a recording, small ones and few, as the replay page shows them."""
+"""Read images from a recording, few and small, as the replay page shows them."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Grid(NamedTuple):
 
 
 def grid_of(shape: tuple[int, ...], width: int) -> Grid:
-    """Of an image (H, W, ...): the pixels that remain, so that at most ``width`` columns do."""
+    """The pixels of an image (H, W, ...) that remain, so that at most ``width`` columns do."""
     rows, columns = shape[:2]
     every = -(-columns // width)
     return Grid(every, min(every // 2, rows - 1), every // 2)
@@ -61,7 +61,7 @@ def thinned(pixels: NDArray[Any], width: int) -> NDArray[Any]:
 
 
 class ImageCollector:
-    """What cameras saw, among the records of a recording that somebody else reads.
+    """Collects images from the records of a recording, which another object reads.
 
     Args:
         path: the recording.

@@ -1,4 +1,4 @@
-"""Makes a complete file of a recording that was cut off."""
+"""Make a complete file of a recording that was cut off."""
 
 from __future__ import annotations
 

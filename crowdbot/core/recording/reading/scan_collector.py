@@ -1,4 +1,4 @@
-"""Reads scans and cones out of a recording: all messages of a sensor at once."""
+"""Read scans and cones from a recording: all messages of a sensor at once."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class ReplayScan:
         t: (K,) stamps, increasing, s.
         ranges: (K, R), of a cone (K, 1), m; inf or NaN where nothing came back.
         tilt: roll and pitch of the mount (rad).
-        cone: whether a reading is one distance anywhere between two edges.
+        cone: True if a reading is one distance anywhere between two edges.
     """
 
     sensor: str
@@ -50,11 +50,11 @@ class Thinning:
         self._due = 0
 
     def due(self, ns: int) -> bool:
-        """Whether a reading of this time (ns) would remain."""
+        """Return True if a reading of this time (ns) would remain."""
         return ns >= self._due
 
     def keeps(self, ns: int) -> bool:
-        """Whether the reading of this time (ns) remains; to be asked in the order of time."""
+        """Return True if the reading of this time (ns) remains; ask in the order of time."""
         if not self.due(ns):
             return False
         self._due = ns - (ns % self._gap if self._gap else 0) + self._gap
