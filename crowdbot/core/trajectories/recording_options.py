@@ -48,21 +48,12 @@ class DataSetOptions(PeopleOptions, TaskOptions):
     """Options beside a data set of people."""
 
 
-<<<<<<< HEAD
 class TopicOptions(PeopleOptions, TimeOptions, TaskOptions):
-    """What can be given beside the topics of a bag."""
-
-
-class TableOptions(TopicOptions, total=False):
-    """What can be given beside tables."""
-=======
-class BagOptions(PeopleOptions, TimeOptions, TaskOptions):
     """Options beside the topics of a bag."""
 
 
-class TableOptions(BagOptions, total=False):
+class TableOptions(TopicOptions, total=False):
     """Options beside tables."""
->>>>>>> 97f1869f (Recording: standard words: targets, paths, summaries, True if)
 
     planner_step_time: ArrayLike | None
     robot_footprint: ArrayLike | None
