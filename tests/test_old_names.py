@@ -11,6 +11,7 @@ import pytest
 import crowdbot
 from crowdbot import dsl, plugin
 from crowdbot.core import interfaces
+from crowdbot.core.recording import old_names as old_readers
 from crowdbot.core.registry.old_hooks import OLD_HOOKS
 from crowdbot.core.registry.registry import discover
 from crowdbot.dsl.spec.component_specs import CATEGORIES
@@ -104,3 +105,9 @@ def _crowdbot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
         [sys.executable, "-m", crowdbot.__name__, *words],
         cwd=folder, capture_output=True, text=True, check=False, timeout=300,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", old_readers.__all__)
+def test_old_readers_warn_of_the_new_object(name: str) -> None:
+    with pytest.warns(OldNameWarning, match=r"ends with crowdbot 1\.0: use crowdbot\.Recording"):
+        assert getattr(interfaces, name) is getattr(old_readers, name)
