@@ -1,4 +1,4 @@
-"""The Python API: what the commands do, for scripts and notebooks."""
+"""The Python API: the commands' functions, for scripts and notebooks."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _draw(scenario: Scenario) -> str:
     return scenario_html(scenario)
 
 
-#: Drawing lies above the language; notebooks find it here.
+#: Drawing is above the language in the layers; notebooks find it here.
 Scenario.draw_html = _draw
 
 #: Changes to a scenario: ``key=value``, several of them, or a mapping.
@@ -43,7 +43,7 @@ Overrides = str | Sequence[str] | Mapping[str, object]
 
 @cache
 def registry() -> Registry:
-    """The installed plugins, discovered once in a process."""
+    """Return the installed plugins, discovered once per process."""
     return discover()
 
 
@@ -60,8 +60,7 @@ def load(
 
     Args:
         path_or_name: a file, or the name of a packaged suite.
-        scenario: id, unique prefix or pattern; None gives the suite, or the scenario of a
-            document that holds one.
+        scenario: id, unique prefix or pattern; None: the suite, or the only scenario of a document.
         set: changes to every scenario, as ``--set`` of the commands: ``"crowd.flow.density=0.3"``
             or a list of such texts, or a mapping ``{"crowd.flow.density": 0.3}``. The ids get a
             suffix.
@@ -81,16 +80,16 @@ def load(
 
 
 def expand(suite: Expansion | Scenario | str | Path, *, set: Overrides = ()) -> list[Scenario]:
-    """All scenarios of a suite, in order.
+    """Return all scenarios of a suite, in order.
 
     Args:
         suite: from `load`; or a file or name, which is loaded.
-        set: as for `load`; only where the suite is loaded here.
+        set: as for `load`; only if the suite is loaded here.
 
     Raises:
         SpecError: the document, or a change to it, is wrong.
         UnknownNameError: no such suite.
-        InputError: it is not a suite, or ``set`` was given with one that is loaded already.
+        InputError: it is not a suite, or ``set`` was given with a loaded suite.
     """
     if isinstance(suite, str | Path):
         suite = load(suite, set=set)
@@ -127,31 +126,30 @@ def simulate(
     Args:
         scenario: from `load` or `expand`.
         planner: kind, YAML file or ``file.py:Class``; a class with ``reset`` and ``step``, or an
-            object of one; a function from an observation to a command; or the spec of a kind.
-            The runs of an object or a function are never reused: what it holds may have changed.
+            instance of one; a function from an observation to a command; or the spec of a kind.
+            Runs of an object or a function are never reused, since its state may have changed.
         planner_settings: ``key=value`` texts, or a mapping, that change its parameters.
-        seed: of the run: sensor noise and planner.
+        seed: seed of sensor noise and planner.
         out: root of the run directories; None uses a temporary folder that lives as long as the
             result.
         suite: name of the first folder below ``out``.
-        record: which sensors are simulated and recorded: ``used``, those that the
-            planner reads, as the replay page shows them; ``all``, with every reading;
-            ``none``, only what scores need.
-        references: whether the calibration runs are made where they are missing.
-        force: whether a complete run is made again.
+        record: which sensors are simulated and recorded: ``used``: those that the planner reads, as
+            shown on the replay page; ``all``: every reading; ``none``: only data for scores.
+        references: True to run missing calibration runs.
+        force: True to repeat a complete run.
         metrics: one or several globs over metric names.
-        replay: whether the replay page is written.
-        step_budget: wall time that a planner step may take, s; None: any.
-        in_process: whether the planner runs inside this process, where a debugger sees it and
-            nothing contains it; None: crowdbot's own do, all others have a process of their own.
-        planner_memory: largest address space of its own process, GiB; None: any.
-        progress: called several times a simulated second.
-        stop: asked several times a simulated second; True ends the run.
+        replay: True to write the replay page.
+        step_budget: largest wall time of a planner step, s; None: unlimited.
+        in_process: True: run the planner in this process, visible to a debugger but not isolated;
+            None: only crowdbot's own planners, all others in separate processes.
+        planner_memory: largest address space of its process, GiB; None: unlimited.
+        progress: called several times per simulated second.
+        stop: called several times per simulated second; True ends the run.
 
     Raises:
-        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or
-            the lock of the suite does not fit it any more.
-        UnknownNameError: no metric answers to a pattern.
+        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or the
+            suite's lock is out of date.
+        UnknownNameError: no metric matches a pattern.
         PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
         Interrupted: ``stop`` returned True; a ``.partial`` directory is left.
     """
@@ -185,14 +183,14 @@ def simulate(
 
 
 def _patterns(metrics: str | Sequence[str]) -> Sequence[str] | None:
-    """What a record says of the metrics; None is all of them."""
+    """Return the metrics for the record; None means all."""
     if metrics == "*":
         return None
     return texts_of("metrics", metrics)
 
 
 def _bytes(planner_memory: float | None) -> int | None:
-    """Address space of a planner's process; given in GiB.
+    """Return the address space of a planner's process in bytes, from GiB.
 
     Raises:
         InputError: it is not a positive number.
@@ -213,7 +211,7 @@ def evaluate(run: Run | str | Path, metrics: str | Sequence[str] = "*") -> Score
         metrics: one or several globs over metric names.
 
     Raises:
-        UnknownNameError: no metric answers to a pattern.
+        UnknownNameError: no metric matches a pattern.
         InputError: it is not a run, or its recording cannot be read.
         PluginError: a metric failed.
     """
@@ -238,22 +236,22 @@ def score(
     variants: str | Sequence[str] = "all",
     parameters: MetricParameters | None = None,
 ) -> Scores:
-    """Score trajectories, commands and answers, of crowdbot or of anybody else.
+    """Score trajectories, commands and answers, from crowdbot or other sources.
 
     Args:
-        crowded: the run; None where only commands or answers are known.
-        robot_alone: the same robot without people, where known.
-        crowd_alone: the same people without robot, where known.
+        crowded: the run; None if only commands or answers are known.
+        robot_alone: the same robot without people, if known.
+        crowd_alone: the same people without robot, if known.
         commands: the user's and the final commands.
         commands_baseline: commands of a drive of the same user without shared control.
         questionnaires: answers; see `Questionnaires.from_mapping`.
         metrics: one or several globs over metric names; each must match.
         variants: ``all``, or the names of the variants to keep.
-        parameters: metric -> field -> value; what is left out keeps its default.
+        parameters: metric -> field -> value; others keep their defaults.
 
     Raises:
-        UnknownNameError: no metric or variant answers to a name.
-        InputError: there is nothing to score, a metric is retired, or a value does not fit.
+        UnknownNameError: no metric or variant has a given name.
+        InputError: there is nothing to score, a metric is retired, or a value is invalid.
         PluginError: a metric failed.
     """
     from crowdbot.core.scoring.evaluate import score as score_it
@@ -274,10 +272,10 @@ def score(
 
 
 def results(root: str | Path = "runs") -> Results:
-    """All runs, scores and failures below a folder, as a campaign leaves them.
+    """Return all runs, scores and failures below a folder, as written by a campaign.
 
     Args:
-        root: of the run directories.
+        root: root of the run directories.
 
     Raises:
         InputError: there is no such folder, or a run in it is damaged.
@@ -294,10 +292,10 @@ def _check_recorded(
     commands: object,
     commands_baseline: object,
 ) -> None:
-    """Refuse what is neither trajectories nor commands.
+    """Refuse arguments that are not trajectories or commands.
 
     Raises:
-        InputError: something is of another kind.
+        InputError: an argument has another type.
     """
     from crowdbot.core.trajectories.commands import Commands as SomeCommands
     from crowdbot.core.trajectories.trajectories import Trajectories as SomeTrajectories

@@ -1,4 +1,4 @@
-"""Every exception that crowdbot raises on purpose.
+"""All exceptions that crowdbot raises on purpose.
 
 ::
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
-#: So many names are listed in full when none looks like the one that was given.
+#: Number of names listed in full if none is similar to the given one.
 _FEW = 12
 
 
 class CrowdbotError(Exception):
-    """Base of all errors with a message meant for people."""
+    """Base of all errors with a readable message."""
 
     exit_code = 1
 
@@ -49,7 +49,7 @@ class SpecError(InputError):
 
 
 class UnknownNameError(InputError):
-    """A name that nothing answers to; the message ends with why, or with the nearest names."""
+    """An unknown name; the message ends with the reason or similar names."""
 
     def __init__(self, what: str, name: str, known: Iterable[str], why: str = "") -> None:
         names = sorted(known)
@@ -91,36 +91,36 @@ class MissingLibraryError(SimulationError):
 
 
 class Interrupted(CrowdbotError):  # noqa: N818 - not a failure
-    """The user stopped the run; what was recorded so far is readable."""
+    """The user stopped the run; the recording so far is readable."""
 
     exit_code = 130
 
 
 class RecordingWarning(UserWarning):
-    """Something in a recording cannot be, such as positions in millimetres."""
+    """A recording contains implausible values, such as positions in millimetres."""
 
 
 def nearest(name: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
-    """The known names that look most like ``name``, best first."""
+    """Return the known names most similar to ``name``, best first."""
     return tuple(difflib.get_close_matches(name, sorted(known), n=limit, cutoff=0.6))
 
 
 def kind_of(value: object) -> str:
-    """What kind of thing a value is, with its article: ``an int``, ``a list``, ``None``."""
+    """Return a value's type with its article: ``an int``, ``a list``, ``None``."""
     name = type(value).__name__
     return "None" if value is None else f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
 
 
 def did_you_mean(near: Sequence[str]) -> str:
-    """``"; did you mean 'a' or 'b'?"``, or nothing."""
+    """Return ``"; did you mean 'a' or 'b'?"``, or ""."""
     return f"; did you mean {' or '.join(repr(n) for n in near)}?" if near else ""
 
 
 def hidden_character(text: str, allowed: str = "\t\n\r") -> str:
-    """The first character that shows nothing, or changes how others are shown, as ``U+202E``.
+    """Return the first invisible or bidirectional character, as ``U+202E``.
 
-    Control and format characters, separators of lines and paragraphs, and halves of characters;
-    but not the two joiners that some scripts need. Empty where there is none.
+    These are control and format characters, line and paragraph separators, and lone surrogates; but
+    not the two joiners that some scripts need. Empty if there is none.
     """
     if text.isascii() and text.isprintable():
         return ""
@@ -131,7 +131,7 @@ def hidden_character(text: str, allowed: str = "\t\n\r") -> str:
 
 
 def printable(text: str) -> str:
-    """A text that can be shown and written: what is hidden in it stands there as an escape."""
+    """Return a text with hidden characters escaped, so that it can be shown and written."""
     if text.isascii() and text.isprintable():
         return text
     return "".join(

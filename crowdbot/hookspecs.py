@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from crowdbot.dsl.spec.component import Component
 
-#: Version of this file. A plugin module says ``CROWDBOT_API = 1``.
+#: Version of this file. A plugin module declares ``CROWDBOT_API = 1``.
 API_VERSION = 1
-#: The oldest version that this crowdbot still speaks.
+#: The oldest version that this crowdbot supports.
 OLDEST_API = 1
 
 hookspec = pluggy.HookspecMarker("crowdbot")
@@ -62,8 +62,8 @@ def crowdbot_components() -> Mapping[str, Sequence[Component[Any] | str]]:  # ty
 def crowdbot_scenario_dirs() -> Sequence[Traversable]:  # type: ignore[empty-body]
     """Return folders with suites: ``office.yaml`` of the plugin ``acme`` is ``acme:office``.
 
-    Called once, while the registry is built. Folders are looked into when a document is named
-    that is not a path, or extends ``NAME:...``; they may lie in an archive.
+    Called once, while the registry is built. Folders are searched if a document's name is not a
+    path, or it extends ``NAME:...``; they may be in an archive.
 
     Returns:
         A list or tuple of folders. Parts that others extend go into a folder inside.

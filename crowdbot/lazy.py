@@ -1,4 +1,4 @@
-"""Modules whose names are imported when they are first used."""
+"""Modules whose names are imported on first use."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
 
     Args:
         package: its name, for messages.
-        homes: module -> names that come from it, with spaces between them; ``Original=Name`` where
-            the module calls it otherwise. A name may also be a submodule.
+        homes: module -> names that come from it, with spaces between them; ``Original=Name`` if the
+            module uses another name. A name may also be a submodule.
     """
     found = {
         name or original: (module, original)

@@ -27,7 +27,7 @@ __all__ = ["command_names", "main"]
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command line and return its exit code; nothing but messages reaches the user.
+    """Run a command line and return its exit code; the user sees only messages, no tracebacks.
 
     Args:
         argv: arguments without the program's name; default: those of the process.
@@ -67,14 +67,14 @@ def _run(argv: Sequence[str] | None) -> int:
     if argv is None and not _LOADING.isdisjoint(words[:1]):
         collect_seldom()
     if argv is None and not _READING.isdisjoint(words[:1]):
-        # What watches models of services, pydantic would look for in every distribution.
+        # Pydantic would search every distribution for plugins that only monitor services.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         with _silence() if _wants_silence(words) else nullcontext():
             _dispatch(words)
         sys.stdout.flush()
     except SystemExit as done:
-        if isinstance(done.__context__, BrokenPipeError):  # rich makes an exit of it
+        if isinstance(done.__context__, BrokenPipeError):  # rich converts it to an exit
             raise done.__context__ from None
         if left_by(done):
             raise
@@ -90,12 +90,12 @@ def _dispatch(words: list[str]) -> None:
     run(words)
 
 
-#: Commands that read documents, tell about them, and are over: a process of theirs is short.
+#: Commands that read documents, print facts and exit: their process is short.
 _READING = frozenset(("expand", "plugins", "validate"))
-#: Commands whose time goes to loading libraries and documents, before any run begins.
+#: Commands that spend their time on loading libraries and documents before a run begins.
 _LOADING = _READING | {"campaign", "simulate"}
 
-#: Commands whose output only tells what they did; with ``-q`` they say only what went wrong.
+#: Commands whose output only reports their actions; with ``-q`` they print errors only.
 _TELLING = frozenset(
     ("bundle", "campaign", "evaluate", "export-urdf", "lock", "report", "simulate", "validate",
      "verify", "view")
@@ -103,7 +103,7 @@ _TELLING = frozenset(
 
 
 def _wants_silence(words: Sequence[str]) -> bool:
-    """Whether a command line asks for nothing but what went wrong."""
+    """Return True if a command line asks for errors only."""
     options = set(words)
     quiet = any(w == "--quiet" or re.fullmatch("-v*q[qv]*", w) for w in words)
     return quiet and not _TELLING.isdisjoint(words[:2]) and not options & {"--json", "-h", "--help"}
@@ -111,13 +111,13 @@ def _wants_silence(words: Sequence[str]) -> bool:
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """Nothing on stdout; messages on stderr stay."""
+    """Suppress stdout; messages on stderr remain."""
     with Path(os.devnull).open("w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
         yield
 
 
 def _start_log() -> None:
-    """Messages of crowdbot's loggers go to stderr as they are."""
+    """Send messages of crowdbot's loggers to stderr unchanged."""
     log = logging.getLogger("crowdbot")
     handler = logging.StreamHandler()
     handler.setFormatter(_Printable())
@@ -126,7 +126,7 @@ def _start_log() -> None:
 
 
 class _Printable(logging.Formatter):
-    """Messages quote what strangers wrote."""
+    """A formatter that escapes untrusted text in messages."""
 
     def format(self, record: logging.LogRecord) -> str:
         return printable(super().format(record))
@@ -145,12 +145,12 @@ def _say(text: str) -> None:
 
 
 def _tolerate_any_encoding() -> None:
-    """A terminal that cannot show a character gets an escape instead of an error."""
+    """Escape characters that the terminal cannot show, instead of failing."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
 def _drop_output() -> None:
-    """Keep the interpreter from flushing into the closed pipe at exit."""
+    """Prevent the interpreter from flushing into the closed pipe at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

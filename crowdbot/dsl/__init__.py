@@ -1,7 +1,7 @@
 """The scenario language: specs, YAML, matrices, hashes, diagnostics.
 
 It imports the standard library, pydantic, PyYAML and ruamel.yaml only. Plugins import its specs
-from `crowdbot.plugin`; here those names stay until 1.0.
+from `crowdbot.plugin`; here those names are kept until 1.0.
 """
 
 from __future__ import annotations

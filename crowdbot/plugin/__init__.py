@@ -1,10 +1,9 @@
-"""The one module that plugins import: specs and components, contracts, values and tools.
+"""The module that plugins import: specs and components, interfaces, value types and tools.
 
-Specs and components describe what documents say; they need no numpy, and a module of specs
-imports nothing else. The contracts of build functions speak numpy: SI units, float64, read-only
-inputs, new outputs; world frame x along the corridor, y left, z up, yaw counter-clockwise
-(REP-103). docs/reference/author_surface.md has a line on each name. Names are imported when they
-are first used; nothing of core imports this module.
+Specs and components describe documents; they need no numpy, and a module of specs imports nothing
+else. Build functions use numpy: SI units, float64, read-only inputs, new outputs; world frame x
+along the corridor, y left, z up, yaw counter-clockwise (REP-103). docs/reference/author_surface.md
+describes each name. Names are imported on first use; core does not import this module.
 """
 
 from __future__ import annotations

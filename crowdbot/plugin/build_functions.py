@@ -1,9 +1,9 @@
-"""What the build function of a component is called with, and when, one contract per category.
+"""Interfaces of build functions, one per category, and when they are called.
 
-``Component(build="package.module:function")`` names a function, or a class, of these forms. The
-registry imports it when something is simulated or scored, never before, and calls it with a
-validated spec; what it raises ends the run with a message that names the component. What is built
-belongs to one run: nothing is shared between runs.
+``Component(build="package.module:function")`` names a function or class with one of these
+signatures. The registry imports it when it is first simulated or scored, and calls it with a
+validated spec; an exception ends the run with a message that names the component. The result
+belongs to one run and is not shared.
 """
 
 from __future__ import annotations
@@ -45,23 +45,23 @@ MetricSpecT = TypeVar("MetricSpecT", bound=MetricSpec, contravariant=True)
 
 
 class BuildEnvironment(Protocol[EnvironmentSpecT]):
-    """Called when people are placed, when a picture is drawn, and once for each recording."""
+    """Builds an environment: called when people are placed, drawn, and once per recording."""
 
     def __call__(self, spec: EnvironmentSpecT, /) -> EnvironmentParts:
-        """Plain geometry; the same spec gives the same arrays."""
+        """Return plain geometry; the same spec gives the same arrays."""
         ...
 
 
 class BuildRobot(Protocol[RobotSpecT]):
-    """Called once for each recording, and to export a robot."""
+    """Builds a robot: called once per recording, and to export a robot."""
 
     def __call__(self, spec: RobotSpecT, /) -> RobotModel:
-        """Body, drive, limits, footprint and mass."""
+        """Return body, drive, limits, footprint and mass."""
         ...
 
 
 class BuildSensor(Protocol[SensorSpecT]):
-    """Called when a run is prepared, for ``info``, and once where the sensor is simulated."""
+    """Builds a sensor: called when a run is prepared, for ``info``, and once for the simulation."""
 
     def __call__(self, spec: SensorSpecT, context: SensorContext, /) -> Sensor | SensorWithMemory:
         """Return a sensor that has not read anything yet.
@@ -73,10 +73,10 @@ class BuildSensor(Protocol[SensorSpecT]):
 
 
 class BuildRangeSensor(Protocol[RangeSensorSpecT]):
-    """As `BuildSensor`, for sensors of distances: their specs derive from `RangeSensorSpec`.
+    """Builds a range sensor; like `BuildSensor`, for specs derived from `RangeSensorSpec`.
 
-    So it is for every component whose spec says that it has parts (``parts_field``): they are
-    built first and come second.
+    Every component whose spec has parts (``parts_field``) works the same way: the parts are built
+    first and passed as second argument.
     """
 
     def __call__(
@@ -90,42 +90,48 @@ class BuildRangeSensor(Protocol[RangeSensorSpecT]):
 
 
 class BuildNoise(Protocol[NoiseSpecT]):
-    """Called once for each sensor that names it, before the sensor."""
+    """Builds a noise generator: called once per sensor that names it, before the sensor."""
 
     def __call__(self, spec: NoiseSpecT, /) -> NoiseGenerator:
-        """A generator without a state."""
+        """Return a stateless generator."""
         ...
 
 
 class BuildPlanner(Protocol[PlannerSpecT]):
-    """Called once for each recording with a robot; it may take two minutes to load models."""
+    """Builds a planner: called once per recording with a robot.
+
+    It may take two minutes to load models.
+    """
 
     def __call__(self, spec: PlannerSpecT, /) -> Planner:
-        """A planner that was not reset yet."""
+        """Return a planner that was not reset yet."""
         ...
 
 
 class BuildPolicy(Protocol[PolicySpecT]):
-    """Called once for each recording with people; once for each named policy of a crowd."""
+    """Builds a crowd policy: called once per recording with people, and once per named policy."""
 
     def __call__(
         self, spec: PolicySpecT, costs: Sequence[CompiledCost | NumpyCost], agents: Agents, /
     ) -> CrowdPolicy:
-        """``costs`` are the crowd's, built, in the document's order; ``agents`` are all."""
+        """Build the policy; ``costs`` are built, in the document's order.
+
+        ``agents`` are all agents.
+        """
         ...
 
 
 class BuildCost(Protocol[CostSpecT]):
-    """Called before the policy that uses the cost function is built."""
+    """Builds a cost function: called before the policy that uses it."""
 
     def __call__(self, spec: CostSpecT, /) -> CompiledCost | NumpyCost:
-        """Compiled functions with their parameters, or one vectorised function."""
+        """Return compiled functions with their parameters, or one vectorised function."""
         ...
 
 
 class BuildMetric(Protocol[MetricSpecT]):
-    """Called once for each scoring, in `simulate` and in `evaluate`."""
+    """Builds a metric: called once per scoring, in `simulate` and in `evaluate`."""
 
     def __call__(self, spec: MetricSpecT, /) -> Metric:
-        """A pure function of trajectories."""
+        """Return a pure function of trajectories."""
         ...

@@ -1,4 +1,4 @@
-"""Names of `crowdbot.plugin`, by the modules that they come from."""
+"""Names of `crowdbot.plugin`, by their source modules."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The conformance kit: what every component must keep to, as checks for its own tests.
+"""The conformance kit: checks of components' contracts, for their own tests.
 
 ::
 

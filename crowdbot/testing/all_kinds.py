@@ -1,4 +1,4 @@
-"""What every component must keep to, whatever it is."""
+"""Checks for every component, of any category."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.dsl.text.plain_yaml import to_yaml
 from crowdbot.testing.around import installed
 
-#: Loaded in a fraction of a second or not at all by whoever only validates.
+#: Modules that validation must not load.
 HEAVY = frozenset({"numba", "numpy", "pydrake"})
-#: Words that tell a reader that a number has no unit.
+#: Words for numbers without a unit.
 _WITHOUT_UNIT = (
     "bits", "count", "dimensionless", "factor", "fraction", "number", "per", "probability",
     "ratio", "relatively", "share", "ticks", "weight",
 )  # fmt: skip
 _UNITS = frozenset(unit.lower() for units in UNITS.values() for unit in units) | {"si"}
-#: Symbols of which other units are made: m^2/s^2, W s^2/(kg m^2).
+#: Basic symbols of compound units: m^2/s^2, W s^2/(kg m^2).
 _SYMBOLS = frozenset({"m", "s", "kg", "n", "j", "w", "hz", "rad", "1"})
 #: Category -> what its build functions take after the spec and its parts.
 _FURTHER = {"crowd policy": ("costs", "agents"), "sensor": ("context",)}
 
 
 def check_kind_is_a_name(component: Component[Any]) -> None:
-    """``kind`` is one literal and the default; of a plugin it begins with the plugin's name.
+    """``kind`` is a single literal and the default; in a plugin it starts with the plugin's name.
 
     If this fails, write ``kind: Literal["plugin.name"] = "plugin.name"`` in lower case.
     """
@@ -52,7 +52,7 @@ def check_kind_is_a_name(component: Component[Any]) -> None:
 
 
 def check_summary_is_a_line(component: Component[Any]) -> None:
-    """The summary is one line, and a docstring of the spec says what it stands for.
+    """The summary is one line, and the spec has a docstring.
 
     If this fails, give ``Component(summary=...)`` a few words without a line break, and the spec
     class a docstring.
@@ -64,7 +64,7 @@ def check_summary_is_a_line(component: Component[Any]) -> None:
 
 
 def check_examples_validate(component: Component[Any]) -> None:
-    """There is an example, and all are valid documents.
+    """There is an example, and all examples are valid.
 
     If this fails, correct ``Component(examples=...)``: mappings of field to value without ``kind``.
     """
@@ -75,7 +75,7 @@ def check_examples_validate(component: Component[Any]) -> None:
 
 
 def check_round_trip(component: Component[Any]) -> None:
-    """Spec to YAML and back gives the same spec.
+    """Converting a spec to YAML and back gives the same spec.
 
     If this fails, a field is changed by validation or cannot be written; look for validators that
     are not idempotent and for types that JSON does not have.
@@ -88,7 +88,7 @@ def check_round_trip(component: Component[Any]) -> None:
 
 
 def check_fields_are_described(component: Component[Any]) -> None:
-    """Every field has a description, and numbers say their unit.
+    """Every field has a description, and numbers have a unit.
 
     If this fails, use a quantity of ``crowdbot.plugin``, or end the description with
     ``, UNIT.``; a number without unit is a "weight", "factor", "fraction", "ratio" or "share".
@@ -100,9 +100,9 @@ def check_fields_are_described(component: Component[Any]) -> None:
 
 
 def check_unknown_field_is_refused(component: Component[Any]) -> None:
-    """A field that the spec does not have is an error, not ignored.
+    """An unknown field is an error, not ignored.
 
-    If this fails, the spec changed ``model_config``; leave ``extra="forbid"`` as it is.
+    If this fails, the spec changed ``model_config``; keep ``extra="forbid"``.
     """
     example = dict(component.examples[0]) if component.examples else {}
     refused: list[str] = []
@@ -114,7 +114,7 @@ def check_unknown_field_is_refused(component: Component[Any]) -> None:
 
 
 def check_build_resolves(component: Component[Any]) -> None:
-    """``build`` names a function that can be called as that of its category is.
+    """``build`` names a function with its category's signature.
 
     If this fails, correct ``Component(build="module:function")``, or what the function takes:
     ``build(spec)``; ``build(spec, context)`` of a sensor, ``build(spec, noise, context)`` of one
@@ -123,7 +123,7 @@ def check_build_resolves(component: Component[Any]) -> None:
     build = load_build(component)
     try:
         signature = inspect.signature(build)
-    except ValueError:  # written in C: nothing to look at
+    except ValueError:  # written in C: no signature
         return
     given = ("spec", *accepted(component, build, _given(component)))
     try:
@@ -143,7 +143,7 @@ def _given(component: Component[Any]) -> tuple[str, ...]:
 def check_spec_is_light(component: Component[Any]) -> None:
     """Importing the module of the spec imports neither pydrake nor numba nor numpy.
 
-    If this fails, move what computes into the module that ``build`` names.
+    If this fails, move computations to the module that ``build`` names.
     """
     module = component.spec.__module__
     loaded = _loaded_by(module.rpartition(".")[0] or module)
@@ -156,10 +156,10 @@ def check_spec_is_light(component: Component[Any]) -> None:
 def check_entry_point_yields_it(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The installed plugin really provides the component.
+    """The installed plugin provides the component.
 
-    If this fails, look at ``crowdbot plugins``: the distribution is not installed, its entry point
-    in the group ``crowdbot`` names another module, or no hook returns the component.
+    If this fails, run ``crowdbot plugins``: the distribution is not installed, its entry point in
+    the group ``crowdbot`` names another module, or no hook returns the component.
     """
     known = registry or installed()
     found_of = known.components(component.category)
@@ -204,7 +204,7 @@ def _validated(component: Component[Any], example: Any) -> ComponentSpec:
 
 
 def _fields(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
-    """Dotted name and field of a spec and of all it consists of; ``kind`` is core's."""
+    """Yield dotted name and field of a spec and its parts; ``kind`` is excluded."""
     for name, field in model.model_fields.items():
         if prefix or name != "kind":
             yield prefix + name, field
@@ -223,7 +223,7 @@ def _has_unit(field: FieldInfo) -> bool:
 
 
 def _is_unit(text: str) -> bool:
-    """Whether a text is a unit, or a product of powers of units."""
+    """Return True if a text is a unit, or a product of powers of units."""
     parts = [p for p in re.split(r"[\s/()]+", text.replace("sqrt", "")) if p]
     powers = [re.fullmatch(r"([a-z]+|1)(\^\d)?", part) for part in parts]
     made = bool(parts) and all(p is not None and p[1] in _SYMBOLS for p in powers)
@@ -232,7 +232,7 @@ def _is_unit(text: str) -> bool:
 
 @cache
 def _loaded_by(module: str) -> frozenset[str]:
-    """Modules in memory after a fresh interpreter imported one."""
+    """Return the modules that a fresh interpreter loads on importing one."""
     path = [*sys.path, *_folder_of(module.partition(".")[0])]
     code = f"import sys; sys.path[:] = {path!r}; import {module}; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
@@ -241,7 +241,7 @@ def _loaded_by(module: str) -> frozenset[str]:
 
 
 def _folder_of(top: str) -> list[str]:
-    """Where a module or package lies that was loaded by its path and not found by its name."""
+    """Return the folder of a module or package loaded by path instead of by name."""
     file = getattr(sys.modules.get(top), "__file__", None)
     if file is None:
         return []

@@ -1,4 +1,4 @@
-"""A component among others: the registry that checks build it from, and its examples as specs."""
+"""Registries with one component added for checks, and its examples as specs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RECORDED = 12
 
 @cache
 def installed() -> Registry:
-    """What is installed, looked up once."""
+    """Return the installed registry, discovered once."""
     return discover()
 
 
@@ -42,10 +42,10 @@ def components_of(plugin: str) -> tuple[Component[Any], ...]:
 
 
 def around(component: Component[Any], registry: Registry | None = None) -> Registry:
-    """A registry with a component in it, in place of what has its kind.
+    """Return a registry with this component, replacing one of its kind.
 
     Args:
-        registry: the others; by default what is installed.
+        registry: the other components; default: the installed ones.
     """
     known = registry or installed()
     if any(c is component for p in known.plugins for c in p.components):
@@ -61,7 +61,7 @@ def around(component: Component[Any], registry: Registry | None = None) -> Regis
 
 
 def specs_of(component: Component[Any], registry: Registry) -> list[ComponentSpec]:
-    """The component's examples, validated."""
+    """Return the component's examples, validated."""
     model = registry.spec_model(component.category, component.kind)
     return [
         _with_record(model.model_validate({"kind": component.kind, **example}))
@@ -70,7 +70,7 @@ def specs_of(component: Component[Any], registry: Registry) -> list[ComponentSpe
 
 
 def with_zone(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) -> ComponentSpec:
-    """An environment's spec with a small zone more, called ``kit``, behind a point."""
+    """Return an environment's spec with an additional small zone ``kit`` behind a point."""
     words = spec.model_dump(mode="json")
     x, y = at
     words["zones"] = {**words["zones"], "kit": {"x": [x - 0.4, x - 0.3], "y": [y, y + 0.1]}}
@@ -78,10 +78,10 @@ def with_zone(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) 
 
 
 def built(registry: Registry, spec: ComponentSpec, *args: Any) -> Any:
-    """What the component's build function makes of a spec, as it is: nothing is checked.
+    """Return the unchecked result of the component's build function.
 
     Raises:
-        SkipTest: it says that an optional library is not installed.
+        SkipTest: an optional library is not installed.
     """
     try:
         return registry.build(spec, lambda found: found, *args)
@@ -92,13 +92,13 @@ def built(registry: Registry, spec: ComponentSpec, *args: Any) -> Any:
 
 
 def _is_optional(error: BaseException | None, component: Component[Any]) -> bool:
-    """Whether something is missing that neither the component's package nor crowdbot has."""
+    """Return True if a dependency is missing that is neither the package's own nor crowdbot's."""
     own = {component.build.partition(":")[0].partition(".")[0], "crowdbot"}
     return isinstance(error, ImportError) and (error.name or "").partition(".")[0] not in own
 
 
 def _with_record(spec: ComponentSpec) -> ComponentSpec:
-    """The spec, with a record that has the kit's people where it wants one."""
+    """Return the spec, with a record of the kit's people if it needs one."""
     record = spec.record if isinstance(spec, CrowdPolicySpec) else None
     if record is None:
         return spec
@@ -108,9 +108,9 @@ def _with_record(spec: ComponentSpec) -> ComponentSpec:
 
 @cache
 def _record() -> Path:
-    """A record of `RECORDED` people who walk straight on for a minute."""
+    """Return the path of a record of `RECORDED` people who walk straight for a minute."""
     folder = tempfile.TemporaryDirectory(prefix="crowdbot-kit-")
-    _KEPT.append(folder)  # lives as long as the process
+    _KEPT.append(folder)  # kept until the process ends
     rows = [f"{t},{i},{0.5 * i + t},{0.3 * i}" for i in range(RECORDED) for t in (0.0, 60.0)]
     path = Path(folder.name) / "people.csv"
     path.write_text("\n".join(["t,id,x,y", *rows, ""]), encoding="utf-8")

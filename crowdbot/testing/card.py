@@ -1,7 +1,7 @@
-"""A metric's card: the page that says what its numbers mean, compared with the code.
+"""A metric's card, which explains its numbers, compared with the code.
 
-The form is fixed, so that cards can be compared with the code: a table of two columns, then the
-sections of `SECTIONS`; those of variants and parameters begin with a table.
+The format is fixed, so that cards can be checked: a table of two columns, then the sections of
+`SECTIONS`; those of variants and parameters begin with a table.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ SECTIONS = (
     "Worked example",
     "Source",
 )
-#: How many runs are summed up, where that is not the mean of their scores.
+#: How runs are combined, if not by the mean of their scores.
 OPTIONAL = "Many runs"
-#: Rows of the table at the head.
+#: Rows of the table at the top.
 HEAD = ("symbol", "category", "unit", "better", "range", "sampling", "needs")
 
 
 def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
-    """The card has all sections; symbol, unit, direction, variants and parameters are the code's.
+    """The card has all sections, with the code's symbol, unit, direction, variants and parameters.
 
     If this fails, correct the card; ``docs/reference/metrics/risk.md`` shows the form.
     """
@@ -65,9 +65,9 @@ def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
 
 
 def check_card_examples_run(component: Component[Any]) -> None:
-    """The worked example of the card is a doctest, and what it shows is what comes.
+    """The card's worked example is a doctest and passes.
 
-    If this fails, correct the example, or find out what has changed the numbers.
+    If this fails, correct the example, or find the change that affects the numbers.
     """
     text = re.sub(r"^```.*$", "", section(component.read_card(), "Worked example"), flags=re.M)
     test = doctest.DocTestParser().get_doctest(text, {}, component.kind, "card", 0)
@@ -78,12 +78,12 @@ def check_card_examples_run(component: Component[Any]) -> None:
 
 
 def section(text: str, name: str) -> str:
-    """What follows one heading, up to the next."""
+    """Return the text after a heading, up to the next."""
     return text.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
 
 
 def rows(text: str) -> Iterator[list[str]]:
-    """The rows of all tables in a text, without their rulers; a bar after a backslash is text."""
+    """Yield the rows of all tables in a text, without rulers; a bar after a backslash is text."""
     for line in text.splitlines():
         if line.startswith("|") and not re.fullmatch(r"[|\- :]+", line):
             cells = re.split(r"(?<!\\)\|", line)[1:-1]
@@ -91,7 +91,7 @@ def rows(text: str) -> Iterator[list[str]]:
 
 
 def _named(text: str) -> Iterator[tuple[str, list[str]]]:
-    """The rows whose first cell is code."""
+    """Yield the rows whose first cell is code."""
     for name, *cells in rows(text):
         if re.fullmatch(r"`[^`]+`", name):
             yield name.strip("`"), cells

@@ -1,4 +1,4 @@
-"""Which checks a component has to pass. Needs neither pytest nor hypothesis."""
+"""The list of checks per component. Needs neither pytest nor hypothesis."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from crowdbot.dsl.spec.component import Component
 
 Check = Callable[..., None]
 
-#: Category -> its own checks. Those of `all_kinds` hold for every category.
+#: Category -> its own checks. Those of `all_kinds` apply to every category.
 BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
     "cost function": cost_function.CHECKS,
     "crowd policy": crowd_policy.CHECKS,
@@ -35,7 +35,7 @@ BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
     "sensor": sensor.CHECKS,
 }
 
-#: Category -> the check of what was built, without which others would fail for its reason.
+#: Category -> check of the built object, which must pass before the others.
 _FIRST: Mapping[str, Check] = {
     "cost function": cost_function.check_signatures,
     "environment": environment.check_parts,
@@ -46,21 +46,21 @@ _BY_ITSELF = (robot.check_mass_agrees,)
 
 
 def checks_of(component: Component[Any]) -> tuple[Check, ...]:
-    """All checks that a component has to pass, as functions of the component."""
+    """Return all checks for a component, as functions of the component."""
     return (*all_kinds.CHECKS, *BY_CATEGORY.get(component.category, ()))
 
 
 def checks_for(
     component: Component[Any], registry: Registry | None = None
 ) -> list[tuple[str, Callable[[], None]]]:
-    """Names and checks of a component, ready to be called.
+    """Return names and checks of a component, ready to be called.
 
-    A check returns, or raises `AssertionError` with what is wrong, `unittest.SkipTest` where an
-    optional library is missing, or whatever the component itself raised. One that the component
-    declares as an exception passes when it fails.
+    A check returns, or raises `AssertionError` with the reason, `unittest.SkipTest` if an optional
+    library is missing, or the component's own error. A check that the component declares as an
+    exception passes if it fails.
 
     Args:
-        registry: what else is installed; by default it is looked up.
+        registry: the other components; default: the installed ones.
     """
     found = []
     for check in checks_of(component):
@@ -71,10 +71,10 @@ def checks_for(
 
 
 def bind(check: Check, component: Component[Any], registry: Registry | None) -> Callable[[], None]:
-    """A check of one component; the registry goes to those who ask for it.
+    """Return a check bound to one component, and to the registry if the check needs it.
 
-    What computes is not looked at while the spec or the reference to the build function is wrong:
-    it would fail for their reason in all checks, each with advice that does not help.
+    Checks of computations are skipped while the spec or the build reference is wrong: they would
+    all fail for that reason, with misleading advice.
     """
     given = (component, registry) if _wants_registry(check) else (component,)
     bound = partial(check, *given)
@@ -87,7 +87,7 @@ def _wants_registry(check: Check) -> bool:
 
 
 def _before(check: Check, category: str) -> list[Check]:
-    """The checks that must pass before one can mean anything."""
+    """Return the checks that must pass before this one makes sense."""
     if check in all_kinds.CHECKS:
         return []
     found = [all_kinds.check_examples_validate, all_kinds.check_build_resolves]

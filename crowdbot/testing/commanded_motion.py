@@ -1,4 +1,4 @@
-"""Whether a robot does what it is told: ahead, turning, and sideways. Needs Drake.
+"""Check that a robot moves as commanded: ahead, turning, and sideways. Needs Drake.
 
 The robot alone stands on an empty floor; there is no scenario, no planner and no recording.
 """
@@ -18,17 +18,17 @@ from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotModel, RobotState
 from crowdbot.dsl.spec.component import Component
 
-#: Seconds to get up to speed, and seconds that are measured.
+#: Seconds to reach the speed, and seconds of measurement.
 _SETTLE, _MEASURE = 1.0, 1.0
 _SPEED, _RATE = 0.2, 0.5  # m/s, rad/s
-_SHARE = 0.05  # of what was commanded
+_SHARE = 0.05  # share of the commanded value
 
 
 def check_commanded_motion(component: Component[Any], registry: Registry | None = None) -> None:
-    """In every control mode of its drive it moves as commanded: ahead, turning, sideways.
+    """In every control mode of its drive the robot moves as commanded: ahead, turning, sideways.
 
-    If this fails, wheels are not where the drive says, turn backwards, do not touch the floor, or
-    something else rubs on it; compare joints, radius, track and base_height with the description.
+    If this fails, wheels are in the wrong place, turn backwards, do not touch the floor, or another
+    part rubs on it; compare joints, radius, track and base_height with the description.
     """
     known = discover() if registry is None else registry
     for example in component.examples:
@@ -40,7 +40,7 @@ def check_commanded_motion(component: Component[Any], registry: Registry | None 
 
 
 def commands_for(model: RobotModel) -> list[Command]:
-    """One command for each direction that a robot may be told to go."""
+    """Return one command for each direction in which a robot can move."""
     limits = model.limits
     found = [Command(min(_SPEED, limits.v_max), 0.0), Command(0.0, min(_RATE, limits.w_max))]
     if limits.v_min < 0.0:
@@ -72,7 +72,7 @@ def assert_moves(model: RobotModel, mode: str, command: Command) -> None:
 
 
 def drive(model: RobotModel, mode: str, command: Command, seconds: float) -> list[RobotState]:
-    """States of a robot, one a tick, that starts at rest and is told one thing, ramped up."""
+    """Return the states, one per tick, of a robot that starts at rest and gets a ramped command."""
     from pydrake.systems.analysis import Simulator
     from pydrake.systems.framework import DiagramBuilder
     from pydrake.systems.primitives import ConstantVectorSource

@@ -54,10 +54,10 @@ _TURN = 0.7  # rad
 
 
 def check_signatures(component: Component[Any], registry: Registry | None = None) -> None:
-    """Compiled functions have the signatures of the contract; weight and range fit.
+    """Compiled functions have the required signatures; weight and range fit.
 
-    If this fails, write ``@njit(EXCESS, cache=True, error_model="numpy")`` before the function
-    that is named, and begin ``params`` with the range and 0.0 or 1.0.
+    If this fails, write ``@njit(EXCESS, cache=True, error_model="numpy")`` before the named
+    function, and begin ``params`` with the range and 0.0 or 1.0.
     """
     for cost in _costs(component, registry):
         assert isinstance(cost, CompiledCost | NumpyCost), f"build returned a {type(cost).__name__}"
@@ -76,10 +76,10 @@ def check_signatures(component: Component[Any], registry: Registry | None = None
 
 
 def check_costs_are_numbers(component: Component[Any], registry: Registry | None = None) -> None:
-    """A cost is finite, or inf for what is forbidden: never NaN, never -inf.
+    """A cost is finite, or inf if forbidden: never NaN, never -inf.
 
-    If this fails, look at the crowd that is named: people who stand, overlap or touch a wall, and
-    candidates of speed zero, divide by zero.
+    If this fails, look at the named crowd: people who stand, overlap or touch a wall, and
+    candidates with zero speed, often cause a division by zero.
     """
     views = odd_views() | {f"crowd {seed}": random_view(seed) for seed in SEEDS}
     for cost in _costs(component, registry):
@@ -90,11 +90,11 @@ def check_costs_are_numbers(component: Component[Any], registry: Registry | None
 def check_excess_is_not_negative(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """What neighbours and walls add is at least zero, so that the base is a lower bound.
+    """Neighbours and walls add at least zero, so that the base is a lower bound.
 
-    If this fails, move what lowers the cost into ``base``, or add a constant: candidates whose
-    base alone is above the best cost are never looked at. A vectorised function has no base; its
-    costs are at least zero.
+    If this fails, move terms that lower the cost to ``base``, or add a constant: candidates whose
+    base alone exceeds the best cost are skipped. A vectorised function has no base; its costs are
+    at least zero.
     """
     for cost in _costs(component, registry):
         for seed in SEEDS:
@@ -110,10 +110,10 @@ def check_excess_is_not_negative(
 def check_candidates_are_independent(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The cost of a candidate does not depend on which others are asked for, or asked before.
+    """A candidate's cost does not depend on other candidates, earlier or at the same time.
 
     If this fails, ``excess`` writes into ``work``, or ``evaluate`` compares candidates with each
-    other. A function that draws random numbers says so: ``CompiledCost(ordered=True)``.
+    other. A function that draws random numbers must declare ``CompiledCost(ordered=True)``.
     """
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and cost.ordered:
@@ -131,7 +131,7 @@ def check_candidates_are_independent(
 def check_excess_stops_above_budget(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """With a budget, ``excess`` is what it is without, or both are above the budget.
+    """With a budget, ``excess`` is the same as without, or both are above the budget.
 
     If this fails, it stops too early: return only once the sum is above ``budget``.
     """
@@ -146,10 +146,10 @@ def check_excess_stops_above_budget(
 def check_lower_bound_is_below_excess(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Where there is a ``lower_bound``, it is between zero and the excess.
+    """A ``lower_bound``, if any, lies between zero and the excess.
 
-    If this fails, the search passes over candidates that might win: leave out of the lower bound
-    whatever is not certain.
+    If this fails, the search skips candidates that might win: include only certain terms in the
+    lower bound.
     """
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and cost.lower_bound is not None:
@@ -160,10 +160,10 @@ def check_lower_bound_is_below_excess(
 
 
 def check_work_is_written(component: Component[Any], registry: Registry | None = None) -> None:
-    """No cost depends on what ``work`` held before ``prepare``.
+    """No cost depends on the contents of ``work`` before ``prepare``.
 
-    If this fails, let ``prepare`` write row 0, and all of other rows that ``excess`` reads: what
-    is there is another agent's.
+    If this fails, let ``prepare`` write row 0, and all of other rows that ``excess`` reads: its old
+    contents belong to another agent.
     """
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and not cost.ordered:
@@ -174,10 +174,10 @@ def check_work_is_written(component: Component[Any], registry: Registry | None =
 
 
 def check_gradient(component: Component[Any], registry: Registry | None = None) -> None:
-    """Where there is a ``gradient``, it is that of base plus excess, but at kinks.
+    """A ``gradient``, if any, is that of base plus excess, except at kinks.
 
-    If this fails, compare with differences of the cost over 0.0001 m/s at the velocity named. A
-    function whose source defines another slope says so: ``exceptions={"check_gradient": "why"}``.
+    If this fails, compare with differences of the cost over 0.0001 m/s at the named velocity. A
+    function whose source defines another slope declares ``exceptions={"check_gradient": "why"}``.
     """
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and cost.gradient is not None:
@@ -185,7 +185,7 @@ def check_gradient(component: Component[Any], registry: Registry | None = None) 
 
 
 def check_input_is_not_changed(component: Component[Any], registry: Registry | None = None) -> None:
-    """No array of the crowd, and none of the parameters, is written to.
+    """The function does not write to the crowd's arrays or the parameters.
 
     If this fails, write into ``work`` only, or copy.
     """
@@ -206,8 +206,8 @@ def check_translation_invariant(
 ) -> None:
     """The same crowd elsewhere costs the same.
 
-    If this fails, a coordinate is used for itself: everything that functions are given of others
-    is relative. A function that knows places says so in ``Component(exceptions=...)``.
+    If this fails, an absolute coordinate is used: all data about others is relative. A function
+    that depends on places declares it in ``Component(exceptions=...)``.
     """
     for cost in _costs(component, registry):
         for seed in SEEDS:
@@ -219,10 +219,10 @@ def check_translation_invariant(
 
 
 def check_rotation_invariant(component: Component[Any], registry: Registry | None = None) -> None:
-    """The same crowd, turned, costs the same for velocities turned alike.
+    """The same crowd, rotated, costs the same for rotated velocities.
 
-    If this fails, the axes are not treated alike; the base is given candidates in the frame of
-    the preferred velocity. A function that knows directions says so in its ``exceptions``.
+    If this fails, the axes are treated differently; the base gets candidates in the frame of the
+    preferred velocity. A function that depends on directions declares it in its ``exceptions``.
     """
     for cost in _costs(component, registry):
         for seed in SEEDS:
@@ -255,7 +255,7 @@ def _costs(component: Component[Any], registry: Registry | None) -> Iterator[Cos
 
 
 def _candidates(view: CrowdView) -> Array:
-    """Velocities (N, S, 2): standing, a fan up to 1.9 m/s, the present one; m/s."""
+    """Return velocities (N, S, 2): zero, a fan up to 1.9 m/s, and the present one; m/s."""
     angles = np.linspace(0.1, 2.0 * math.pi, 9, endpoint=False)
     fan = [s * np.column_stack([np.cos(angles), np.sin(angles)]) for s in (0.4, 1.1, 1.9)]
     common = np.concatenate([np.zeros((1, 2)), *fan])
@@ -264,7 +264,7 @@ def _candidates(view: CrowdView) -> Array:
 
 
 def _total(cost: Cost, view: CrowdView, velocities: Array) -> Array:
-    """Costs (N, S) without their weight, of a mix of this function alone."""
+    """Return the unweighted costs (N, S) of this function alone."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     return Evaluator(costs).total(view, velocities)
 
@@ -286,7 +286,7 @@ def _assert_numbers(name: str, total: Array) -> None:
 
 
 def _assert_gradient(cost: CompiledCost) -> None:
-    """Nine in ten slopes must agree; kinks within a step are nobody's fault."""
+    """Check that nine in ten slopes agree; kinks within a step are allowed."""
     step, right, count, worst = 1e-5, 0, 0, ""
     around_it = step * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
     alone = replace(cost, weight=1.0)

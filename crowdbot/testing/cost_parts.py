@@ -1,4 +1,4 @@
-"""Base and excess of a compiled cost, one by one."""
+"""Base and excess of a compiled cost, separately."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
-#: Shares of the true excess that are tried as budgets.
+#: Shares of the true excess that are used as budgets.
 _SHARES = (0.0, 0.3, 0.9, 1.1, 3.0)
 
 
 def bases_of(cost: CompiledCost, view: CrowdView, velocities: Array) -> Array:
-    """Costs (N, S) of the base alone; 0 for who wants to go nowhere.
+    """Return the base costs (N, S) alone; 0 for agents without a preferred velocity.
 
     Args:
         velocities: (N, S, 2), m/s.

@@ -1,4 +1,4 @@
-"""What every crowd policy must keep to."""
+"""Checks for every crowd policy."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from crowdbot.testing.crowd_views import (
     turned,
 )
 
-#: Makes the policy of a set of agents anew.
+#: Builds a new policy for a set of agents.
 Factory = Callable[[Agents], CrowdPolicy]
 
-#: Two results that differ by less are one: sums are added in another order, m/s or m/s^2.
+#: Results that differ by less are equal, since sums may be in another order, m/s or m/s^2.
 _ROUNDING = 1e-6
 _TURN = 0.7  # rad
 
 
 def check_answer_is_numbers(component: Component[Any], registry: Registry | None = None) -> None:
-    """The answer is float64 (N, 2), finite for everybody who decides.
+    """The result is float64 (N, 2), finite for every agent that decides.
 
-    If this fails, the policy returns something else for the crowd that is named: divisions by
-    the distance of who stands on one spot, or by the speed of who stands still, are suspects.
+    If this fails, the policy returns something else for the named crowd: check divisions by the
+    distance of people at the same position, or by the speed of standing people.
     """
     for make in _factories(component, registry):
         for seed in SEEDS:
@@ -44,7 +44,9 @@ def check_answer_is_numbers(component: Component[Any], registry: Registry | None
 
 
 def check_nobody_and_one(component: Component[Any], registry: Registry | None = None) -> None:
-    """Nobody, one person, people who are absent, stand, overlap or have arrived: numbers, always.
+    """The policy returns numbers for edge cases.
+
+    No one, one person, and people who are absent, stand, overlap or have arrived.
 
     If this fails, the policy took something for granted about the crowd that is named.
     """
@@ -54,9 +56,9 @@ def check_nobody_and_one(component: Component[Any], registry: Registry | None = 
 
 
 def check_input_is_not_changed(component: Component[Any], registry: Registry | None = None) -> None:
-    """No array of the view is written to.
+    """The policy does not write to the view's arrays.
 
-    If this fails, copy before you change: everybody decides on the same view.
+    If this fails, copy before you change an array: all agents share the view.
     """
     for make in _factories(component, registry):
         for seed in SEEDS:
@@ -68,7 +70,7 @@ def check_input_is_not_changed(component: Component[Any], registry: Registry | N
 
 
 def check_same_view_twice(component: Component[Any], registry: Registry | None = None) -> None:
-    """Two policies of the same spec give the same answers to the same views, to the bit.
+    """Two policies with the same spec give bitwise equal results for the same views.
 
     If this fails, the policy draws from a generator that is not its own, or depends on the time.
     """
@@ -83,10 +85,10 @@ def check_same_view_twice(component: Component[Any], registry: Registry | None =
 def check_permutation_equivariant(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The same people in another order get the same answers, in that order.
+    """The same people in another order get the same results, in that order.
 
-    If this fails, people decide on what others have just decided, or are told apart by their row
-    instead of their id.
+    If this fails, decisions depend on earlier decisions of others, or people are identified by row
+    instead of id.
     """
     for make in _factories(component, registry):
         for seed in SEEDS:
@@ -101,7 +103,7 @@ def check_translation_invariant(
 ) -> None:
     """The same crowd elsewhere decides alike.
 
-    If this fails, a coordinate is used for itself. A policy that knows places says so:
+    If this fails, an absolute coordinate is used. A policy that depends on places declares
     ``Component(exceptions={"check_translation_invariant": "why"})``.
     """
     for make in _factories(component, registry):
@@ -112,9 +114,9 @@ def check_translation_invariant(
 
 
 def check_rotation_equivariant(component: Component[Any], registry: Registry | None = None) -> None:
-    """The same crowd turned decides alike, turned.
+    """The same crowd, rotated, decides alike, rotated.
 
-    If this fails, the axes are not treated alike. A policy that knows directions says so:
+    If this fails, the axes are treated differently. A policy that depends on directions declares
     ``Component(exceptions={"check_rotation_equivariant": "why"})``.
     """
     for make in _factories(component, registry):
@@ -127,7 +129,7 @@ def check_rotation_equivariant(component: Component[Any], registry: Registry | N
 def check_time_step_is_no_unit(component: Component[Any], registry: Registry | None = None) -> None:
     """People who decide twice as often get about as far.
 
-    If this fails, the answer is a step instead of a velocity, or a velocity instead of an
+    If this fails, the result is a step instead of a velocity, or a velocity instead of an
     acceleration: it must not shrink or grow with ``dt``.
     """
     for make in _factories(component, registry):
@@ -154,7 +156,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
 
 
 def _factories(component: Component[Any], registry: Registry | None) -> Iterator[Factory]:
-    """One for each example; policies that are nothing without costs get ``ttca_dca``."""
+    """Yield one factory per example; policies that need cost functions get ``ttca_dca``."""
     known = around(component, registry)
     for spec in specs_of(component, known):
         costs = []
@@ -185,7 +187,7 @@ def _assert_answer(name: str, make: Factory, view: CrowdView) -> None:
 
 
 def _will(make: Factory, view: CrowdView) -> Array:
-    """Accelerations (N, 2), m/s^2, of a policy made anew."""
+    """Return the accelerations (N, 2), m/s^2, of a new policy."""
     return desired_acceleration(make(view.agents), view)
 
 
@@ -195,7 +197,7 @@ def _assert_same(one: Array, two: Array, change: str) -> None:
 
 
 def _walked(make: Factory, rate: float) -> Array:
-    """Positions (T, N, 2) of three people in 1.5 s who hardly meet, m."""
+    """Return positions (T, N, 2) of three people in 1.5 s who hardly meet, m."""
     agents = Agents.of(
         x=[0.0, 0.5, 1.0],
         y=[0.0, 3.0, 6.0],

@@ -1,4 +1,4 @@
-"""Crowds at one decision, and the same crowds seen otherwise."""
+"""Crowds at one decision, and transformed copies of them."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from crowdbot.core.crowd import Agents, CrowdView
 from crowdbot.core.types.arrays import Array
 from crowdbot.testing.around import RECORDED
 
-#: Views that every check of crowds looks at.
+#: Views used by every check of crowds.
 SEEDS = range(4)
 _MOST = RECORDED
 
 
 def random_view(seed: int, *, dt: float = 1.0 / 16.0, count: int = 8) -> CrowdView:
-    """People who walk, beside a robot, two walls and a pillar; nobody overlaps anybody."""
+    """Return walking people near a robot, two walls and a pillar, without overlaps."""
     assert count <= _MOST
     rng = np.random.default_rng([seed, count])
     places = np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), -1).reshape(-1, 2) * 1.4
@@ -49,7 +49,7 @@ def random_view(seed: int, *, dt: float = 1.0 / 16.0, count: int = 8) -> CrowdVi
 
 
 def odd_views() -> dict[str, CrowdView]:
-    """Crowds that are allowed but rare."""
+    """Return valid but rare crowds."""
     view = random_view(0)
     still = np.zeros_like(view.velocity)
     close = view.position.copy()
@@ -77,14 +77,14 @@ def odd_views() -> dict[str, CrowdView]:
 
 
 def arrays_of(view: CrowdView) -> dict[str, bytes]:
-    """Name and content of every array of a view and of its agents."""
+    """Return name and content of every array of a view and of its agents."""
     pairs = [(f"agents.{f.name}", getattr(view.agents, f.name)) for f in fields(view.agents)]
     pairs += [(f.name, getattr(view, f.name)) for f in fields(view)]
     return {name: value.tobytes() for name, value in pairs if isinstance(value, np.ndarray)}
 
 
 def permuted(view: CrowdView, order: NDArray[np.int64]) -> CrowdView:
-    """The same people in another order."""
+    """Return the same people in another order."""
     a = view.agents
     routes = [a.route[a.first[i] : a.first[i + 1]].tolist() for i in order]
     names = ("x", "y", "preferred_speed", "id", "radius", "max_speed", "max_acceleration", "mass",
@@ -95,17 +95,17 @@ def permuted(view: CrowdView, order: NDArray[np.int64]) -> CrowdView:
 
 
 def moved(view: CrowdView, by: Array) -> CrowdView:
-    """Everything elsewhere; by (2,), m."""
+    """Return the view with everything moved by (2,), m."""
     return _mapped(view, lambda p: p + by, lambda v: v)
 
 
 def turned(view: CrowdView, angle: float) -> CrowdView:
-    """Everything turned about the origin; rad, counter-clockwise."""
+    """Return the view with everything rotated about the origin; rad, counter-clockwise."""
     return _mapped(view, lambda p: turn(p, angle), lambda v: turn(v, angle))
 
 
 def turn(vectors: Array, angle: float) -> Array:
-    """Vectors (..., 2) turned counter-clockwise."""
+    """Return vectors (..., 2) rotated counter-clockwise."""
     c, s = math.cos(angle), math.sin(angle)
     return np.asarray(vectors @ np.array([[c, s], [-s, c]]))
 

@@ -1,4 +1,4 @@
-"""Runs at the edge: with hardly anything in them, or exactly on a threshold."""
+"""Edge cases of runs: almost empty, or exactly on a threshold."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from crowdbot.testing.worlds import World, random_world
 
 @cache
 def worlds() -> Mapping[str, World]:
-    """Name -> world in which something that metrics like to take for granted is missing."""
+    """Return name -> world that lacks something metrics often assume."""
     world = random_world(7)
     run = world.run
     robot, agents = run.robot, run.agents
     assert robot is not None
     assert agents is not None
-    nobody = np.full_like(agents.x, np.nan)
-    absent = replace(agents, x=nobody, y=nobody, vx=nobody, vy=nobody)
-    speechless = replace(agents, vx=nobody, vy=nobody)
+    nowhere = np.full_like(agents.x, np.nan)
+    absent = replace(agents, x=nowhere, y=nowhere, vx=nowhere, vy=nowhere)
+    speechless = replace(agents, vx=nowhere, vy=nowhere)
     lost = np.full_like(robot.x, np.nan)
     runs: dict[str, Trajectories] = {
         "no people": replace(run, agents=None, trips=None),
-        "a table of nobody": with_people(run, []),
+        "an empty table": with_people(run, []),
         "no robot": replace(run, robot=None, contacts=None),
         "neither robot nor people": replace(run, robot=None, agents=None, trips=None),
         "one sample": first(run, 1),
         "two samples": first(run, 2),
         "everybody absent": replace(run, agents=absent),
-        "nobody has a velocity": replace(run, agents=speechless),
+        "no velocities": replace(run, agents=speechless),
         "the robot has no pose": replace(run, robot=replace(robot, x=lost, y=lost, theta=lost)),
         "no trips": replace(run, trips=None),
         "never arrived": replace(run, robot=replace(robot, goal_time=None)),
@@ -54,7 +54,7 @@ def worlds() -> Mapping[str, World]:
 
 @cache
 def on_thresholds() -> Mapping[str, World]:
-    """Name -> world where a comparison would be decided by the last digit."""
+    """Return name -> world in which the last digit would decide a comparison."""
     t = np.arange(101) / 16.0
     still = np.zeros(101)
     trembling = 0.43 + 0.05 * (np.arange(101) % 2).astype(np.float64)
@@ -71,13 +71,13 @@ def on_thresholds() -> Mapping[str, World]:
 
 
 def standing() -> Trajectories:
-    """Robot and one person stand, apart from each other."""
+    """Return a run with a standing robot and a standing person, apart."""
     t = np.arange(33) / 16.0
     return _meeting(t, np.zeros(33), np.full(33, 2.0), np.full(33, 1.0))
 
 
 def first(run: Trajectories, count: int) -> Trajectories:
-    """The first samples of a run."""
+    """Return the first samples of a run."""
     robot, agents = run.robot, run.agents
     if robot is not None:
         rows: dict[str, Any] = {n: getattr(robot, n)[:count] for n in ("x", "y", "theta", "v", "w")}
@@ -94,7 +94,10 @@ def _references(run: Trajectories, changed: Trajectories) -> World:
 
 
 def _meeting(t: Array, robot_x: Array, x: Array, y: Array) -> Trajectories:
-    """A robot (0.18 m) on the x axis and one person (0.25 m); velocities from the positions."""
+    """Return a robot (0.18 m) on the x axis and one person (0.25 m).
+
+    Velocities follow from the positions.
+    """
     v = np.gradient(robot_x, t)
     return Trajectories.from_arrays(
         t=t,

@@ -1,6 +1,6 @@
-"""A planner drives a robot that does what it is told, in a room, without a simulator.
+"""A planner drives an ideal robot in a room, without a simulator.
 
-The robot goes on exact arcs within its limits, whatever stands in its way; sensors are real.
+The robot moves on exact arcs within its limits and ignores obstacles; sensors are real.
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ SLOW = RobotLimits(v_min=0.0, v_max=0.2, w_max=0.5, a_max=0.3, alpha_max=0.5)
 _ORIGIN = Pose(0.0, 0.0, 0.0)
 _ROOM = [[-2, -3, 10, -3], [10, -3, 10, 3], [10, 3, -2, 3], [-2, 3, -2, -3]]
 _CELL = [[6, -1, 8, -1], [8, -1, 8, 1], [8, 1, 6, 1], [6, 1, 6, -1]]
-_RADIUS = 0.25  # of people, m
-#: x, y, vx, vy of people who walk on through walls and robots.
+_RADIUS = 0.25  # radius of people, m
+#: x, y, vx, vy of people who walk through walls and robots.
 _PEOPLE = np.array([[3.0, 1.0, -0.5, -0.2], [5.0, -1.5, 0.0, 0.4], [6.0, 0.4, -1.0, 0.0]])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Course:
-    """What a planner is put into.
+    """The situation for a planner.
 
     Attributes:
         start: pose at t = 0.
         goal: centre of the goal zone, m.
         walls: (S, 4), m.
         people: (M, 4) x, y, vx, vy at t = 0.
-        limits: of the robot.
+        limits: the robot's limits.
     """
 
     start: Pose = _ORIGIN
@@ -58,7 +58,7 @@ class Course:
 
     @property
     def task(self) -> Task:
-        """Start and a goal zone of 1 m x 1 m."""
+        """Return the start and a goal zone of 1 m x 1 m."""
         x, y = self.goal
         half = 0.5
         zone = np.array([[x - half, y - half], [x + half, y - half],
@@ -77,12 +77,12 @@ AT_GOAL = Course(start=Pose(7.0, 0.0, 1.0), walls=_ROOM, people=_PEOPLE[:0])
 
 
 def sensors_for(needs: Sequence[str] | None, registry: Registry) -> dict[str, Any]:
-    """Sensors of the installed kinds that answer to a planner's needs, by the name asked for.
+    """Return installed sensors that match a planner's needs, by the requested name.
 
-    Without needs a lidar. Odometry is always the robot's true pose.
+    Without needs, a lidar. Odometry is always the robot's true pose.
 
     Raises:
-        SkipTest: a need is the name of a sensor on one certain robot.
+        SkipTest: a need is the name of a sensor on a particular robot.
     """
     found = {}
     for need in ("lidar",) if needs is None else needs:
@@ -107,7 +107,7 @@ def _answering(need: str, registry: Registry) -> Any:
 
 
 class Driven:
-    """A planner behind its host, on a course; one that is privileged is told the truth.
+    """A planner behind its host, on a course; a privileged planner gets the ground truth.
 
     Attributes:
         host: checks and clamps commands, and counts.
@@ -135,10 +135,10 @@ class Driven:
         )  # fmt: skip
 
     def run(self, steps: int, seed: int = 1) -> list[Command]:
-        """Reset the planner and drive so many steps.
+        """Reset the planner and drive this many steps.
 
         Raises:
-            PlannerError: the planner raised, or returned what is not a command.
+            PlannerError: the planner raised, or returned an invalid command.
         """
         infos = {n: replace(s.info(), frame=n) for n, s in self._sensors.items()}
         memory = {n: np.zeros(i.memory) for n, i in infos.items()}
@@ -224,7 +224,7 @@ def _slewed(now: Command, wanted: Command, limits: RobotLimits) -> Command:
 
 
 def _after(pose: Pose, twist: Command) -> Pose:
-    """The pose one step later."""
+    """Return the pose one step later."""
     yaw = pose.yaw + 0.5 * twist.w / RATE
     c, s = math.cos(yaw), math.sin(yaw)
     return Pose(

@@ -1,4 +1,4 @@
-"""What every environment must keep to."""
+"""Checks for every environment."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from crowdbot.testing.free_floor import FreeFloorGrid, seen_sides, viewpoints
 def check_parts(component: Component[Any], registry: Registry | None = None) -> None:
     """Walls, pillars, solids and heights are finite arrays of the declared shapes.
 
-    If this fails, look at `EnvironmentParts`: one row of heights a wall, bottom below top.
+    If this fails, look at `EnvironmentParts`: one row of heights per wall, bottom below top.
     """
     for parts in _parts(component, registry):
         assert isinstance(parts, EnvironmentParts), f"build returned a {type(parts).__name__}"
@@ -41,9 +41,9 @@ def check_parts(component: Component[Any], registry: Registry | None = None) -> 
 
 
 def check_zones_and_portals(component: Component[Any], registry: Registry | None = None) -> None:
-    """Zones are counter-clockwise polygons and portals boxes; all that the spec names are there.
+    """Zones are counter-clockwise polygons and portals boxes; all that the spec names exist.
 
-    If this fails, hand on ``spec.zones`` (``zone.polygon``) and ``spec.portals`` (x, then y).
+    If this fails, return ``spec.zones`` (``zone.polygon``) and ``spec.portals`` (x, then y).
     """
     known = around(component, registry)
     examples = specs_of(component, known)
@@ -63,9 +63,9 @@ def check_zones_and_portals(component: Component[Any], registry: Registry | None
 def check_zones_are_on_the_floor(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The centre of every zone is free: within the walls, in no pillar and in no solid.
+    """The centre of every zone is free: within the walls, outside pillars and solids.
 
-    If this fails, a zone lies outside of the place, or something stands in the middle of it.
+    If this fails, a zone lies outside the place, or an obstacle stands in its middle.
     """
     for parts in _parts(component, registry):
         grid = FreeFloorGrid(parts)
@@ -78,10 +78,10 @@ def check_zones_are_on_the_floor(
 def check_free_side_is_on_the_left(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """From a zone, or the middle of the floor, one sees the left side of every wall.
+    """From a zone, or the middle of the floor, only the left side of every wall is visible.
 
-    If this fails, swap the ends of the wall that is named: sensors do not mind, but the robot and
-    people are kept on its left.
+    If this fails, swap the ends of the named wall: sensors ignore the side, but robot and people
+    are kept on its left.
     """
     for parts in _parts(component, registry):
         for x, y in viewpoints(parts):
@@ -92,10 +92,10 @@ def check_free_side_is_on_the_left(
 
 
 def check_is_closed(component: Component[Any], registry: Registry | None = None) -> None:
-    """A robot cannot drive out between walls, unless there are none or the boundary is periodic.
+    """A robot cannot leave between walls, unless there are none or the boundary is periodic.
 
     If this fails, there is a gap of more than 0.2 m, or ``stops_robot`` is wrong. A place that is
-    meant to be open says so: ``Component(exceptions={"check_is_closed": "why"})``.
+    open by design declares ``Component(exceptions={"check_is_closed": "why"})``.
     """
     for parts in _parts(component, registry):
         if parts.periodic_boundary is not None or not len(parts.walls):
@@ -110,9 +110,9 @@ def check_is_closed(component: Component[Any], registry: Registry | None = None)
 
 
 def check_same_spec_same_place(component: Component[Any], registry: Registry | None = None) -> None:
-    """Built twice from the same spec it is the same place.
+    """Building the same spec twice gives the same place.
 
-    If this fails, something is drawn at random: put the numbers, or a seed, into the spec.
+    If this fails, something is random: put the numbers, or a seed, into the spec.
     """
     pairs = zip(_parts(component, registry), _parts(component, registry), strict=True)
     for one, two in pairs:
@@ -121,9 +121,9 @@ def check_same_spec_same_place(component: Component[Any], registry: Registry | N
 
 
 def check_runs(component: Component[Any], registry: Registry | None = None) -> None:
-    """A robot drives in it for a second, twice alike, and the simulator warns of nothing.
+    """A robot drives in it for a second, reproducibly and without simulator warnings.
 
-    If this fails, the simulator says what it does not like about the geometry.
+    If this fails, the simulator's message names the problem with the geometry.
     """
     from crowdbot.testing.tiny import assert_runs, scenario_in
 

@@ -1,4 +1,4 @@
-"""What a cost function costs, for tests of its own."""
+"""Costs from a cost function, for its own tests."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from crowdbot.core.types.arrays import Array
 
 
 def costs_at(cost: CompiledCost | NumpyCost, view: CrowdView, velocities: Array) -> Array:
-    """Weighted costs (N, S) of velocities (N, S, 2), m/s, for each agent of a view.
+    """Return weighted costs (N, S) of velocities (N, S, 2), m/s, for each agent of a view.
 
-    Zero for agents that are absent or have arrived, ``inf`` where a velocity is forbidden.
+    Zero for agents that are absent or have arrived, ``inf`` for forbidden velocities.
 
     Raises:
         ValueError: a vectorised function returned NaN or a wrong number of costs.

@@ -1,6 +1,6 @@
 """Fixtures for tests of plugins: ``pytest_plugins = ("crowdbot.testing.fixtures",)``. Needs pytest.
 
-They see crowdbot's own components only; `crowdbot.testing.around.around` adds one.
+They use crowdbot's own components only; `crowdbot.testing.around.around` adds one.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from crowdbot.dsl.scenario.scenario import Scenario
 
 @pytest.fixture(scope="session")
 def registry() -> Registry:
-    """Only what crowdbot itself brings, whatever else is installed."""
+    """Return the registry with crowdbot's own components only."""
     return discover(allow=(), entry_points=False)
 
 
 @pytest.fixture(scope="session")
 def tiny_scenario(registry: Registry) -> Scenario:
-    """A robot that is to cross an empty room, for a second."""
+    """Return a robot that has to cross an empty room, for a second."""
     return tiny.tiny_scenario(registry)
 
 
 @pytest.fixture
 def expand_one(registry: Registry, tmp_path: Path) -> Callable[[str], Scenario]:
-    """A function that makes a scenario of the text of a document that holds one."""
+    """Return a function that builds a scenario from a document with a single one."""
 
     def expand(text: str) -> Scenario:
         file = tmp_path / "one.yaml"
@@ -46,7 +46,7 @@ def expand_one(registry: Registry, tmp_path: Path) -> Callable[[str], Scenario]:
 def run_directory(
     registry: Registry, tiny_scenario: Scenario, tmp_path_factory: pytest.TempPathFactory
 ) -> Path:
-    """A complete run of the tiny scenario, with its recording and scores."""
+    """Return a complete run of the tiny scenario, with its recording and scores."""
     from crowdbot.core.sim.simulate import simulate
 
     out = tmp_path_factory.mktemp("runs")

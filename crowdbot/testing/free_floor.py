@@ -1,4 +1,4 @@
-"""Where a robot could stand and drive in an environment."""
+"""Free floor of an environment, where a robot could stand and drive."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 
-#: Side of a cell of the grid; a robot of this radius is looked at, m.
+#: Side of a grid cell; radius of the robot for the check, m.
 CELL = 0.1
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1))
-#: At most so many cells along a side; larger places get larger cells.
+#: Largest number of cells along a side; larger places get larger cells.
 _MOST = 600
 _BEAMS = 360
 
 
 class FreeFloorGrid:
-    """Cells of the floor within the walls that stop a robot, and a margin around them."""
+    """Grid cells of the floor within the walls that stop a robot, and a margin around them."""
 
     def __init__(self, parts: EnvironmentParts) -> None:
         self._parts = parts
@@ -34,7 +34,10 @@ class FreeFloorGrid:
         self._cell = max(CELL, float(np.max(self._high - self._low)) / _MOST)
 
     def clearance(self, points: Array) -> Array:
-        """Distance (N,) from points (N, 2) to walls, pillars and solids; below 0 inside, m."""
+        """Return the distance (N,) from points (N, 2) to walls, pillars and solids.
+
+        Negative inside, m.
+        """
         gap = np.full(len(points), np.inf)
         for x0, y0, x1, y1 in self._walls:
             gap = np.minimum(gap, _to_segment(points, (x0, y0), (x1, y1)))
@@ -52,18 +55,18 @@ class FreeFloorGrid:
         return gap
 
     def is_free(self, point: Array) -> bool:
-        """Whether nothing stands at a point."""
+        """Return True if a point is free."""
         return bool(self.clearance(np.asarray(point)[None])[0] > 0.0)
 
     def holds(self, point: Array) -> bool:
-        """Whether a point is within the box around all walls that stop a robot."""
+        """Return True if a point is within the bounding box of all walls that stop a robot."""
         if not len(self._walls):
             return True
         ends = self._walls.reshape(-1, 2)
         return bool(np.all(point > ends.min(axis=0)) and np.all(point < ends.max(axis=0)))
 
     def cells(self) -> tuple[Array, tuple[int, int]]:
-        """Centres (K, 2) of all cells, and how many along x and y."""
+        """Return the centres (K, 2) of all cells, and their numbers along x and y."""
         margin = 3.0 * self._cell
         axes = [
             np.arange(low - margin, high + margin, self._cell)
@@ -73,7 +76,7 @@ class FreeFloorGrid:
         return centres, (len(axes[0]), len(axes[1]))
 
     def widest(self) -> tuple[float, float]:
-        """The point with most room around it that lies within the walls."""
+        """Return the point within the walls with the most room around it."""
         centres, _ = self.cells()
         inside = np.all((centres > self._low) & (centres < self._high), axis=1)
         border = np.minimum(centres - self._low, self._high - centres).min(axis=1)
@@ -82,7 +85,7 @@ class FreeFloorGrid:
         return x, y
 
     def way_out(self, x: float, y: float) -> tuple[float, float] | None:
-        """Where a robot that starts at a point leaves the box of the walls; None if it cannot."""
+        """Return where a robot that starts at a point leaves the walls' box; None if it cannot."""
         centres, shape = self.cells()
         free = (self.clearance(centres) > CELL).reshape(shape)
         start = np.argmin(np.hypot(centres[:, 0] - x, centres[:, 1] - y))
@@ -104,14 +107,14 @@ class FreeFloorGrid:
 
 
 def viewpoints(parts: EnvironmentParts) -> list[tuple[float, float]]:
-    """Centres of all zones; without any, the point with most room around it."""
+    """Return the centres of all zones; without zones, the point with the most room around it."""
     if parts.zones:
         return [tuple(zone.mean(axis=0).tolist()) for zone in parts.zones.values()]
     return [FreeFloorGrid(parts).widest()]
 
 
 def seen_sides(parts: EnvironmentParts, x: float, y: float) -> dict[int, bool]:
-    """Row of each wall that is seen from a point -> whether its left side is what is seen."""
+    """Return row of each wall visible from a point -> True if its left side is visible."""
     found: dict[int, bool] = {}
     angles = (np.arange(_BEAMS) + 0.5) * (2.0 * math.pi / _BEAMS)
     point = np.array([[x, y]])
@@ -125,7 +128,7 @@ def seen_sides(parts: EnvironmentParts, x: float, y: float) -> dict[int, bool]:
 
 
 def _along(walls: Array, x: float, y: float, c: float, s: float) -> Array:
-    """Distance (S,) along a ray at which it meets each wall; inf where it does not."""
+    """Return the distance (S,) along a ray to each wall; inf if it misses."""
     ax, ay = walls[:, 0] - x, walls[:, 1] - y
     ex, ey = walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1]
     cross = c * ey - s * ex
@@ -145,6 +148,6 @@ def _to_segment(
 
 
 def _left_of(points: Array, a: Array, b: Array) -> Array:
-    """Above 0 for points on the left of the way from a to b."""
+    """Return positive values for points on the left of the line from a to b."""
     (ex, ey), off = b - a, points - a
     return np.asarray(ex * off[:, 1] - ey * off[:, 0])

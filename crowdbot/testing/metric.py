@@ -1,4 +1,4 @@
-"""What every metric must keep to. Its declaration says which numbers to expect.
+"""Checks for every metric, based on its declaration.
 
 Worlds are random, but the same in each test run.
 """
@@ -33,12 +33,12 @@ from crowdbot.testing.symmetries import (
 )
 from crowdbot.testing.worlds import World, portal_world, random_world, straight_world
 
-#: Random worlds that each check looks at.
+#: Number of random worlds per check.
 _SEEDS = range(10)
 
 
 def check_declaration(component: Component[Any]) -> None:
-    """The metric is declared as one, by a spec of a metric, and has a card.
+    """The metric is declared as a metric, by a metric's spec, and has a card.
 
     If this fails, use ``declare_metric(Spec, symbol=..., unit=..., better=..., category=...)``
     with a spec that derives from ``MetricSpec``, and write ``cards/NAME.md`` beside it.
@@ -50,9 +50,9 @@ def check_declaration(component: Component[Any]) -> None:
 
 
 def check_scores_are_well_formed(component: Component[Any]) -> None:
-    """Each variant is scored once; numbers are finite and within their bounds, or there is none.
+    """Each variant is scored once; numbers are finite and within bounds, or there is a status.
 
-    If this fails, return one score a variant, made by a ``ScoreFactory``, with a status and a
+    If this fails, return one score per variant, built by a ``ScoreFactory``, with a status and a
     reason instead of NaN, infinity or an exception; or correct ``minimum``, ``maximum`` and
     ``integer``.
     """
@@ -63,9 +63,9 @@ def check_scores_are_well_formed(component: Component[Any]) -> None:
 
 
 def check_degenerate_runs(component: Component[Any]) -> None:
-    """Nobody, one sample, no robot, everybody standing or absent: a status, never an exception.
+    """Degenerate runs (no one, one sample, no robot, all standing or absent) give a status.
 
-    If this fails, look at the run that is named: the metric took something for granted.
+    If this fails, look at the named run: the metric makes an assumption that it does not satisfy.
     """
     for name, world in degenerate.worlds().items():
         try:
@@ -76,7 +76,7 @@ def check_degenerate_runs(component: Component[Any]) -> None:
 
 
 def check_pure(component: Component[Any]) -> None:
-    """Inputs stay as they are, and the same input gives the same scores.
+    """Inputs are not changed, and the same input gives the same scores.
 
     If this fails, copy before you change an array, and keep nothing between two calls.
     """
@@ -94,7 +94,7 @@ def check_pure(component: Component[Any]) -> None:
 def check_symmetries(component: Component[Any]) -> None:
     """Translation, rotation, reflection, a later start and another order of people change nothing.
 
-    If this fails, an angle is not wrapped, a coordinate is used for itself, or time counts from
+    If this fails, an angle is not wrapped, an absolute coordinate is used, or time counts from
     zero; or declare ``changes_with={"rotate": why}``.
     """
     for seed in _SEEDS:
@@ -121,9 +121,9 @@ def check_self_value(component: Component[Any]) -> None:
 
 
 def check_refinement(component: Component[Any]) -> None:
-    """The same straight motion, sampled twice as often, scores as ``refinement`` declares.
+    """The same straight motion, sampled twice as often, changes scores as ``refinement`` declares.
 
-    If this fails, a sum over samples lacks its dt, or has one too many.
+    If this fails, a sum over samples lacks dt, or has an extra one.
     """
     for seed in range(4):
         coarse = scores_of(component, with_signals(component, straight_world(seed, 32.0)))
@@ -135,7 +135,7 @@ def check_refinement(component: Component[Any]) -> None:
 
 
 def check_more_people(component: Component[Any]) -> None:
-    """One person more moves the value only the way that ``more_people`` declares.
+    """An additional person changes the value only as ``more_people`` declares.
 
     If this fails, people are averaged where the nearest, or the sum, was meant.
     """
@@ -155,9 +155,9 @@ def check_more_people(component: Component[Any]) -> None:
 
 
 def check_masses(component: Component[Any]) -> None:
-    """All masses times c multiply the value by c to the power ``mass_exponent``.
+    """Multiplying all masses by c multiplies the value by c to the power ``mass_exponent``.
 
-    If this fails, masses enter where they should not, or not where they should.
+    If this fails, masses are used in the wrong places.
     """
     for seed in _SEEDS:
         world = with_signals(component, random_world(seed))
@@ -174,7 +174,7 @@ def check_teleports_add_nothing(component: Component[Any]) -> None:
     """People who pass a portal score like people who walk on.
 
     If this fails, a flagged jump counts as a step: as length, as speed, as a contact. Declare
-    ``changes_with={"teleport": why}`` only where places themselves are compared.
+    ``changes_with={"teleport": why}`` only if positions themselves are compared.
     """
     for seed in range(4):
         walked = scores_of(component, with_signals(component, portal_world(seed, through=False)))
@@ -183,10 +183,10 @@ def check_teleports_add_nothing(component: Component[Any]) -> None:
 
 
 def check_velocities_left_out(component: Component[Any]) -> None:
-    """A recording without velocities scores like one with those that follow from its positions.
+    """A recording without velocities scores like one with velocities derived from positions.
 
-    Velocities that were not recorded are derived before a metric sees them. If this fails, a
-    velocity is asked whether it was recorded, or compared with equality.
+    Missing velocities are derived before a metric runs. If this fails, the metric checks if a
+    velocity was recorded, or compares for equality.
     """
     for seed in range(4):
         world = with_signals(component, straight_world(seed, 32.0))
@@ -196,7 +196,7 @@ def check_velocities_left_out(component: Component[Any]) -> None:
 
 
 def check_rounding(component: Component[Any]) -> None:
-    """Inputs that are off by 1e-12 change no status and no integer.
+    """Changing inputs by 1e-12 changes no status and no integer.
 
     If this fails, compare with a tolerance instead of with equality.
     """
@@ -238,7 +238,7 @@ def _symmetric(world: World, name: str) -> World:
 
 @lru_cache(maxsize=256)
 def _symmetric_world(seed: int, name: str) -> World:
-    """What nearly all metrics are tried with."""
+    """Return a world used with almost all metrics."""
     return _symmetric(random_world(seed), name)
 
 

@@ -1,4 +1,4 @@
-"""What every noise generator must keep to."""
+"""Checks for every noise generator."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.sensing.sensor import NoiseGenerator
 from crowdbot.dsl.spec.component import Component
 from crowdbot.testing.around import around, built, specs_of
 
-#: Distances as sensors hand them over: hits near and far, nothing hit, nobody looked.
+#: Distances as passed by sensors: near and far hits, no hit, no ray.
 _DISTANCES = (
     np.array([0.0, 0.02, 0.5, 1.0, 4.4, 100.0]),
     np.full(6, np.inf),
@@ -22,7 +22,7 @@ _DISTANCES = (
 
 
 def check_errors_are_numbers(component: Component[Any], registry: Registry | None = None) -> None:
-    """Errors are as many finite float64 as there are distances, also for beams that hit nothing.
+    """Errors are finite float64, one per distance, also for beams without a hit.
 
     If this fails, return ``np.zeros(len(distance))`` plus what you add; inf - inf is NaN.
     """
@@ -38,9 +38,9 @@ def check_errors_are_numbers(component: Component[Any], registry: Registry | Non
 def check_distances_are_unchanged(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The distances that are handed over stay as they are.
+    """The given distances are not changed.
 
-    If this fails, return what is to be added instead of adding it.
+    If this fails, return the errors instead of adding them.
     """
     for generator in _generators(component, registry):
         for distance in _DISTANCES:
@@ -52,9 +52,9 @@ def check_distances_are_unchanged(
 def check_draws_do_not_depend_on_distances(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """As many random numbers are drawn whatever the distances are.
+    """The number of random draws does not depend on the distances.
 
-    If this fails, draw for every beam, also for those that need none: else what one beam hits
+    If this fails, draw for every beam, also for those that need none: otherwise one beam's hit
     changes the noise of the others.
     """
     for generator in _generators(component, registry):
@@ -69,10 +69,10 @@ def check_draws_do_not_depend_on_distances(
 def check_random_says_whether_it_draws(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The attribute ``random`` is true if and only if random numbers are drawn.
+    """``random`` is true if and only if random numbers are drawn.
 
-    If this fails, correct ``random``: where it is false, the sensor hands over a generator that
-    others use too.
+    If this fails, correct ``random``: if it is false, the sensor passes a generator that others
+    also use.
     """
     for generator in _generators(component, registry):
         assert isinstance(generator.random, bool), "'random' must be True or False"
@@ -86,7 +86,7 @@ def check_random_says_whether_it_draws(
 def check_equal_draws_give_equal_errors(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Equal distances and equal random numbers give equal errors, whatever came before.
+    """Equal distances and equal random numbers give equal errors, regardless of earlier calls.
 
     If this fails, the generator keeps something between two readings, or draws from elsewhere.
     """

@@ -1,4 +1,4 @@
-"""Makes pytest's tests of the checks of components."""
+"""Create pytest tests from the checks of components."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def parametrize_with_checks(
     *,
     expected_failures: Mapping[str, str] | None = None,
 ) -> pytest.MarkDecorator:
-    """Decorator of a test with one argument ``check``: one test a component and check.
+    """Parametrise a test with one argument ``check``: one test per component and check.
 
     Args:
-        components: what to check; test ids are ``kind-check_name``.
-        expected_failures: check name, or whole test id -> reason. Such a test must fail. Those
-            that a component declares itself (``Component(exceptions=...)``) are added.
+        components: the components to check; test ids are ``kind-check_name``.
+        expected_failures: check name, or whole test id -> reason. Such a test must fail. Exceptions
+            declared by a component (``Component(exceptions=...)``) are added.
 
     Raises:
         ValueError: an expected failure names no test, or no component was given.

@@ -1,4 +1,4 @@
-"""What every planner must keep to, on courses without a simulator (`crowdbot.testing.drive`)."""
+"""Checks for every planner, on courses without a simulator (`crowdbot.testing.drive`)."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _STEPS = 24
 def check_commands_are_numbers(component: Component[Any], registry: Registry | None = None) -> None:
     """On every course ``step`` returns finite commands, or raises ``NoValidCommand``.
 
-    If this fails, the message names the course and what was returned or raised. Readings are inf
-    where nothing is in reach.
+    If this fails, the message names the course and the result or error. Readings are inf if nothing
+    is in range.
     """
     for driver in _drivers(component, registry):
         for name, course in COURSES.items():
@@ -29,9 +29,9 @@ def check_commands_are_numbers(component: Component[Any], registry: Registry | N
 def check_commands_are_within_limits(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """No command is beyond the ``RobotLimits`` that ``reset`` was given.
+    """No command exceeds the ``RobotLimits`` given to ``reset``.
 
-    If this fails, clamp to ``limits`` yourself: the host clamps too, and counts it against you.
+    If this fails, clamp to ``limits`` yourself: the host also clamps, and counts these commands.
     """
     for driver in _drivers(component, registry):
         for name, course in COURSES.items():
@@ -44,9 +44,10 @@ def check_commands_are_within_limits(
 def check_reset_is_deterministic(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Two planners of the same spec and seed give the same commands.
+    """Two planners with the same spec and seed give the same commands.
 
-    If this fails, draw from ``np.random.default_rng(seed)``, made in ``reset``; ask no clock.
+    If this fails, draw from ``np.random.default_rng(seed)``, created in ``reset``; do not use a
+    clock.
     """
     for driver in _drivers(component, registry):
         course = COURSES["people in a room"]
@@ -55,9 +56,9 @@ def check_reset_is_deterministic(
 
 
 def check_runs_are_independent(component: Component[Any], registry: Registry | None = None) -> None:
-    """``reset`` forgets everything: a second run in the same object is like the first.
+    """``reset`` clears everything: a second run with the same object is like the first.
 
-    If this fails, set in ``reset`` all that ``step`` changes.
+    If this fails, reset in ``reset`` everything that ``step`` changes.
     """
     for driver in _drivers(component, registry):
         driven = driver(COURSES["people in a room"])
@@ -67,9 +68,9 @@ def check_runs_are_independent(component: Component[Any], registry: Registry | N
 
 
 def check_unreachable_goal(component: Component[Any], registry: Registry | None = None) -> None:
-    """A goal behind walls: a command or ``NoValidCommand``, never NaN, never another exception.
+    """A goal behind walls gives a command or ``NoValidCommand``, never NaN or another exception.
 
-    If this fails, a search finds no way and its result is used all the same.
+    If this fails, a search finds no path and its result is used anyway.
     """
     for driver in _drivers(component, registry):
         _drive("a goal behind walls", driver(UNREACHABLE))
@@ -78,7 +79,7 @@ def check_unreachable_goal(component: Component[Any], registry: Registry | None 
 def check_goal_reached_at_start(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """A robot that starts on its goal gets numbers.
+    """A robot that starts at its goal gets valid commands.
 
     If this fails, something is divided by the distance to the goal.
     """
@@ -99,7 +100,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
 def _drivers(
     component: Component[Any], registry: Registry | None
 ) -> Iterator[Callable[[Course], Driven]]:
-    """For each example: a function that puts a new planner on a course."""
+    """Yield, per example, a function that puts a new planner on a course."""
     known = around(component, registry)
     sensors = sensors_for(getattr(component.spec, "needs", None), known)
     for spec in specs_of(component, known):

@@ -1,4 +1,4 @@
-"""What every robot must keep to. Those that drive it need Drake."""
+"""Checks for every robot. Those that drive it need Drake."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.commanded_motion import EMPTY_FLOOR
 
-#: How far a body may stick out of its footprint, or stay behind it, m.
+#: Largest difference between body and footprint, m.
 _OUT, _BEHIND = 0.03, 0.15
-#: Parts that hang higher than the robot is said to be, m.
+#: Largest height of parts above the declared height, m.
 _HIGHER = 0.02
 
 
 def check_model(component: Component[Any], registry: Registry | None = None) -> None:
-    """Limits, footprint, height and mass are sound numbers, and the drive fits the description.
+    """Limits, footprint, height and mass are valid, and the drive fits the description.
 
     If this fails, look at `RobotModel` and `RobotLimits`: SI units; a polygon is convex and
     counter-clockwise; people push at ``force_height``, above the floor and below the top; a driven
-    wheel's joint points to the left and says its torque.
+    wheel's joint points to the left and has a torque.
     """
     for _, model in _models(component, registry):
         assert isinstance(model, RobotModel), f"build returned a {type(model).__name__}"
@@ -52,9 +52,9 @@ def check_model(component: Component[Any], registry: Registry | None = None) -> 
 
 
 def check_model_is_constant(component: Component[Any], registry: Registry | None = None) -> None:
-    """Built twice from the same spec it is the same robot.
+    """Building the same spec twice gives the same robot.
 
-    If this fails, the description holds the time, a path of this machine or a random number.
+    If this fails, the description contains the time, a local path or a random number.
     """
     pairs = zip(_models(component, registry), _models(component, registry), strict=True)
     for (_, one), (_, two) in pairs:
@@ -64,10 +64,10 @@ def check_model_is_constant(component: Component[Any], registry: Registry | None
 
 
 def check_mass_agrees(component: Component[Any], registry: Registry | None = None) -> None:
-    """The links of the description weigh what ``mass`` says.
+    """The masses of the description's links sum to ``mass``.
 
-    If this fails, add up the inertials: collisions are scored with ``mass``, the simulation goes
-    by the links.
+    If this fails, add up the inertials: collisions are scored with ``mass``, the simulation uses
+    the links.
     """
     for spec, model in _models(component, registry):
         rig, _ = _rig(spec, model)
@@ -78,10 +78,10 @@ def check_mass_agrees(component: Component[Any], registry: Registry | None = Non
 
 
 def check_footprint_agrees(component: Component[Any], registry: Registry | None = None) -> None:
-    """What collides in the description is as wide and as long as the footprint, and no higher.
+    """The description's collision shapes match the footprint in width and length, and the height.
 
-    If this fails, people are kept off another robot than the one that drives: compare the
-    collision shapes along x and y of the base with ``footprint`` and ``footprint_radius``.
+    If this fails, people avoid a different shape than the robot's: compare the collision shapes
+    along x and y of the base with ``footprint`` and ``footprint_radius``.
     """
     for spec, model in _models(component, registry):
         low, high, top = _extent(*_rig(spec, model))
@@ -98,10 +98,10 @@ def check_footprint_agrees(component: Component[Any], registry: Registry | None 
 
 
 def check_drives_ahead(component: Component[Any], registry: Registry | None = None) -> None:
-    """Told to drive ahead, it does: along x, within its limits, twice alike, without warnings.
+    """The robot drives ahead along x within its limits, reproducibly and without warnings.
 
-    If this fails, wheels turn the wrong way, slip or do not touch the floor, or the description
-    is not read as it is meant.
+    If this fails, wheels turn the wrong way, slip or do not touch the floor, or the description is
+    interpreted differently.
     """
     from crowdbot.testing.tiny import assert_runs, run_of, tiny_scenario
 
@@ -124,9 +124,9 @@ def check_drives_ahead(component: Component[Any], registry: Registry | None = No
 def check_stops_without_commands(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Without a command for ``command_timeout`` it brakes to a stop.
+    """Without a command for ``command_timeout`` the robot brakes to a stop.
 
-    If this fails, the robot does not follow a speed that falls to zero.
+    If this fails, the robot does not follow a command that ramps to zero.
     """
     from crowdbot.testing.tiny import run_of, tiny_scenario
 
@@ -134,7 +134,7 @@ def check_stops_without_commands(
     for spec in specs_of(component, known):
         limits = built(known, spec).limits
         braking = limits.v_max / limits.a_max
-        if limits.command_timeout + braking > 0.7:  # it would not stand before the next command
+        if limits.command_timeout + braking > 0.7:  # it would still move at the next command
             continue
         words = spec.model_dump(mode="json")
         scenario = tiny_scenario(known, robot=words, rates={"planner": 1.0}, time_limit=2.0)
@@ -175,7 +175,7 @@ def _assert_footprint(corners: Array) -> None:
 
 
 def _rig(spec: ComponentSpec, model: RobotModel) -> tuple[Any, Any]:
-    """The robot in a plant of its own on an empty floor, and what knows the shapes."""
+    """Return the robot in its own plant on an empty floor, and the shapes' query object."""
     from pydrake.geometry import SceneGraph
     from pydrake.systems.framework import DiagramBuilder
 
@@ -189,7 +189,10 @@ def _rig(spec: ComponentSpec, model: RobotModel) -> tuple[Any, Any]:
 
 
 def _extent(rig: Any, shapes: Any) -> tuple[Array, Array, float]:
-    """Smallest and largest x and y of all collision shapes from the base, and their top; m."""
+    """Return smallest and largest x and y of all collision shapes from the base, and their top.
+
+    M.
+    """
     plant = rig.plant
     context = plant.CreateDefaultContext()
     base = plant.GetBodyByName(rig.robot.base, rig.model).body_frame()

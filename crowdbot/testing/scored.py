@@ -1,4 +1,4 @@
-"""Scores of one metric in a world, and what its component declares about them."""
+"""Scores of one metric in a world, and its declared invariants."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Scored = Mapping[str, Score]
 
 
 def with_signals(component: Component[Any], world: World) -> World:
-    """A world in which the run has the signals that a metric says it reads.
+    """Return a world whose run has the signals that a metric declares to read.
 
     They are smooth in time, the same at every sampling rate, and between 0 and 1.
     """
@@ -36,14 +36,14 @@ def with_signals(component: Component[Any], world: World) -> World:
 
 
 def scores_of(component: Component[Any], world: World) -> dict[str, Score]:
-    """Variant -> score of a world."""
+    """Return variant -> score in a world."""
     plugin = Plugin(name="checked", distribution="checked", components=(component,))
     found = score(assemble([plugin]), **world.score_arguments(), metrics=component.kind)
     return {s.variant: s for s in found}
 
 
 def metric_of(component: Component[Any]) -> MetricComponent[Any]:
-    """The component, which has to be that of a metric."""
+    """Return the component, which must be a metric's."""
     assert isinstance(component, MetricComponent), (
         f"'{component.kind}' is not a MetricComponent; use declare_metric"
     )
@@ -51,5 +51,5 @@ def metric_of(component: Component[Any]) -> MetricComponent[Any]:
 
 
 def invariants_of(component: Component[Any], variant: str) -> MetricInvariants:
-    """What holds for the values of a variant."""
+    """Return the invariants of a variant's values."""
     return metric_of(component).variants[variant].invariants

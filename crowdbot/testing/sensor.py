@@ -1,4 +1,4 @@
-"""What every sensor must keep to."""
+"""Checks for every sensor."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ from crowdbot.testing.sensor_scenes import (
 )
 
 _ROS_TYPE = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
-#: Categories whose values are distances of what stands there, inf for nothing.
+#: Categories that measure distances, with inf for no hit.
 _DISTANCES = ("infrared", "lidar", "ultrasound")
 
 
 class Probe:
-    """A sensor with the memory that core keeps for it."""
+    """A sensor with the memory that core manages for it."""
 
     def __init__(self, sensor: Any) -> None:
         self.sensor, self.info = sensor, sensor.info()
         self.memory = np.zeros(self.info.memory)
 
     def __call__(self, scene: Scene, k: int, rng: np.random.Generator | None = None) -> Array:
-        """Reading number k of a drive; its robot is where `POSES` says."""
+        """Return reading number k of a drive, with the robot at its pose in `POSES`."""
         rng = rng or sensor_rng(0, "robot", "sensor", k)
         args = (scene, pose_of(k), k / self.info.rate, rng)
         if self.info.memory:
@@ -56,10 +56,10 @@ class Probe:
 
 
 def check_info(component: Component[Any], registry: Registry | None = None) -> None:
-    """``info`` is constant and makes sense: rate, shape, ranges, mount, ROS type.
+    """``info`` is constant and valid: rate, shape, ranges, mount, ROS type.
 
-    If this fails, make `SensorInfo` once, in the constructor. A rate is above 0 and at most
-    128 Hz, a ROS type is like ``sensor_msgs/msg/LaserScan``, angles are those of all beams.
+    If this fails, create `SensorInfo` once, in the constructor. A rate is above 0 and at most 128
+    Hz, a ROS type is like ``sensor_msgs/msg/LaserScan``, angles are those of all beams.
     """
     for sensor in _sensors(component, registry):
         info = sensor.info()
@@ -82,9 +82,10 @@ def _assert_can_be_read(sensor: Any, info: SensorInfo) -> None:
 
 
 def check_reading_is_numbers(component: Component[Any], registry: Registry | None = None) -> None:
-    """A reading has the shape of ``info().shape``, is float64 (float32 of a camera), never NaN.
+    """A reading has the shape ``info().shape``, is float64 (float32 for a camera), never NaN.
 
-    If this fails, nothing in reach is inf, not NaN; and an array of another shape cannot be kept.
+    If this fails, return inf, not NaN, if nothing is in range; an array of another shape cannot be
+    stored.
     """
     for sensor in _sensors(component, registry):
         for name, scene in {"empty": empty(), "crowded": crowded()}.items():
@@ -94,9 +95,9 @@ def check_reading_is_numbers(component: Component[Any], registry: Registry | Non
 
 
 def check_readings_are_new(component: Component[Any], registry: Registry | None = None) -> None:
-    """Each reading is a new array, and none of the scene's arrays is written to.
+    """Each reading is a new array, and the scene's arrays are not written to.
 
-    If this fails, return a copy of what you keep, and change nothing that the scene hands out.
+    If this fails, return copies of stored arrays, and do not change the scene's arrays.
     """
     for sensor in _sensors(component, registry):
         probe, scene = Probe(sensor), crowded()
@@ -111,9 +112,9 @@ def check_readings_are_new(component: Component[Any], registry: Registry | None 
 def check_equal_draws_give_equal_readings(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Two sensors of the same spec read the same from the same scenes and random numbers.
+    """Two sensors with the same spec give equal readings for equal scenes and random numbers.
 
-    If this fails, something is drawn from another generator than ``rng``, or from the clock.
+    If this fails, the sensor uses a generator other than ``rng``, or a clock.
     """
     pairs = zip(_sensors(component, registry), _sensors(component, registry), strict=True)
     for one, two in (tuple(map(Probe, pair)) for pair in pairs):
@@ -128,8 +129,7 @@ def check_random_says_whether_it_draws(
 ) -> None:
     """``info().random`` is true if and only if random numbers are drawn.
 
-    If this fails, correct ``random``: where it is false, the generator handed over is not its
-    own.
+    If this fails, correct ``random``: if it is false, the given generator is shared.
     """
     for sensor in _sensors(component, registry):
         drew = _draws(sensor)
@@ -138,10 +138,10 @@ def check_random_says_whether_it_draws(
 
 
 def check_exact_without_noise(component: Component[Any], registry: Registry | None = None) -> None:
-    """A sensor of distances without noise and dropouts draws no random numbers.
+    """A range sensor without noise and dropouts draws no random numbers.
 
-    If this fails, draw nothing for a noise of zero; a sensor that is random by its principle says
-    so: ``Component(exceptions={"check_exact_without_noise": "why"})``.
+    If this fails, draw nothing for a noise of zero; a sensor that is random by design declares
+    ``Component(exceptions={"check_exact_without_noise": "why"})``.
     """
     known = around(component, registry)
     for spec in specs_of(component, known):
@@ -152,9 +152,9 @@ def check_exact_without_noise(component: Component[Any], registry: Registry | No
 def check_memory_is_all_it_keeps(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """A new sensor that is handed the memory goes on as the old one would have.
+    """A new sensor with the old one's memory continues like the old one.
 
-    If this fails, the object keeps something: ``info().memory`` numbers are all that survives.
+    If this fails, the object keeps other state: only ``info().memory`` numbers survive.
     """
     pairs = zip(_sensors(component, registry), _sensors(component, registry), strict=True)
     for one, two in (tuple(map(Probe, pair)) for pair in pairs):
@@ -168,10 +168,9 @@ def check_memory_is_all_it_keeps(
 
 
 def check_sees_people(component: Component[Any], registry: Registry | None = None) -> None:
-    """``info().sees`` is true if and only if somebody in front of the robot changes a reading.
+    """``info().sees`` is true if and only if a person in front of the robot changes a reading.
 
-    If this fails, correct ``sees``: where it is false, the people of the scene are not up to
-    date.
+    If this fails, correct ``sees``: if it is false, the scene's people are out of date.
     """
     for sensor in _sensors(component, registry):
         info = sensor.info()
@@ -185,7 +184,7 @@ def check_sees_people(component: Component[Any], registry: Registry | None = Non
 
 
 def check_distances_are_true(component: Component[Any], registry: Registry | None = None) -> None:
-    """Of a sensor of distances: an empty world gives inf, a person in front about the distance.
+    """A range sensor reads inf in an empty world, else the distance of a person in front.
 
     If this fails, the sensor sees the robot itself, or measures to somewhere else. Categories are
     ``lidar``, ``ultrasound`` and ``infrared``; others are not looked at.
@@ -208,10 +207,10 @@ def check_distances_are_true(component: Component[Any], registry: Registry | Non
 def check_millimetres_are_the_reading(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """Of a camera with ``depth_mm``: they are its reading, rounded, from equal random numbers.
+    """A camera's ``depth_mm`` is its reading, rounded, for equal random numbers.
 
-    If this fails, recordings show something else than planners get. Whole millimetres are
-    rounded to even; what is not measured, or beyond 65.535 m, is 0. Each image is a new array.
+    If this fails, recordings differ from the planners' readings. Whole millimetres are rounded to
+    even; missing values, and those beyond 65.535 m, are 0. Each image is a new array.
     """
     for sensor in _sensors(component, registry):
         rate = sensor.info().rate
@@ -273,7 +272,7 @@ def _sensors(component: Component[Any], registry: Registry | None) -> Iterator[A
 
 
 def _draws(sensor: Any) -> bool:
-    """Whether a drive takes random numbers."""
+    """Return True if a drive uses random numbers."""
     probe, scene, drew = Probe(sensor), crowded(), False
     for k in range(len(POSES)):
         rng, untouched = (sensor_rng(0, "robot", "sensor", k) for _ in range(2))
@@ -283,7 +282,7 @@ def _draws(sensor: Any) -> bool:
 
 
 def _shown(scene: Scene, k: int) -> Scene:
-    """The scene with the robot where it is at reading k."""
+    """Return the scene with the robot at its pose of reading k."""
     scene.move_robot(robot_at(k))
     return scene
 

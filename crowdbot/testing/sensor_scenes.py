@@ -19,7 +19,7 @@ from crowdbot.core.types.robot import (
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
 
-#: A robot that drives on an arc; x, y (m), yaw (rad), one for each reading.
+#: A robot that drives on an arc; x, y (m), yaw (rad), one per reading.
 POSES = tuple(Pose(0.05 * k, 0.01 * k * k, 0.2 * k) for k in range(6))
 _RADIUS, _HEIGHT = 0.25, 1.75
 #: Largest distance of the centre of the person in front, m.
@@ -55,7 +55,7 @@ def context() -> SensorContext:
 
 
 def robot_at(k: int) -> RobotState:
-    """The robot at reading k."""
+    """Return the robot's state at reading k."""
     x, y, yaw = POSES[k]
     return RobotState(
         x=x, y=y, yaw=yaw, vx=0.4 * math.cos(yaw), vy=0.4 * math.sin(yaw), w=0.5,
@@ -64,17 +64,17 @@ def robot_at(k: int) -> RobotState:
 
 
 def pose_of(k: int) -> Pose:
-    """Pose of base_link at reading k."""
+    """Return the pose of base_link at reading k."""
     return POSES[k]
 
 
 def empty() -> Scene:
-    """Nothing but the robot."""
+    """Return a scene with only the robot."""
     return _scene(np.zeros((0, 4)), np.zeros((0, 4)))
 
 
 def crowded() -> Scene:
-    """Walls on all sides and people among them, one of them absent."""
+    """Return a scene with walls on all sides and people, one of them absent."""
     walls = np.array([[-4, -3, 6, -3], [6, -3, 6, 3], [6, 3, -4, 3], [-4, 3, -4, -3]], np.float64)
     people = np.array(
         [[1.5, 0.2, -0.5, 0.0], [2.5, -1.0, 0.0, 1.0], [-1.0, 1.5, 0.0, 0.0], [0.9, 0.9, 1.0, 0.0]]
@@ -83,9 +83,9 @@ def crowded() -> Scene:
 
 
 def in_front(info: SensorInfo) -> dict[float, list[Scene]]:
-    """One person ahead of the sensor, by distance from it (m): on its axis and a little beside.
+    """Return scenes with one person ahead of the sensor, by distance (m): on its axis and beside.
 
-    A narrow beam may pass between the legs; a bumper feels only what touches the robot.
+    A narrow beam may pass between the legs; a bumper senses only contacts.
     """
     x, y, _, yaw = info.mount
     c, s = math.cos(yaw), math.sin(yaw)

@@ -1,4 +1,4 @@
-"""Hypothesis strategies: random valid specs of a component. Needs hypothesis."""
+"""Hypothesis strategies for valid random specs of a component. Needs hypothesis."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.testing.around import around
 
-#: At most so many fields differ from the examples.
+#: Largest number of fields that differ from an example.
 _MOST = 3
 
 
 def specs(
     component: Component[Any], registry: Registry | None = None
 ) -> st.SearchStrategy[ComponentSpec]:
-    """Valid specs of a component: an example with up to three fields of other values.
+    """Return a strategy for valid specs: an example with up to three changed fields.
 
-    Numbers keep to their bounds; what a validator of the spec refuses is not drawn.
+    Numbers stay within their bounds; specs refused by a validator are not drawn.
     """
     model = around(component, registry).spec_model(component.category, component.kind)
     return _specs(model, component.kind, list(component.examples))
@@ -48,7 +48,7 @@ def _specs(
 
 
 def _is_plain(field: FieldInfo) -> bool:
-    """Whether a field holds a number, a word or a truth value, and nothing more."""
+    """Return True if a field holds only a number, a text or a boolean."""
     annotation: Any = field.annotation
     return annotation in (bool, float, int) or get_origin(annotation) is Literal
 

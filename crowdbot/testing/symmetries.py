@@ -1,4 +1,4 @@
-"""Runs moved, turned, mirrored, later; and runs changed in other ways whose effect is known."""
+"""Transformed runs whose effect on scores is known: moved, rotated, mirrored, later, and more."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SHIFT, _TURN, _DELAY = (17.0, -4.0), 2.1, 64.0
 
 
 def without_velocities(run: Trajectories) -> Trajectories:
-    """The same motion, of which only places and headings were recorded."""
+    """Return the same motion with only positions and headings recorded."""
     robot, agents = run.robot, run.agents
     if robot is not None:
         unknown = np.full(robot.x.shape, np.nan)
@@ -44,7 +44,7 @@ def move(
         return x + shift[0], y + shift[1]
 
     def points(rows: Array | None) -> Array | None:
-        """Columns x, y or x0, y0, x1, y1."""
+        """Return columns x, y or x0, y0, x1, y1."""
         if rows is None:
             return None
         pairs = [place(rows[:, i], rows[:, i + 1]) for i in range(0, rows.shape[1], 2)]
@@ -82,7 +82,7 @@ def _move_robot(
 
 
 def shift_time(run: Trajectories, by: float) -> Trajectories:
-    """Everything happens ``by`` seconds later."""
+    """Return the run with everything ``by`` seconds later."""
     robot, trips, contacts = run.robot, run.trips, run.contacts
     signals = {name: rows + np.array([by, 0.0]) for name, rows in run.signals.items()}
     if robot is not None and robot.goal_time is not None:
@@ -95,7 +95,7 @@ def shift_time(run: Trajectories, by: float) -> Trajectories:
 
 
 def permute(run: Trajectories) -> Trajectories:
-    """People and trips in the opposite order."""
+    """Return people and trips in the opposite order."""
     if run.agents is None:
         return run
     run = with_people(run, range(len(run.agents.id))[::-1])
@@ -105,21 +105,21 @@ def permute(run: Trajectories) -> Trajectories:
 
 
 def shift_commands(commands: Commands) -> Commands:
-    """The same commands, as much later as `RUN_SYMMETRIES` shifts runs."""
+    """Return the same commands, later by the shift of `RUN_SYMMETRIES`."""
     return replace(commands, t=commands.t + _DELAY, t_end=commands.t_end + _DELAY)
 
 
 def mirror_commands(commands: Commands) -> Commands:
-    """Left and right exchanged."""
+    """Return the commands with left and right swapped."""
     return replace(commands, w_user=-commands.w_user, w_sc=-commands.w_sc)
 
 
-#: The same for commands, which have neither places nor people.
+#: The same for commands, which have neither positions nor people.
 COMMAND_SYMMETRIES: Mapping[str, Callable[[Commands], Commands]] = {
     "shift_time": shift_commands,
     "reflect": mirror_commands,
 }
-#: By their names in `crowdbot.dsl.spec.metric_invariants.SYMMETRIES`.
+#: Transformations by their names in `crowdbot.dsl.spec.metric_invariants.SYMMETRIES`.
 RUN_SYMMETRIES: Mapping[str, Change] = {
     "translate": lambda run: move(run, shift=_SHIFT),
     "rotate": lambda run: move(run, angle=_TURN),
@@ -131,7 +131,7 @@ RUN_SYMMETRIES: Mapping[str, Change] = {
 
 # ------------------------------------------------------------------------- others
 def with_people(run: Trajectories, columns: Sequence[int]) -> Trajectories:
-    """Only these people, in this order, with their trips and contacts."""
+    """Return only these people, in this order, with their trips and contacts."""
     agents, pick = run.agents, np.array(columns, dtype=int)
     if agents is None:
         return run
@@ -148,7 +148,7 @@ def with_people(run: Trajectories, columns: Sequence[int]) -> Trajectories:
 
 
 def scale_masses(run: Trajectories, factor: float) -> Trajectories:
-    """All masses times ``factor``; measured impulses and forces, which grow alike, too."""
+    """Return the run with all masses, impulses and forces multiplied by ``factor``."""
     robot, agents, contacts = run.robot, run.agents, run.contacts
     if robot is not None:
         robot = replace(robot, mass=robot.mass * factor)
@@ -161,7 +161,7 @@ def scale_masses(run: Trajectories, factor: float) -> Trajectories:
 
 
 def perturb(run: Trajectories, size: float, seed: int) -> Trajectories:
-    """Every position, angle and velocity off by up to ``size``."""
+    """Return the run with every position, angle and velocity changed by up to ``size``."""
     rng = np.random.default_rng(seed)
 
     def off(values: Array) -> Array:
@@ -180,7 +180,7 @@ def perturb(run: Trajectories, size: float, seed: int) -> Trajectories:
 
 
 def arrays_of(value: Any, path: str = "") -> dict[str, bytes]:
-    """Name -> bytes of every array and number in a run, to see whether somebody changed it."""
+    """Return name -> bytes of every array and number in a run, to detect changes."""
     if isinstance(value, np.ndarray):
         return {path: value.tobytes()}
     if isinstance(value, Mapping):
@@ -192,7 +192,7 @@ def arrays_of(value: Any, path: str = "") -> dict[str, bytes]:
 
 
 def writable_copy(value: Any) -> Any:
-    """A copy whose arrays can be written to, unlike those of a recorded run."""
+    """Return a copy with writable arrays, unlike a recorded run."""
     if isinstance(value, np.ndarray):
         return value.copy()
     if isinstance(value, Mapping):

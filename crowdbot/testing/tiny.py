@@ -1,4 +1,4 @@
-"""Tiny scenarios: one room, one robot, nobody; and short runs of them."""
+"""Tiny scenarios (one room, one robot, no people), and short runs of them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.testing.around import with_zone
 
-#: Where the robot starts in the room, and its goal zone, m.
+#: Start of the robot in the room, and its goal zone, m.
 START = (1.0, 0.0, 0.0)
 ROOM: Mapping[str, Any] = {
     "kind": "corridor",
@@ -28,7 +28,7 @@ ROOM: Mapping[str, Any] = {
 
 
 def tiny_scenario(registry: Registry, **changes: Any) -> Scenario:
-    """A robot in a room of 12 m x 6 m that is to cross it, without people.
+    """Return a scenario of a robot that has to cross a room of 12 m x 6 m, without people.
 
     Args:
         registry: the installed components.
@@ -57,7 +57,7 @@ def tiny_scenario(registry: Registry, **changes: Any) -> Scenario:
 
 
 def scenario_in(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) -> Scenario:
-    """A robot at a point of an environment, with a goal zone around it that it has not reached."""
+    """Return a scenario with a robot at a point, and a goal zone around it not yet reached."""
     words = with_zone(registry, spec, at).model_dump(mode="json")
     return tiny_scenario(registry, environment=words, start=(*at, 0.0), zone="kit")
 
@@ -66,7 +66,7 @@ def run_of(scenario: Scenario, registry: Registry, planner: str = "goal_seek") -
     """Simulate without references; Drake's warnings are errors.
 
     Raises:
-        UserWarning: the simulator warned of something.
+        UserWarning: the simulator issued a warning.
     """
     from crowdbot.core.sim.simulate import simulate
 
@@ -84,7 +84,7 @@ def run_of(scenario: Scenario, registry: Registry, planner: str = "goal_seek") -
 
 
 def assert_runs(scenario: Scenario, registry: Registry) -> None:
-    """Simulate twice: the robot's state is finite and the same."""
+    """Simulate twice and check that the robot's state is finite and equal."""
     one, two = (run_of(scenario, registry).robot for _ in range(2))
     assert one is not None
     assert two is not None

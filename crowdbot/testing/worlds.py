@@ -1,6 +1,6 @@
-"""Random worlds in which metrics are tried: a robot, people, and each of them alone.
+"""Random worlds for testing metrics: a robot, people, and each of them alone.
 
-Everything is made from a seed, so that a failing example is one number.
+Everything follows from a seed, so a failing example is one number.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _GOAL = (3.0, 0.5)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class World:
-    """A run, its references, and what its user did and said."""
+    """A run, its references, and its user's commands and answers."""
 
     run: Trajectories
     robot_alone: Trajectories | None = None
@@ -33,7 +33,7 @@ class World:
     questionnaires: Questionnaires | None = None
 
     def score_arguments(self) -> dict[str, Any]:
-        """Arguments of `crowdbot.core.scoring.evaluate.score`."""
+        """Return arguments of `crowdbot.core.scoring.evaluate.score`."""
         return {
             "crowded": self.run,
             "robot_alone": self.robot_alone,
@@ -44,9 +44,9 @@ class World:
         }
 
 
-@lru_cache(maxsize=64)  # none can be written to; what metrics derive from one is kept with it
+@lru_cache(maxsize=64)  # read-only arrays; derived quantities are cached with them
 def random_world(seed: int) -> World:
-    """A robot among up to five people, who come and go; both calibration runs."""
+    """Return a robot among up to five people who come and go, with both calibration runs."""
     rng = np.random.default_rng(seed)
     people = _people(rng, int(rng.integers(1, 6)))
     even = bool(rng.random() < 0.7)
@@ -72,10 +72,10 @@ def random_world(seed: int) -> World:
 
 @lru_cache(maxsize=64)
 def straight_world(seed: int, rate: float) -> World:
-    """Everybody keeps a velocity for 8 s, the robot through the midst of the people.
+    """Return a world of constant velocities for 8 s, with the robot passing through the people.
 
     Args:
-        seed: decides where everybody starts and goes.
+        seed: seed of all starts and directions.
         rate: samples per second, Hz.
     """
     rng = np.random.default_rng(seed)
@@ -116,10 +116,10 @@ def straight_world(seed: int, rate: float) -> World:
 
 
 def portal_world(seed: int, *, through: bool) -> World:
-    """One person near the robot, three who walk a kilometre away, with or without portals.
+    """Return a person near the robot and three who walk a kilometre away. With or without portals.
 
-    ``through``: halfway these jump 40 m, flagged as a teleport, and begin another trip. Nobody's
-    velocity is recorded. Whoever counts a teleport as motion tells the two worlds apart.
+    ``through``: halfway these jump 40 m, flagged as a teleport, and begin another trip. No
+    velocities are recorded. A metric that counts a teleport as motion distinguishes the worlds.
     """
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 6.0, 1.0 / _RATE)
@@ -173,7 +173,7 @@ def _people(rng: np.random.Generator, count: int) -> _People:
 
 
 def _robot(rng: np.random.Generator, t: Array) -> dict[str, Any]:
-    """A car that speeds up, turns and perhaps arrives."""
+    """Return a robot that accelerates, turns and may arrive."""
     steps = np.diff(t, prepend=t[0])
     v = np.clip(0.5 + np.cumsum(rng.normal(0.0, 0.1, len(t))), -0.2, 1.2)
     w = np.clip(np.cumsum(rng.normal(0.0, 0.3, len(t))), -2.0, 2.0)
@@ -195,7 +195,7 @@ def _robot(rng: np.random.Generator, t: Array) -> dict[str, Any]:
 
 
 def _crowd(rng: np.random.Generator, t: Array, people: _People) -> dict[str, Any]:
-    """People who sway, perhaps jump once, perhaps come late or leave early."""
+    """Return people who sway, and may jump once, come late or leave early."""
     n, m = len(t), len(people.speed)
     heading = people.heading + np.cumsum(rng.normal(0.0, 0.1, (n, m)), axis=0)
     speed = people.speed * rng.uniform(0.8, 1.2, (n, m))
@@ -230,7 +230,7 @@ def _crowd(rng: np.random.Generator, t: Array, people: _People) -> dict[str, Any
 
 
 def _events(rng: np.random.Generator, t: Array, people: _People) -> dict[str, Any]:
-    """What only the crowded run has: contacts, walls, times of the planner."""
+    """Return data that only the crowded run has: contacts, walls, planner times."""
     k = int(rng.integers(0, 3))
     t0 = np.sort(rng.uniform(t[0], t[-1], k))
     agent = np.array([rng.choice([-1, *(7 + 3 * np.arange(len(people.mass)))]) for _ in range(k)])
@@ -251,7 +251,7 @@ def _events(rng: np.random.Generator, t: Array, people: _People) -> dict[str, An
 
 
 def _commands(rng: np.random.Generator, t: Array) -> Commands:
-    """A user who wavers, and a controller that mostly agrees."""
+    """Return commands of a hesitant user, and of a controller that mostly agrees."""
     v, w = (np.cumsum(rng.normal(0.0, 0.3, len(t))) for _ in range(2))
     idle = rng.random(len(t)) < 0.1
     return Commands.from_arrays(
@@ -267,7 +267,7 @@ def _commands(rng: np.random.Generator, t: Array) -> Commands:
 
 
 def _answers(rng: np.random.Generator) -> Questionnaires:
-    """Filled in with care, but for an item that does not apply."""
+    """Return complete answers, except for an item that does not apply."""
     weights = rng.permutation([5.0, 4.0, 3.0, 2.0, 1.0, 0.0]).tolist()
     use = {name: rng.integers(1, 8, count).astype(float) for name, count in USE_ITEMS.items()}
     return Questionnaires(

@@ -24,7 +24,7 @@ _HEADER = (
 
 
 def cases(folder: Path) -> list[str]:
-    """Names of the cases of a folder."""
+    """Return the names of the cases in a folder."""
     return sorted(p.stem for p in folder.glob("*.npz") if p.with_suffix(".json").exists())
 
 

@@ -1,4 +1,4 @@
-"""One case of the original crowd engine: its set-up and what every step did."""
+"""One case of the original crowd engine: its setup and all its steps."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ COLUMNS = ("t", "id", "x", "y", "vx", "vy")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """Set-up and states of one case; SI units.
+    """Setup and states of one case; SI units.
 
     Attributes:
         states: (K + 1, N, 4) x, y, vx, vy.
-        present: (K + 1, N) whether an agent is in the world; its state is NaN where it is not.
-        agents: mass is the original's, without unit.
+        present: (K + 1, N) True if an agent is in the world; otherwise its state is NaN.
+        agents: the mass is that of the original, without unit.
         goal: (N, 2).
         walls: (S, 4) edges of the obstacles, counter-clockwise around each.
         periodic_boundary: (x0, x1, y0, y1) or None.
-        policies: spec and cost functions of each policy; ``agents.policy`` counts them.
+        policies: spec and cost functions of each policy; ``agents.policy`` is an index into them.
     """
 
     name: str
@@ -48,11 +48,11 @@ class Case:
 
 
 def load(folder: Path, name: str) -> Case:
-    """Case ``name`` of a folder with ``name.json`` and ``name.npz``.
+    """Load case ``name`` from a folder with ``name.json`` and ``name.npz``.
 
     Raises:
         OSError: a file is missing.
-        ValueError: a file has another form than the reference data, or names an unknown model.
+        ValueError: a file does not have the reference data's format, or names an unknown model.
     """
     given = json.loads((folder / f"{name}.json").read_text())
     with np.load(folder / f"{name}.npz") as data:
@@ -60,7 +60,7 @@ def load(folder: Path, name: str) -> Case:
 
 
 def case_of(name: str, given: dict[str, Any], columns: Sequence[NDArray[Any]]) -> Case:
-    """A case from its set-up and from rows of `COLUMNS`, one for each agent and time.
+    """Build a case from its setup and rows of `COLUMNS`, one per agent and time.
 
     Raises:
         ValueError: see `load`.
@@ -86,7 +86,7 @@ def case_of(name: str, given: dict[str, Any], columns: Sequence[NDArray[Any]]) -
 
 
 def _states(columns: list[Array], ids: NDArray[np.int64]) -> tuple[Array, NDArray[np.bool_]]:
-    """Rows in any order, made into a table over times and agents, and where there is a row."""
+    """Convert rows in any order to a table over times and agents, and a mask of existing rows."""
     times = np.unique(columns[0])
     states = np.full((len(times), len(ids), 4), np.nan)
     at = np.searchsorted(times, columns[0]), np.searchsorted(ids, columns[1])

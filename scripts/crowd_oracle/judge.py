@@ -25,26 +25,26 @@ from scripts.crowd_oracle.step import Stepper
 
 #: Velocities closer than this agree, m/s.
 CLOSE = 5e-4
-#: Single precision puts a position some ten metres away so far beside where it is, m.
+#: Error of a position some ten metres away in single precision, m.
 _BESIDE = 2e-5
-#: Largest change of a perturbed position (m) or velocity (m/s); how many are tried.
+#: Largest perturbation of a position (m) or velocity (m/s); number of perturbations tried.
 PERTURBATION, PERTURBATIONS = 1e-5, 256
-#: So many times a part of the people is shaken, and how large it is.
+#: Number of random subsets of people to perturb, and the share of people in each.
 SUBSETS, _SHARES = 128, (0.1, 0.25, 0.5)
-#: How far above our minimum the cost of the original's choice may lie.
+#: Largest excess of the original's choice over our minimum cost.
 RELATIVE, ABSOLUTE = 1e-3, 1e-6
-#: How far the original's candidates may be from ours, each by itself: some ten roundings, m/s.
+#: Largest difference between the original's candidates and ours: about ten roundings, m/s.
 ROUNDING = 1e-6
 _SEED = 20201021
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """Counts of samples, and residuals |dv| of those that agree, m/s.
+    """Counts of samples, and residuals |dv| of agreeing samples, m/s.
 
     Attributes:
         by_rounding: samples decided by a candidate on a limit.
-        not_a_number: samples in which the original itself has NaN; not part of ``samples``.
+        not_a_number: samples in which the original has NaN; not counted in ``samples``.
         first_misses: step and agent id of up to ten misses.
     """
 
@@ -62,7 +62,7 @@ class Verdict:
     first_misses: list[tuple[int, int]]
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a dictionary for JSON."""
         return asdict(self)
 
 
@@ -97,7 +97,7 @@ def judge(case: Case) -> Verdict:
 
 
 def _judge_step(stepper: Stepper, k: int, count: _Count) -> tuple[Array, Mask]:
-    """Residuals of the samples of step k that agree, and which are misses."""
+    """Return residuals of agreeing samples of step k, and a mask of misses."""
     case = stepper.case
     before, after = case.states[k], case.states[k + 1]
     known = case.present[k] & case.present[k + 1]
@@ -122,9 +122,9 @@ def _judge_step(stepper: Stepper, k: int, count: _Count) -> tuple[Array, Mask]:
 
 
 def agrees(case: Case, ours: Array, theirs: Array) -> Mask:
-    """Which rows of states (N, 4) are the same but for rounding, places included.
+    """Return rows of states (N, 4) that are equal up to rounding, including positions.
 
-    Where one has just crossed a periodic boundary, the other may be about to.
+    At a periodic boundary, one may have crossed it just before the other.
     """
     off = np.abs(ours[:, :2] - theirs[:, :2])
     if case.periodic_boundary is not None:
@@ -141,10 +141,10 @@ def agrees(case: Case, ours: Array, theirs: Array) -> Mask:
 def by_perturbed_input(
     stepper: Stepper, state: Array, theirs: Array, random: list[Array], who: Mask
 ) -> Mask:
-    """Which samples our engine reproduces from an input changed by at most `PERTURBATION`.
+    """Return samples that our engine reproduces from an input changed by at most `PERTURBATION`.
 
-    First everybody is shaken, then one random subset of the people at a time: a tie that one
-    neighbour decides may be undone by another who moves, too.
+    First all people are perturbed, then random subsets: a tie decided by one neighbour may be
+    undone by another who also moves.
     """
     found, rng = np.zeros(len(state), np.bool_), np.random.default_rng(_SEED)
     for attempt in range(PERTURBATIONS + SUBSETS):
@@ -171,12 +171,13 @@ def by_cost_alone(
     *,
     rounding: float = 0.0,
 ) -> Mask:
-    """Which samples are candidates of ours that cost hardly more than our minimum.
+    """Return samples that equal a candidate whose cost is hardly above our minimum.
 
     Args:
-        rounding: how far each candidate may be off, m/s. The original's choice then counts at its
-            cheapest, and the minimum is that of the candidates at their dearest: one that rounding
-            forbids is not a competitor, one that rounding allows is a choice.
+        rounding: largest error of each candidate, m/s. The original's choice then counts with its
+            lowest cost, and the minimum is taken over the candidates' highest costs: a candidate
+            that rounding forbids is no longer a competitor, one that rounding allows is a valid
+            choice.
     """  # fmt: skip
     found = np.zeros(len(state), np.bool_)
     push = stepper.push(state) if np.any(who) else state[:, 2:]
@@ -207,7 +208,7 @@ def by_cost_alone(
 def _costs(
     evaluator: Evaluator, view: CrowdView, velocities: Array, rounding: float
 ) -> tuple[Array, Array]:
-    """Least and largest cost (N, S) of candidates (N, S, 2) along and across which one moves."""
+    """Return least and largest cost (N, S) of candidates (N, S, 2), moved along and across."""
     cheapest = evaluator.total(view, velocities)
     dearest = cheapest
     if rounding > 0.0:

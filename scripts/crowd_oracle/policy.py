@@ -1,6 +1,6 @@
-"""Policies of the original crowd engine as specs of ours.
+"""Convert policies of the original crowd engine to our specs.
 
-Names, attributes and defaults are those of its XML files.
+Names, attributes and defaults follow its XML files.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 
-#: Cost functions: our spec, and our name of each attribute. A later attribute replaces an
-#: earlier one with the same name of ours: U0 of the social forces overwrites V0.
+#: Cost functions: our spec, and our name of each attribute. A later attribute replaces an earlier
+#: one with the same name: U0 of the social forces overwrites V0.
 COSTS: dict[str, tuple[type[CostFunctionSpec], dict[str, str]]] = {
     "TtcaDca": (
         TtcaDcaSpec,
@@ -60,7 +60,7 @@ COSTS: dict[str, tuple[type[CostFunctionSpec], dict[str, str]]] = {
 
 
 def cost_spec(given: Mapping[str, str]) -> CostFunctionSpec:
-    """The spec of one ``costfunction`` element.
+    """Return the spec of one ``costfunction`` element.
 
     Raises:
         ValueError: its name is unknown, or one of its values is not a number.
@@ -80,7 +80,7 @@ def cost_spec(given: Mapping[str, str]) -> CostFunctionSpec:
 
 
 def policy_spec(given: Mapping[str, str]) -> VelocitySpaceSpec:
-    """The spec of one ``Policy`` element.
+    """Return the spec of one ``Policy`` element.
 
     Raises:
         ValueError: an option is unknown, or one of its values is not a number.

@@ -10,11 +10,11 @@ from scripts.crowd_oracle.case import Case
 
 
 def push_out_of_reach(case: Case, state: Array, reach: Array) -> Array:
-    """How far bodies overlap that the original does not look at (N, 2), m, away from the other.
+    """Return overlaps that the original ignores (N, 2), m, pointing away from the other body.
 
     Args:
         case: people, walls and border.
-        state: (N, 4) x, y, vx, vy; NaN for who is not there.
+        state: (N, 4) x, y, vx, vy; NaN for absent agents.
         reach: (N,) largest range of each agent's policy, centre to centre, m.
     """
     radius = case.agents.radius
@@ -36,14 +36,14 @@ def push_out_of_reach(case: Case, state: Array, reach: Array) -> Array:
 
 
 def _nearest(point: Array, walls: Array) -> Array:
-    """Points (S, 2) of walls (S, 4) that are nearest to a point."""
+    """Return the points (S, 2) of walls (S, 4) nearest to a point."""
     start, along = walls[:, :2], walls[:, 2:] - walls[:, :2]
     share = np.sum((point - start) * along, axis=1) / np.sum(along * along, axis=1)
     return np.asarray(start + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along)
 
 
 def _beyond(away: Array, contact: Array | float, reach: float) -> Array:
-    """Sum (2,) of overlaps whose distance is at least the reach."""
+    """Return the sum (2,) of overlaps whose distance is at least the reach."""
     distance = np.hypot(away[:, 0], away[:, 1])
     counts = (distance >= reach) & (distance < contact)
     depth = np.where(counts, contact - distance, 0.0) / np.where(counts, distance, 1.0)

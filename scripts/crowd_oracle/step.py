@@ -1,4 +1,4 @@
-"""One step of our crowd as the original engine makes it, from any state.
+"""One step of our crowd in the original engine's order, from any state.
 
 Decisions are those of our policies; contact, clamping and motion are a tick of our engine itself.
 """
@@ -25,7 +25,7 @@ from scripts.crowd_oracle.quirks import push_out_of_reach
 
 
 class Stepper:
-    """The policies of a case, ready to step; random numbers go on from step to step."""
+    """The policies of a case, ready to step; random numbers continue from step to step."""
 
     def __init__(self, case: Case) -> None:
         self.case = case
@@ -48,16 +48,16 @@ class Stepper:
         self._engine, self._told = _engine(case, self._stiffness)
 
     def random(self) -> list[Array]:
-        """State of all random numbers, a copy."""
+        """Return a copy of the state of all random numbers."""
         return [p.costs.random.copy() for p in self.policies]
 
     def restore(self, random: list[Array]) -> None:
-        """Go back to a state of all random numbers."""
+        """Restore a state of all random numbers."""
         for policy, state in zip(self.policies, random, strict=True):
             policy.costs.random[:] = state
 
     def view(self, state: Array, policy: int, who: Mask | None = None) -> CrowdView:
-        """What agents see at a state (N, 4), for those who follow a policy."""
+        """Return the view of agents at a state (N, 4), for those who follow a policy."""
         case = self.case
         present: Mask = np.all(np.isfinite(state), axis=1)
         mine: Mask = case.agents.policy == policy
@@ -71,12 +71,12 @@ class Stepper:
         )  # fmt: skip
 
     def push(self, state: Array) -> Array:
-        """Change of velocity (N, 2) by contact in one step: how fast one goes who stood."""
+        """Return the change of velocity (N, 2) by contact in one step, from standstill."""
         at_rest = np.column_stack([state[:, :2], np.zeros((len(state), 2))])
         return self.move(at_rest, np.zeros((len(state), 2)))[:, 2:]
 
     def step(self, state: Array, who: Mask | None = None) -> Array:
-        """States (N, 4) after one step; meaningless for agents that are not asked for."""
+        """Return states (N, 4) after one step; meaningless for agents not in ``who``."""
         acceleration = np.zeros((len(state), 2))
         for k, policy in enumerate(self.policies):
             mine = self.case.agents.policy == k
@@ -85,7 +85,7 @@ class Stepper:
         return self.move(state, acceleration)
 
     def move(self, state: Array, acceleration: Array) -> Array:
-        """States (N, 4) after a step of the engine with given accelerations (N, 2)."""
+        """Return states (N, 4) after an engine step with given accelerations (N, 2)."""
         case, engine = self.case, self._engine
         present: Mask = np.all(np.isfinite(state), axis=1)
         flat = s.blank(len(state), robots=0)
@@ -105,7 +105,7 @@ class Stepper:
 
 @dataclass(slots=True)
 class _Told:
-    """What each agent is told to want, whoever decided it.
+    """The desired acceleration given to each agent.
 
     Attributes:
         accelerations_told: (N, 2), m/s^2.
@@ -116,19 +116,19 @@ class _Told:
 
 @dataclass(frozen=True, slots=True)
 class _Obedient:
-    """A policy that wants what it is told; its contacts are as stiff as its agents' (1/s^2)."""
+    """A policy that returns given accelerations; contact stiffness is per agent (1/s^2)."""
 
     told: _Told
     contact_stiffness: float = field(default=0.0)
 
     def accelerations(self, view: CrowdView) -> Array:
-        """What was told."""
+        """Return the given accelerations."""
         del view
         return self.told.accelerations_told
 
 
 def _engine(case: Case, stiffness: Array) -> tuple[CrowdEngine, _Told]:
-    """Our engine in the world of a case, which decides at every tick, and what it is to want."""
+    """Return our engine in a case's world, deciding at every tick, and its given accelerations."""
     told = _Told(np.zeros((len(stiffness), 2)))
     kinds, policy = np.unique(stiffness, return_inverse=True)
     agents = replace(case.agents, policy=policy.astype(np.int64),

@@ -1,4 +1,4 @@
-"""Names of the commands, found without importing any."""
+"""Names of the commands, found without importing them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def command_names() -> list[str]:
-    """Names of all commands, sorted."""
+    """Return the names of all commands, sorted."""
     modules = (
         m.name for m in pkgutil.iter_modules([str(Path(__file__).parent.parent / "commands")])
     )

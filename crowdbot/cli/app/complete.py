@@ -17,7 +17,7 @@ from typing import Any
 
 _CACHE = "completion"
 
-#: Parameter of a command -> what it is named by.
+#: Parameter of a command -> its category of names.
 OFFERS = {
     "spec": "suites",
     "suites": "suites",
@@ -41,7 +41,7 @@ def offer(name: str) -> Callable[[Any, Any, str], list[str]] | None:
         del param
         try:
             names = _scenarios(ctx) if what == "scenarios" else _kinds()[what]
-        except Exception:  # a tab key must never print a traceback
+        except Exception:  # completion must never print a traceback
             return []
         return [n for n in names if n.startswith(incomplete)]
 
@@ -49,13 +49,13 @@ def offer(name: str) -> Callable[[Any, Any, str], list[str]] | None:
 
 
 def _scenarios(ctx: Any) -> list[str]:
-    """Ids of the suite that was named before."""
+    """Return the ids of the suite named earlier on the command line."""
     spec = ctx.params.get("spec") or ctx.params.get("suite") or ""
     return [] if not spec else suite_ids(str(spec))
 
 
 def suite_ids(spec: str) -> list[str]:
-    """Ids of all scenarios of a file or packaged suite."""
+    """Return the ids of all scenarios of a file or packaged suite."""
     path = Path(spec)
     if path.suffix in (".yaml", ".yml"):
         about = path.stat()
@@ -126,5 +126,5 @@ def _kept(what: str, key: str, make: Callable[[], Any]) -> Any:
         part.write_text(json.dumps(made), encoding="utf-8")
         part.replace(file)
     except OSError:
-        pass  # a home that cannot be written only makes the tab key slower
+        pass  # without a writable home, completion is only slower
     return made

@@ -1,4 +1,4 @@
-"""What is said of errors that nobody foresaw, here or in a plugin's thread."""
+"""Messages for unexpected errors, here or in a plugin's thread."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.errors import printable
 
 
 def internal_error(error: Exception) -> str:
-    """One line; it names the plugins of others, which run in this process and can break it."""
+    """Return one line that names other plugins, which run in this process and can break it."""
     from importlib.metadata import entry_points
 
     text = (
@@ -35,20 +35,19 @@ def internal_error(error: Exception) -> str:
 
 
 def left_by(error: BaseException) -> str:
-    """What a plugin raised to leave crowdbot, where no call expected it.
+    """Describe an exception that a plugin raised to exit crowdbot outside any call.
 
-    Empty where it was the user, or the command line itself, whose own ``SystemExit`` comes from
-    click.
+    Empty for the user's interrupt, or for the command line's own ``SystemExit`` from click.
     """
     turned = error.__context__.__cause__ if error.__context__ else None
-    if isinstance(turned, KeyboardInterrupt):  # typer makes an exit of it
+    if isinstance(turned, KeyboardInterrupt):  # typer converts it to an exit
         error = turned
     place = "" if isinstance(error, UserInterrupt) else culprit(error)
     return f"error: a plugin raised {error_text(error)}{place}" if place else ""
 
 
 def tell_of_threads() -> None:
-    """An exception in a thread that a plugin started is one line, as any other is."""
+    """Print an exception in a plugin's thread as one line, like any other."""
     usual = threading.excepthook is threading.__excepthook__
     if usual and not os.environ.get("CROWDBOT_DEBUG"):
         threading.excepthook = _tell

@@ -1,4 +1,4 @@
-"""The command line as typer sees it: commands are modules, imported when they are called."""
+"""The command line in typer: commands are modules, imported when called."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SETTINGS: dict[str, Any] = {
 }
 
 
-#: Columns; 80 have room for the longest option beside its type and what it does.
+#: Columns; 80 fit the longest option with its type and description.
 _NARROW = 80
 
 
@@ -30,13 +30,13 @@ def run(words: list[str]) -> None:
     """Run a command line.
 
     Raises:
-        SystemExit: when it is done.
+        SystemExit: always, with the exit code.
     """
     get_command(_app())(words, prog_name="crowdbot")
 
 
 class _Commands(TyperGroup):
-    """The commands are the modules of this package."""
+    """A group whose commands are the modules of this package."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         del ctx
@@ -51,7 +51,7 @@ class _Commands(TyperGroup):
 
 
 def load(name: str) -> Any:
-    """The command of one module, with ``-v`` and ``-q`` added."""
+    """Return the command of a module, with ``-v`` and ``-q`` added."""
     module = name.replace("-", "_")
     found = getattr(importlib.import_module(f"crowdbot.cli.commands.{module}"), module)
     if not isinstance(found, typer.Typer):
@@ -62,7 +62,7 @@ def load(name: str) -> Any:
     command.name = name
     for one in (command, *getattr(command, "commands", {}).values()):
         one.help = _unwrapped(one.help)
-        if one.help and not one.short_help:  # or else click would leave out its end
+        if one.help and not one.short_help:  # otherwise click would truncate it
             one.short_help = one.help.partition("\n\n")[0]
         if _is_narrow():
             one.rich_markup_mode = None
@@ -75,12 +75,12 @@ def load(name: str) -> Any:
 
 
 def _is_narrow() -> bool:
-    """Whether a table of options would cut their names off, which plain help does not."""
+    """Return True if a table of options would truncate names, which plain help does not."""
     return shutil.get_terminal_size().columns < _NARROW
 
 
 def _unwrapped(text: str | None) -> str | None:
-    """Paragraphs of a docstring as single lines, which help wraps to the width of the screen."""
+    """Return a docstring's paragraphs as single lines, which help wraps to the screen's width."""
     if text is None:
         return None
     return "\n\n".join(" ".join(part.split("\n")) for part in text.split("\n\n"))
@@ -105,7 +105,7 @@ _Quiet = Annotated[
     typer.Option(
         "-q",
         "--quiet",
-        help="Say only what went wrong.",
+        help="Print errors only.",
         callback=_set_level(logging.WARNING),
         expose_value=False,
     ),
@@ -113,7 +113,7 @@ _Quiet = Annotated[
 
 
 def _common(verbose: _Verbose = False, quiet: _Quiet = False) -> None:
-    """Options that every command has."""
+    """Add the options that every command has."""
 
 
 def _verbosity_params() -> list[Any]:
@@ -149,7 +149,7 @@ def _app() -> typer.Typer:
     def crowdbot(
         verbose: _Verbose = False, quiet: _Quiet = False, version: _Version = False
     ) -> None:
-        """A benchmark for robots that drive through dense human crowds.
+        """A benchmark for robots that drive through dense crowds.
 
         Example: crowdbot simulate challenge-2020 in-d0125-slow-c01-r02 --planner dwa
         """

@@ -1,4 +1,4 @@
-"""``crowdbot audit``: whether a suite can tell floors from baselines."""
+"""``crowdbot audit``: check that a suite separates floors from baselines."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def audit(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The audit as JSON on stdout.")] = False,
 ) -> None:
-    """Run floors, baselines and ceilings; exit code 1 if the suite cannot tell them apart.
+    """Run floors, baselines and ceilings; exit code 1 if the suite cannot separate them.
 
     Example: crowdbot audit challenge-2020 --scenarios 18 --jobs 2
     """
@@ -78,7 +78,7 @@ def audit(
 
 
 def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
-    """The audit of the runs of a plan, and where it was written."""
+    """Return the audit of a plan's runs, and its file."""
     from crowdbot.core.results.results import Results
     from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, write_audit
@@ -92,7 +92,7 @@ def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
 
 
 def _seeing_floors(registry: Registry) -> list[str]:
-    """Labels of the floors that read any sensor."""
+    """Return the labels of floors that read any sensor."""
     from crowdbot.core.planning.resolve import kinds_of_role, resolve_planner
 
     floors = [resolve_planner(kind, registry) for kind in kinds_of_role("floor", registry)]
@@ -100,7 +100,7 @@ def _seeing_floors(registry: Registry) -> list[str]:
 
 
 def _of(results: Results, plan: Plan) -> Results:
-    """The runs and failures of a plan, out of all that are below its root."""
+    """Return the runs and failures of a plan, among all below its root."""
     keys = {run.key for run in plan.runs}
     folders = {run.directory.relative_to(plan.out).as_posix() for run in plan.runs}
     runs = tuple(r for r in results.runs if r.run_id in keys)

@@ -1,4 +1,4 @@
-"""``crowdbot bundle``: pack the runs of one planner into an archive that others can check."""
+"""``crowdbot bundle``: pack the runs of one planner into a checkable archive."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def bundle(
 ) -> None:
     """Pack scores, hashes, scenarios and provenance of one planner's runs into one archive.
 
-    The same runs give the same bytes. crowdbot verify checks the archive and makes some of its
-    runs again.
+    The same runs give the same bytes. crowdbot verify checks the archive and repeats some of its
+    runs.
 
     Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --check
     """

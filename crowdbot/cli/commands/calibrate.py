@@ -1,4 +1,4 @@
-"""``crowdbot calibrate``: fit the numbers of a crowd to people who were recorded."""
+"""``crowdbot calibrate``: fit the parameters of a crowd to recorded people."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def calibrate(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """Fit a crowd to recorded people and write it as a part; goes on where it was stopped.
+    """Fit a crowd to recorded people and write it as a part; resumes an interrupted fit.
 
     Example: crowdbot calibrate power_law --fit costs.avoid.k=0.2..4 --generations 20 --jobs 2
     """
@@ -82,7 +82,7 @@ def calibrate(
     parameters = parameters_of(open_crowd(task.crowd, registry, task.overrides), fit or ())
     if not parameters:
         raise InputError(f"{crowd}: it has no number to fit")
-    ceiling = task.reference.ceiling.score  # reads the files, before anything is simulated
+    ceiling = task.reference.ceiling.score  # reads the files before simulating
     typer.echo(f"{len(parameters)} numbers, recorded people reach {ceiling:.3f}", err=True)
     found = run(
         task, parameters, out.with_suffix(".fit.jsonl"), generations=generations,

@@ -1,4 +1,4 @@
-"""``crowdbot campaign``: suites × planners × seeds; only what is missing is run."""
+"""``crowdbot campaign``: suites × planners × seeds; only missing runs are executed."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def campaign(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """Run every scenario with every planner and seed; what is complete is not run again.
+    """Run every scenario with every planner and seed; completed runs are skipped.
 
     Example: crowdbot campaign challenge-2020 --planner dwa --planner goal_seek --jobs 2
     """

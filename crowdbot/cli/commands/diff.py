@@ -1,4 +1,4 @@
-"""``crowdbot diff``: two scenarios or two runs, field by field."""
+"""``crowdbot diff``: compare two scenarios or two runs, field by field."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from crowdbot.core.runs.diff_side import DiffSide
     from crowdbot.core.support.json_diff import Difference
 
-#: A longer value moves its neighbour to the right, and no others.
+#: A longer value moves only its right neighbour.
 _WIDEST = 72
 _SIDE = "SUITE/ID, FILE#ID, a file with one scenario, or a run directory."
 

@@ -1,4 +1,4 @@
-"""``crowdbot docs``: the documents that came with crowdbot, without a network."""
+"""``crowdbot docs``: crowdbot's documentation, offline."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import typer
 
 from crowdbot.errors import InputError, UnknownNameError
 
-#: Characters that are shown of a line that holds a text.
+#: Characters shown of a line that contains the search text.
 _EXCERPT = 120
-#: Pages at the top, and folders, as the index has them: what one learns from before what one asks.
+#: Top pages and folders in the order of the index: tutorials before reference.
 _ORDER = (
     "index",
     "tutorial",
@@ -36,7 +36,7 @@ def docs(
     path: Annotated[bool, typer.Option("--path", help="Print only where the page is.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """List the pages of the documentation, print one, or search them. Needs no network.
+    """List the pages of the documentation, print one, or search them. Works offline.
 
     Example: crowdbot docs howto/score_own_data
     """
@@ -65,7 +65,7 @@ def docs(
 
 
 def documents() -> Path:
-    """The folder of the pages: inside an installed package, else beside it.
+    """Return the folder of the pages: inside an installed package, else beside it.
 
     Raises:
         InputError: there is neither.
@@ -78,7 +78,7 @@ def documents() -> Path:
 
 
 def pages(folder: Path) -> list[str]:
-    """Names of all pages: the index first, then folders in its order."""
+    """Return the names of all pages: the index first, then folders in its order."""
     names = (f.relative_to(folder).with_suffix("").as_posix() for f in folder.rglob("*.md"))
     return sorted(names, key=_place)
 
@@ -103,7 +103,7 @@ def _title(file: Path) -> str:
 
 
 def _excerpt(line: str, text: str) -> str:
-    """A line, or of a long one what stands around the text, in whole words."""
+    """Return a line, or the whole words around the match if it is long."""
     if len(line) <= _EXCERPT:
         return line
     at = max(line.casefold().find(text.casefold()), 0)

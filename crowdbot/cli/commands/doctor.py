@@ -1,4 +1,4 @@
-"""``crowdbot doctor``: whether this machine can do what crowdbot needs."""
+"""``crowdbot doctor``: check that this machine can run crowdbot."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ def doctor(
     ] = True,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """Look at versions, graphics, compiled kernels, cores and disk, and simulate for a moment.
+    """Check versions, graphics, compiled kernels, cores and disk, and simulate for a moment.
 
-    Ends with 1 if something is missing that runs need.
+    Exit code 1 if something is missing that runs need.
 
     Example: crowdbot doctor --no-self-test
     """

@@ -63,7 +63,7 @@ def commit(
             hidden.write_change(change)
         except BaseException:
             with contextlib.suppress(OSError):
-                path.unlink()  # a secret of a commitment that nobody has seen
+                path.unlink()  # a secret whose commitment was not published
             raise
     if as_json:
         document = {"suite": chosen.suite, "commitment": chosen.commitment, "secret": str(path)}
@@ -115,7 +115,7 @@ def check(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Say whether the draws of a suite are hidden, or revealed as committed to.
+    """Show if the draws of a suite are hidden, or revealed as committed.
 
     Exit code 1 if seed and salt do not fit, or the commitment is not the given one.
 

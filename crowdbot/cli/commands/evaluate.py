@@ -137,7 +137,7 @@ def evaluate(
 
 
 def _one(request: RescoreRequest, registry: Registry, as_json: bool) -> Rescored:
-    """The only run; what is wrong with it is an error, and with --json a document, too."""
+    """Evaluate the only run; its error is raised, and also printed with --json."""
     from crowdbot.core.runs.recordings import RecordingSource
     from crowdbot.core.runs.rescore import IncompleteError, Rescored, rescore
 
@@ -170,7 +170,7 @@ def _check_usage(
 
 
 def _chosen(registry: Registry, metrics: str, variant: str, experimental: bool) -> tuple[str, ...]:
-    """Patterns of the metrics; wrong names are found before the first run is read."""
+    """Return the patterns of metrics; unknown names are reported before the first run is read."""
     from crowdbot.core.scoring.evaluate import metric_specs
 
     known = registry.components("metric")
@@ -189,7 +189,7 @@ def _chosen(registry: Registry, metrics: str, variant: str, experimental: bool) 
 
 
 def _each(requests: list[RescoreRequest], registry: Registry, jobs: int) -> list[Rescored]:
-    """All runs, with progress, then what went wrong."""
+    """Evaluate all runs, with progress, then print the errors."""
     from crowdbot.cli.output.evaluate_output import show_progress
     from crowdbot.core.runs.rescore import rescore_all
 

@@ -1,4 +1,4 @@
-"""``crowdbot expand``: the scenarios of a suite, their hashes, and one of them in full."""
+"""``crowdbot expand``: list the scenarios of a suite and their hashes, or print one in full."""
 
 from __future__ import annotations
 
@@ -57,10 +57,10 @@ def expand(
 
 
 def _matching(expansion: Expansion, only: str | None) -> list[Scenario]:
-    """Scenarios whose id fits a pattern.
+    """Return scenarios whose id matches a pattern.
 
     Raises:
-        UnknownNameError: none does.
+        UnknownNameError: no id matches.
     """
     from crowdbot.core.scenarios.library import select
     from crowdbot.errors import UnknownNameError

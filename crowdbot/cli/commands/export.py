@@ -1,4 +1,4 @@
-"""``crowdbot export``: recordings for other tools."""
+"""``crowdbot export``: convert recordings for other tools."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class ExportFormat(StrEnum):
-    """What other tools read."""
+    """Formats of other tools."""
 
     rosbag1 = "rosbag1"
     rosbag2 = "rosbag2"
@@ -26,7 +26,7 @@ class ExportFormat(StrEnum):
 
 
 class TreeChoice(StrEnum):
-    """Whose pose the tf tree has."""
+    """Source of the pose in the tf tree."""
 
     truth = "truth"
     odometry = "odometry"
@@ -97,20 +97,20 @@ def export(
 
 
 def _target(run: Path, to: ExportFormat) -> Path:
-    """Beside the recording, named by the format."""
+    """Return the output path beside the recording, named by the format."""
     stem = run.resolve().with_suffix("") if run.is_file() else run.resolve()
     return stem.with_name(f"{stem.name}-{to.value}{_ENDINGS.get(to, '')}")
 
 
 def _whole(target: Path, write: Callable[[Path], None]) -> None:
-    """Write under a temporary name, then rename: a file or a folder."""
+    """Write a file or folder under a temporary name, then rename it."""
     from crowdbot.errors import InputError
 
     folder = target.with_name(f".{target.name}.part")
     try:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        write(folder / target.name)  # files in it are called by its name
+        write(folder / target.name)  # files in it use its name
         (folder / target.name).rename(target)
     except OSError as error:
         raise InputError(f"{target}: cannot be written: {error.strerror or error}") from error
@@ -168,7 +168,7 @@ def _need_pyarrow() -> None:
 
 
 def _description(run: Path) -> str | None:
-    """The robot's URDF; None where its scenario names a plugin that is not installed."""
+    """Return the robot's URDF; None if its scenario names a plugin that is not installed."""
     from crowdbot.cli.shared.options import installed
     from crowdbot.core.robots import build_model
     from crowdbot.core.robots.task import sensor_infos

@@ -1,4 +1,4 @@
-"""``crowdbot export-map``: the place of a scenario as a map for nav2, and as GeoJSON."""
+"""``crowdbot export-map``: export the place of a scenario as a nav2 map and as GeoJSON."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.errors import UsageError
 if TYPE_CHECKING:
     from crowdbot.dsl.scenario.scenario import Scenario
 
-#: Of a scenario without a robot: what people of usual height walk under is not in the map, m.
+#: Default clearance height without a robot: people walk under higher obstacles, m.
 _HEAD = 1.7
 
 
@@ -74,7 +74,7 @@ def export_map(
 
 
 def _inside(scenario: Scenario) -> list[tuple[float, float]]:
-    """Places from which ways lead: starts of robots, or else the middles of zones."""
+    """Return positions on the floor: starts of robots, or else centres of zones."""
     starts = [robot.task.start[:2] for robot in scenario.robots.values()]
     zones = scenario.environment.zones.values()
     middles = [(0.5 * (z.x[0] + z.x[1]), 0.5 * (z.y[0] + z.y[1])) for z in zones]
@@ -82,7 +82,7 @@ def _inside(scenario: Scenario) -> list[tuple[float, float]]:
 
 
 def _height(scenario: Scenario, registry: object) -> float:
-    """What begins above the highest robot is left away, m."""
+    """Return the height above which obstacles are left out, m: the top of the highest robot."""
     from crowdbot.core.registry.registry import Registry
     from crowdbot.core.robots import build_model
 

@@ -1,4 +1,4 @@
-"""``crowdbot export-ros``: what tools of ROS need to know of crowdbot."""
+"""``crowdbot export-ros``: export crowdbot's messages and layout for ROS tools."""
 
 from __future__ import annotations
 

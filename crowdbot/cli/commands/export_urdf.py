@@ -1,4 +1,4 @@
-"""``crowdbot export-urdf``: a robot's body and sensor frames for the tools of ROS."""
+"""``crowdbot export-urdf``: export a robot's body and sensor frames for ROS tools."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``crowdbot info``: what is in a recording."""
+"""``crowdbot info``: show the contents of a recording."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def info(
     ],
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """Say what is in a recording: topics with rates and sizes, duration, hash, complete or not.
+    """Show the contents of a recording: topics with rates and sizes, duration, hash, completeness.
 
     Example: crowdbot info runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0/run.mcap
     """
@@ -63,7 +63,7 @@ def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
 
 
 def _hash(recording: Recording) -> str | None:
-    """The trajectory hash; None where there is not a single sample."""
+    """Return the trajectory hash; None without samples."""
     from crowdbot.core.runs.read_and_score import recorded_run
     from crowdbot.errors import InputError
 

@@ -1,4 +1,4 @@
-"""``crowdbot leaderboard``: one page from a folder of bundles."""
+"""``crowdbot leaderboard``: build one page from a folder of bundles."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def leaderboard(
 ) -> None:
     """Rank the bundles of a folder, by edition and class, on one offline page.
 
-    Bundles that cannot be told apart share a rank. Scores of older versions of a metric are
-    computed again where a bundle has recordings, and left out where not.
+    Bundles without a significant difference share a rank. Scores of older metric versions are
+    computed again if a bundle has recordings, and otherwise left out.
 
     Example: crowdbot leaderboard bundles --out leaderboard.html --by spl
     """

@@ -1,4 +1,4 @@
-"""``crowdbot lock``: freeze the agents and hashes of a suite, or check that they still fit."""
+"""``crowdbot lock``: freeze the agents and hashes of a suite, or check them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def lock(
         bool, typer.Option("--check", help="Write nothing; exit 1 if the lock does not fit.")
     ] = False,
     redraw: Annotated[
-        bool, typer.Option("--redraw", help="Draw all agents anew, also where nothing changed.")
+        bool, typer.Option("--redraw", help="Sample all agents again, even if nothing changed.")
     ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

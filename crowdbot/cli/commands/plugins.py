@@ -1,4 +1,4 @@
-"""``crowdbot plugins``: what is installed, what it can be told, whether it keeps its promises."""
+"""``crowdbot plugins``: list installed plugins, show their components, and check them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def listing(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """List plugins, healthy or not, and what they provide; -v shows tracebacks.
+    """List plugins, working or not, and their components; -v shows tracebacks.
 
     Example: crowdbot plugins show lidar2d
     """
@@ -53,7 +53,7 @@ def show(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Show a component: summary, fields, an example, where it is described and built.
+    """Show a component: summary, fields, an example, documentation and source.
 
     Example: crowdbot plugins show ttca_dca
     """
@@ -81,7 +81,7 @@ def check(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Check that components keep crowdbot's contracts; exit code 1 when a check fails.
+    """Check that components satisfy crowdbot's contracts; exit code 1 if a check fails.
 
     Without NAME, the plugins given by --plugin are checked.
 
@@ -116,7 +116,7 @@ def new(
         Path | None, typer.Option(metavar="DIR", help="Folder to write; default: crowdbot-NAME.")
     ] = None,
 ) -> None:
-    """Write a package with one component of each kind, a suite and tests, to start from.
+    """Write a starter package with one component of each kind, a suite and tests.
 
     Example: crowdbot plugins new acme
     """

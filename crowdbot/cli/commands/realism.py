@@ -1,4 +1,4 @@
-"""``crowdbot realism``: how human a crowd is, beside people who were recorded in corridors."""
+"""``crowdbot realism``: compare a crowd with people recorded in corridors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from crowdbot.core.realism.reference import RealismReference
     from crowdbot.core.registry.registry import Registry
 
-#: More crowds than these are compared at the first draw only.
+#: With more crowds than this, only the first draw is compared.
 _FEW = 4
 
 
@@ -90,7 +90,7 @@ def _simulated(
     overrides: Sequence[str],
     seeds: Sequence[int],
 ) -> list[Realism]:
-    """One crowd by name, or all different ones of a suite."""
+    """Simulate one crowd by name, or all different crowds of a suite."""
     from crowdbot.core.realism.crowds import different_crowds
     from crowdbot.core.realism.measure import measure
     from crowdbot.core.realism.model import model_of
@@ -103,7 +103,7 @@ def _simulated(
         crowds = different_crowds(open_spec(text, registry, overrides).scenarios)
         if not crowds:
             raise InputError(f"{text}: there are no people in it")
-        if len(crowds) > _FEW:  # a minute for a suite, too
+        if len(crowds) > _FEW:  # a minute for a suite too
             seeds = seeds[:1]
     return [
         measure(name, model_of(crowd, registry), beside, seeds) for name, crowd in crowds.items()
@@ -111,7 +111,7 @@ def _simulated(
 
 
 def _of_runs(path: Path, beside: RealismReference) -> Realism:
-    """What people in finished runs did, all runs together."""
+    """Measure the people in finished runs, all runs together."""
     from crowdbot.core.realism.measure import measure_tracks
     from crowdbot.core.realism.recordings import read_runs
 

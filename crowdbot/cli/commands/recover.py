@@ -1,4 +1,4 @@
-"""``crowdbot recover``: a complete file of a recording that was cut off."""
+"""``crowdbot recover``: restore an interrupted recording."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def recover(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """Make a complete recording of an interrupted one; all but its last second is kept.
+    """Make a complete recording from an interrupted one; all but its last second is kept.
 
     Example: crowdbot recover runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0.partial
     """

@@ -1,4 +1,4 @@
-"""``crowdbot report``: one offline page about the runs of a suite."""
+"""``crowdbot report``: build one offline page about the runs of a suite."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from crowdbot.core.statistics.audit import Audit
 
 _REFERENCE = " (reference)"
-#: So many damaged runs are named.
+#: Number of damaged runs that are named.
 _SHOWN = 3
 
 
@@ -99,17 +99,17 @@ def report(
 
 
 def _left_out(results: Results) -> list[str]:
-    """What the page says of damaged runs."""
+    """Return the page's text about damaged runs."""
     lost = [d.directory for d in results.damaged]
     some = ", ".join(lost[:_SHOWN]) + (", …" if len(lost) > _SHOWN else "")
     return [f"damaged: {plural(len(lost), 'run')} left out: {some}"] if lost else []
 
 
 def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: Path) -> Results:
-    """The runs of one suite and some planners.
+    """Return the runs of one suite and some planners.
 
     Raises:
-        InputError: there is none, or there are several suites to choose from.
+        InputError: there are no runs, or several suites.
         UnknownNameError: no run has such a suite or planner.
     """
     suites = dict.fromkeys([*(r.suite for r in results.runs), *(f.suite for f in results.failures)])
@@ -146,7 +146,7 @@ def _only(results: Results, suite: str, planners: set[str]) -> Results:
 
 
 def _with_reference(results: Results, given: Results | None) -> tuple[Results, tuple[str, ...]]:
-    """Results with those of others for the same scenarios, under names of their own."""
+    """Return results with reference results for the same scenarios, under separate names."""
     if given is None:
         return results, ()
     suite = results.runs[0].suite
@@ -165,7 +165,7 @@ def _with_reference(results: Results, given: Results | None) -> tuple[Results, t
 
 
 def _audit(given: Path | None, folder: Path) -> Audit | None:
-    """The audit that somebody names, or the one beside the runs.
+    """Return the given audit, or the one beside the runs.
 
     Raises:
         InputError: it cannot be read.
@@ -177,7 +177,7 @@ def _audit(given: Path | None, folder: Path) -> Audit | None:
 
 
 def _replays(results: Results, root: Path, out: Path) -> dict[str, str]:
-    """Run id -> address of its replay page as seen from the report, where there is one."""
+    """Return run id -> address of its replay page relative to the report, if it exists."""
     from crowdbot.core.runs.run_directory import REPLAY
 
     pages = {r.run_id: root / r.directory / REPLAY for r in results.runs}
@@ -222,7 +222,7 @@ def _tell(
 
 
 def _tell_of(contents: Contents) -> None:
-    """What the page says first, on stderr."""
+    """Print the page's main findings on stderr."""
     counts = contents.counts()
     said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
     print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""``crowdbot results``: quick questions to the results of a campaign."""
+"""``crowdbot results``: query the results of a campaign."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class _Tables(TyperGroup):
-    """The tables of results; where a folder is named, it is told where folders go."""
+    """The commands for results, with a hint if a folder is given as a command."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         found = super().get_command(ctx, cmd_name)
@@ -40,7 +40,7 @@ _Out = Annotated[
 ]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
-#: What is shown of every planner when nobody asks for more.
+#: Scores shown for every planner by default.
 _HEADLINES = (
     *(s.metric for s in MAIN_SCORES),
     "success", "collision_count", "min_clearance", "relative_time_to_goal", "delay",
@@ -140,7 +140,7 @@ def failures(
     ] = False,
     as_json: _Json = False,
 ) -> None:
-    """List the runs that a campaign could not make.
+    """List the runs that a campaign failed to make.
 
     Example: crowdbot results failures --runs runs --traceback
     """
@@ -169,7 +169,7 @@ def atlas(
     md: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Markdown.")] = None,
     as_json: _Json = False,
 ) -> None:
-    """Say what changes each score, whether it tells floors from planners, and what repeats it.
+    """Show what drives each metric, and which metrics are redundant.
 
     Example: crowdbot results atlas --runs runs --floor goal_seek --md atlas.md
     """
@@ -188,7 +188,7 @@ def atlas(
 
 
 def _with_scales(found: Results) -> Results:
-    """Results with what the installed metrics say of their values."""
+    """Return results with the installed metrics' scales."""
     from crowdbot.cli.shared.options import installed
     from crowdbot.core.scoring.score_scale import score_scales
 
@@ -196,7 +196,7 @@ def _with_scales(found: Results) -> Results:
 
 
 def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
-    """Runs of some planners that ended in some way, with their scores and failures.
+    """Return runs of some planners with some statuses, with their scores and failures.
 
     Raises:
         UnknownNameError: no run has such a planner or status.
@@ -229,7 +229,7 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
 
 
 def _worst(found: Results, metric: str, variant: str | None, count: int) -> list[dict[str, Any]]:
-    """Runs with the worst values of one metric; those without a value come first."""
+    """Return runs with the worst values of one metric; missing values come first."""
     from crowdbot.core.results.tables import score_lines
     from crowdbot.core.statistics.groups import by_group
 

@@ -1,4 +1,4 @@
-"""``crowdbot schema``: JSON Schemas of documents, made from the components that are installed."""
+"""``crowdbot schema``: print JSON Schemas of documents, from the installed components."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class DocumentKind(StrEnum):
-    """What a schema describes."""
+    """Kinds of documents with a schema."""
 
     SUITE = "suite"
     SCENARIO = "scenario"
@@ -46,7 +46,7 @@ def schema(
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
 ) -> None:
-    """Print the JSON Schema of a document, for editors; plugins' components are in it.
+    """Print the JSON Schema of a document, for editors, including plugins' components.
 
     Example: crowdbot schema suite --out suite.schema.json
     """
@@ -63,7 +63,7 @@ def schema(
 
 
 def _describable(plugin: list[Path] | None, no_plugins: bool) -> Registry:
-    """What is installed, but for plugins that have no schema; each of them is a warning."""
+    """Return the installed registry without plugins whose schemas fail; each gives a warning."""
     from crowdbot.core.registry.schema_check import describable
 
     found = installed(plugin, no_plugins)
@@ -75,7 +75,7 @@ def _describable(plugin: list[Path] | None, no_plugins: bool) -> Registry:
 
 
 def build(document: str, registry: Registry, *, canonical: bool = False) -> dict[str, Any]:
-    """The schema of a kind of document."""
+    """Return the schema of a kind of document."""
     from crowdbot.dsl.schema import documents as schemas
 
     metrics = registry.components("metric")
@@ -92,5 +92,5 @@ def build(document: str, registry: Registry, *, canonical: bool = False) -> dict
 
 
 def to_text(schema: dict[str, Any]) -> str:
-    """JSON as it is printed and committed."""
+    """Return JSON as it is printed and committed."""
     return json.dumps(schema, indent=1, ensure_ascii=False) + "\n"

@@ -1,4 +1,4 @@
-"""``crowdbot serve``: programs outside drive the robot of a run."""
+"""``crowdbot serve``: let external programs drive the robot of a run."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def serve(
     no_plugins: NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
-    """Serve one scenario as a rosbridge server: a program outside drives the robot.
+    """Serve one scenario as a rosbridge server: an external program drives the robot.
 
     Example: crowdbot serve challenge-2020 in-d0125-slow-c01-r02 --port 9090
     """
@@ -119,7 +119,7 @@ def serve(
 
 @dataclass(frozen=True, kw_only=True)
 class _What:
-    """The suite, and the number of the scenario to begin with."""
+    """The suite, and the index of the first scenario."""
 
     registry: Registry
     expansion: Expansion
@@ -128,7 +128,7 @@ class _What:
 
 @dataclass(frozen=True, kw_only=True)
 class _Serving:
-    """What the options say of the runs."""
+    """The run options of ``crowdbot serve``."""
 
     out: Path
     record: RecordChoice
@@ -148,7 +148,7 @@ def _what(
     expansion = open_spec(spec, registry, overrides or ())
     whole = scenario is None and not expansion.single
     chosen = expansion.scenarios[0] if whole else pick(expansion, scenario)
-    check_one_robot(chosen, "'crowdbot serve'")  # before anybody is asked to connect
+    check_one_robot(chosen, "'crowdbot serve'")  # before anyone is asked to connect
     first = expansion.scenarios.index(chosen)
     return _What(registry=registry, expansion=expansion, first=first)
 

@@ -120,10 +120,10 @@ def simulate(
 
 
 def _one_or_several(planners: Sequence[str] | None) -> str:
-    """The planner of all robots, or those of each, as `resolve_planner` takes them.
+    """Return the planner of all robots, or of each, in the format of `resolve_planner`.
 
     Raises:
-        UsageError: there are several, and one does not say of which robot it is.
+        UsageError: there are several, and one does not name its robot.
     """
     from crowdbot.core.planning.fleet_choice import planners_by_robot
     from crowdbot.errors import UsageError

@@ -1,4 +1,4 @@
-"""``crowdbot validate``: every error of a document, without building anything."""
+"""``crowdbot validate``: report every error of a document, without building anything."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 
 class Format(StrEnum):
-    """How errors are written."""
+    """Output formats for errors."""
 
     TEXT = "text"
     JSON = "json"
@@ -30,7 +30,7 @@ def validate(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
 ) -> None:
-    """Check suites and scenarios; report every error with its place.
+    """Check suites and scenarios; report every error with its position.
 
     Example: crowdbot validate challenge-2020 my_suite.yaml
     """

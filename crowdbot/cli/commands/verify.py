@@ -1,4 +1,4 @@
-"""``crowdbot verify``: check a bundle and make a random sample of its runs again."""
+"""``crowdbot verify``: check a bundle and repeat a random sample of its runs."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def verify(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """Check a bundle, and make some of its runs again; exit code 1 if anything does not fit.
+    """Check a bundle and repeat some of its runs; exit code 1 if anything does not match.
 
     Example: crowdbot verify team.cbz --sample 10 --seed 7
     """
@@ -98,15 +98,15 @@ def verify_bundle(
     sample: int | None,
     seed: int | None,
 ) -> dict[str, Any]:
-    """What is said about a bundle, as a document: `crowdbot bundle --check` says the same.
+    """Return the verdict on a bundle as a document, also used by `crowdbot bundle --check`.
 
     Args:
         bundle: the archive.
         registry: the installed components.
-        suite: as the option of the same name.
-        planner: what the option ``--source`` names, and where it runs.
-        sample: how many runs to make again; None: all.
-        seed: which ones; None: a new one.
+        suite: value of the option ``--suite``.
+        planner: value of the option ``--source``, and where it runs.
+        sample: number of runs to repeat; None: all.
+        seed: seed of the sample; None: random.
     """
     from crowdbot.core.bundle.archive import open_archive
     from crowdbot.core.bundle.verification import content_hash
@@ -152,7 +152,7 @@ def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion
     expansion = open_spec(given or name, registry)
     if expansion.suite_id != name:
         raise InputError(f"{archive.path} is of suite '{name}', not of '{expansion.suite_id}'")
-    if expansion.commitment:  # hidden draws have no bundle: what follows refuses them
+    if expansion.commitment:  # bundles of hidden draws are refused below
         typer.echo(f"{name}: seed and salt fit {expansion.commitment}", err=True)
     return expansion
 
@@ -169,7 +169,7 @@ def _make_reruns(
     from crowdbot.cli.shared.progress import show_progress
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict, verdict_of
 
-    import_simulate()  # says what is missing where Drake cannot be imported
+    import_simulate()  # reports what is missing if Drake cannot be imported
     from crowdbot.core.campaign.verify import (
         NotRunnable,
         RerunSetup,
@@ -211,7 +211,7 @@ def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:
 
 
 def print_verdict(document: dict[str, Any]) -> None:
-    """What was found, for people."""
+    """Print the findings in readable form."""
     for finding in document["findings"]:
         typer.echo(printable(finding))
     for name, relation in document["runs"].items():

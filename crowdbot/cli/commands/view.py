@@ -1,4 +1,4 @@
-"""``crowdbot view``: a scenario from above before it is run; the replay page of a run."""
+"""``crowdbot view``: draw a scenario from above before it is run, or open the replay of a run."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _play(run: Path, port: int) -> None:
 def _replay(
     names: list[str], out: Path | None, plugin: list[Path] | None, *, no_plugins: bool
 ) -> Path:
-    """The page that a run has; of several runs, or with ``out``, a new one."""
+    """Return a run's page; for several runs, or with ``out``, a new one."""
     folders = [Path(name) for name in names]
     for folder in folders:
         if not folder.is_dir():

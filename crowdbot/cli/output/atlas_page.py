@@ -18,12 +18,12 @@ _INTRODUCTION = """# Atlas of scores
 - *repeats*: scores whose ranks agree (at least 0.8); a minus: in reverse.
 """
 _HEAD = ("score", "better", "runs", "moved by", "duration", "planner beats floor", "repeats")
-#: Axes that move a score by less are left out.
+#: Axes with a smaller effect on a score are left out.
 _LITTLE = 0.05
 
 
 def atlas_page(entries: Sequence[AtlasEntry]) -> str:
-    """One table; the four scores come first."""
+    """Return one table; the four main scores come first."""
     rows = [_HEAD, ("---",) * len(_HEAD), *map(_row, entries)]
     return "\n".join([_INTRODUCTION, *(f"| {' | '.join(row)} |" for row in rows), ""])
 

@@ -1,4 +1,4 @@
-"""The conformance kit from the shell: the checks of `crowdbot.testing`, without pytest's tests."""
+"""Run the conformance kit from the shell: the checks of `crowdbot.testing`, without pytest."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from crowdbot.dsl.spec.component import Component
 from crowdbot.errors import CrowdbotError, InputError, UnknownNameError
 
 _BAD = ("failed", "unexpected pass")
-#: Checks that only an installed plugin can pass: they look for it among what is installed.
+#: Checks that only installed plugins can pass, since they search the installation.
 _INSTALLED_ONLY = ("check_entry_point_yields_it", "check_card_examples_run")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """What one check of one component found.
+    """The result of one check of one component.
 
     Attributes:
         result: ``passed``, ``failed``, ``expected failure``, ``unexpected pass``, ``skipped``.
-        reason: what is wrong, or why it is expected or skipped.
+        reason: the error, or why it is expected or skipped.
         advice: what to do about a failure.
     """
 
@@ -37,16 +37,16 @@ class Result:
 
     @property
     def bad(self) -> bool:
-        """Whether something has to be done."""
+        """Return True if something has to be fixed."""
         return self.result in _BAD
 
     def as_dict(self) -> dict[str, str]:
-        """For ``--json``."""
+        """Return a dictionary for ``--json``."""
         return asdict(self)
 
 
 def failed_plugins(registry: Registry, name: str | None) -> list[Result]:
-    """One failure for each plugin that is meant and could not be loaded."""
+    """Return one failure for each selected plugin that could not be loaded."""
     return [
         Result(plugin=p.name, kind="", check="loading", result="failed", reason=p.failure)
         for p in registry.plugins
@@ -55,7 +55,7 @@ def failed_plugins(registry: Registry, name: str | None) -> list[Result]:
 
 
 def chosen(registry: Registry, name: str | None) -> list[Component[Any]]:
-    """The components that a name means; without one, those of plugins given by hand.
+    """Return the components that a name selects; without a name, those of given plugins.
 
     Raises:
         UnknownNameError: neither a plugin nor a kind has this name.
@@ -77,7 +77,7 @@ def chosen(registry: Registry, name: str | None) -> list[Component[Any]]:
 
 
 def run_checks(component: Component[Any], registry: Registry) -> Iterator[Result]:
-    """All checks of one component, one after the other.
+    """Run all checks of one component, one by one.
 
     Raises:
         InputError: the checks need packages that are not installed.
@@ -102,12 +102,12 @@ def run_checks(component: Component[Any], registry: Registry) -> Iterator[Result
 
 
 def as_table(results: list[Result], *, passed: bool, all_lines: bool) -> str:
-    """A row for each check, and a last line that counts them.
+    """Return a row per check, and a last line with counts.
 
     Args:
-        results: of all checks.
-        passed: whether those that passed have a row.
-        all_lines: whether reasons are shown in full.
+        results: results of all checks.
+        passed: True to list passed checks.
+        all_lines: True to show reasons in full.
     """
     rows = [
         [r.kind or r.plugin, r.check, r.result, _shown(r.reason, all_lines)]
@@ -146,7 +146,7 @@ def _bind(
 
 
 def _exceptions(component: Component[Any]) -> Mapping[str, str]:
-    """Check -> reason, of those that a component says it cannot pass."""
+    """Return check -> reason for checks that a component declares it cannot pass."""
     declared: Mapping[str, str] = getattr(component, "exceptions", {})
     return declared
 
@@ -170,11 +170,11 @@ def _reason(error: BaseException) -> str:
 
 
 def _shown(text: str, whole: bool) -> str:
-    """The first line of a text, or all of it, in one line."""
+    """Return the first line of a text, or all of it on one line."""
     return " ".join((text if whole else text.partition("\n")[0]).split())
 
 
 def _advice(check: Callable[..., None]) -> str:
-    """The sentence after "If this fails," in the docstring of a check."""
+    """Return the text after "If this fails," in the docstring of a check."""
     _, found, advice = " ".join((check.__doc__ or "").split()).partition("If this fails, ")
     return advice if found else ""

@@ -1,4 +1,4 @@
-"""What ``crowdbot validate`` finds in documents, and how it is written."""
+"""Run ``crowdbot validate`` on documents and format the errors."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _LOG = logging.getLogger(__name__)
 
 
 def check_documents(specs: Sequence[str], registry: Registry, form: str = "text") -> int:
-    """Check documents and print what is wrong: as text on stderr, else on stdout.
+    """Check documents and print errors: as text on stderr, other formats on stdout.
 
     Args:
         specs: files, or names of packaged suites.
         form: ``text``, ``json`` or ``github``.
 
     Returns:
-        The exit code: 1 if something is wrong.
+        The exit code: 1 if there are errors.
     """
     results = {spec: _check(spec, registry) for spec in dict.fromkeys(specs)}
     errors = [d for _, found in results.values() for d in found]
@@ -41,7 +41,7 @@ def check_documents(specs: Sequence[str], registry: Registry, form: str = "text"
 
 
 def _check(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
-    """Number of scenarios, errors."""
+    """Return the number of scenarios, and the errors."""
     from crowdbot.core.support.gc_throttle import seldom_collected
 
     with seldom_collected():
@@ -62,7 +62,7 @@ def _check_all(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
 
 
 def _lock_problems(files: LockFiles) -> Iterator[Diagnostic]:
-    """What is wrong with the files of a lock as such; whether it fits is 'lock --check'."""
+    """Yield errors in a lock's files; 'lock --check' tests if they are up to date."""
     from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
     from crowdbot.errors import InputError
 
@@ -95,7 +95,7 @@ def _as_json(results: dict[str, tuple[int, list[Diagnostic]]]) -> str:
 
 
 def _as_github(diagnostic: Diagnostic) -> str:
-    """A workflow command; its own characters are escaped."""
+    """Return a workflow command with its special characters escaped."""
     mark = diagnostic.mark
     text = diagnostic.message + (f" ({diagnostic.hint})" if diagnostic.hint else "")
     place = f"file={_escape(mark.source.name, ':,')},line={mark.line + 1},col={mark.column + 1}"

@@ -1,4 +1,4 @@
-"""What there is to know of one component, for people and for machines."""
+"""Everything about one component, as text or JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _FIELDS = ("field", "type", "unit", "default", "description")
 
 
 def as_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
-    """A component as JSON."""
+    """Return a component as JSON."""
     owner = registry.owner(component)
     return {
         "kind": component.kind,
@@ -39,7 +39,7 @@ def as_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
 
 
 def as_text(component: Component[Any], registry: Registry) -> str:
-    """A component as a page."""
+    """Return a component as a page."""
     from crowdbot.dsl.text.plain_yaml import to_yaml
 
     about = as_dict(component, registry)
@@ -64,7 +64,7 @@ def as_text(component: Component[Any], registry: Registry) -> str:
 
 
 def reference(component: Component[Any], owner: Plugin) -> str:
-    """Where a component is described: page, card, address or file."""
+    """Return where a component is documented: page, card, address or file."""
     name = component.kind
     if owner.name == BUILTIN:
         pages = {"metric": f"metrics/{name}.md", "planner": f"planners.md#{name}"}
@@ -75,7 +75,7 @@ def reference(component: Component[Any], owner: Plugin) -> str:
 
 
 def _documentation(owner: Plugin) -> str:
-    """The address of the documentation that a distribution declares, or its home page."""
+    """Return the documentation address that a distribution declares, or its home page."""
     if owner.given:
         return ""
     try:
@@ -98,7 +98,7 @@ def _label(metric: MetricComponent[Any]) -> dict[str, Any]:
 
 
 def _fields(model: Any, prefix: str = "") -> Iterator[list[str]]:
-    """Rows of name, type, unit, default and description; maps of fields are followed."""
+    """Yield rows of name, type, unit, default and description; maps of fields are followed."""
     from crowdbot.dsl.checks.pydantic_errors import nested_model
     from crowdbot.dsl.spec.quantities import Quantity
 

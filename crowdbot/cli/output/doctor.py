@@ -1,4 +1,4 @@
-"""What ``crowdbot doctor`` looks at."""
+"""The checks of ``crowdbot doctor``."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from typing import Literal, NamedTuple
 
 from crowdbot.errors import CrowdbotError
 
-#: Packages without which nothing runs, and those of extras.
+#: Required packages, and those of extras.
 _NEEDED = ("crowdbot", "drake", "numba", "numpy", "mcap", "pydantic", "rosbags", "scipy")
 _EXTRAS = {"duckdb": "analysis", "pandas": "analysis", "pyarrow": "analysis",
            "distributed": "cluster", "jupedsim": "jupedsim"}  # fmt: skip
-#: A campaign of 162 scenarios and three seeds takes about this much, bytes.
+#: Approximate size of a campaign of 162 scenarios and three seeds, bytes.
 _DISK = 2 * 10**9
 
 
 class Examined(NamedTuple):
-    """One thing that was looked at: ``ok``, ``note`` (something cannot be done) or ``missing``."""
+    """One finding: ``ok``, ``note`` (a feature is unavailable) or ``missing``."""
 
     what: str
     verdict: Literal["ok", "note", "missing"]
@@ -33,10 +33,10 @@ class Examined(NamedTuple):
 
 
 def machine(out: Path) -> Iterator[Examined]:
-    """Everything but the self-test; quick.
+    """Yield all checks except the self-test; quick.
 
     Args:
-        out: where runs would go.
+        out: folder for runs.
     """
     yield Examined("system", "ok", f"{platform.platform()}, Python {platform.python_version()}")
     yield from _packages()
@@ -73,7 +73,7 @@ def _drake() -> Examined:
 
 
 def _egl() -> Examined:
-    """Colour images of cameras are rendered through EGL; nothing else needs it."""
+    """Check EGL, which only colour images of cameras need."""
     for name in ("libEGL.so.1", "libEGL.so"):
         try:
             ctypes.CDLL(name)
@@ -107,7 +107,7 @@ def _disk(out: Path) -> Examined:
 
 
 def self_test() -> Examined:
-    """One simulated second among people, recorded and scored, in a folder that goes away."""
+    """Simulate, record and score one second among people, in a temporary folder."""
     import crowdbot.api as api
 
     begin = time.perf_counter()

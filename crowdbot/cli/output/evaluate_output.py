@@ -1,4 +1,4 @@
-"""What ``crowdbot evaluate`` writes: tables, JSON, files, and how far it has come."""
+"""Output of ``crowdbot evaluate``: tables, JSON, files, and progress."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LINE_EVERY = 5.0  # s
 
 
 def as_document(result: Rescored) -> dict[str, Any]:
-    """One run as plain data."""
+    """Return one run as plain data."""
     source = result.source
     return {
         "run": str(source.path),
@@ -37,7 +37,7 @@ def as_document(result: Rescored) -> dict[str, Any]:
 
 
 def print_table(result: Rescored) -> None:
-    """One run for people."""
+    """Print one run in readable form."""
     from rich.console import Console
     from rich.text import Text
 
@@ -54,7 +54,7 @@ def print_table(result: Rescored) -> None:
 
 
 def write_file(path: Path, results: Sequence[Rescored]) -> None:
-    """All runs in one table (``.csv``, the columns of scores.csv and ``run``) or ``.json``.
+    """Write all runs as one table (``.csv``: scores.csv plus ``run``) or as ``.json``.
 
     Raises:
         InputError: it cannot be written.
@@ -74,9 +74,9 @@ def write_file(path: Path, results: Sequence[Rescored]) -> None:
 
 @contextmanager
 def show_progress(total: int) -> Iterator[Callable[[int], None]]:
-    """Yield what is called after each run with the number of failures so far, on stderr.
+    """Yield a function to call after each run with the failures so far; progress goes to stderr.
 
-    A bar on a terminal, a line now and then elsewhere, nothing for a single run.
+    A bar on a terminal, otherwise occasional lines; nothing for a single run.
     """
     if total < 2 or logging.getLogger("crowdbot").level > logging.INFO:
         yield _silent

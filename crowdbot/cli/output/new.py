@@ -1,4 +1,4 @@
-"""``crowdbot plugins new``: a package to start from."""
+"""``crowdbot plugins new``: create a starter package."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.errors import InputError
 
 _SUFFIX = ".tmpl"
-#: A folder of the templates whose name depends on the plugin's.
+#: A template folder whose name depends on the plugin's.
 _PACKAGE = "package"
 _HIDDEN = "dot_"
 
 
 def write_package(name: str, out: Path | None, registry: Registry) -> Path:
-    """Write a plugin package; all of it or nothing.
+    """Write a plugin package atomically.
 
     Args:
-        name: of the plugin.
-        out: the folder to make; default: ``crowdbot-NAME`` here.
-        registry: what is installed, whose names are taken.
+        name: name of the plugin.
+        out: the new folder; default: ``crowdbot-NAME`` here.
+        registry: the installed plugins, whose names are taken.
 
     Returns:
         The folder.
 
     Raises:
-        InputError: the name will not do, the folder exists, or it cannot be written.
+        InputError: the name is invalid, the folder exists, or it cannot be written.
     """
     _check_name(name, registry)
     folder = out or Path(f"crowdbot-{name.replace('_', '-')}")
@@ -88,7 +88,7 @@ def _shown(part: str) -> str:
 def _templates(
     folder: Traversable, above: tuple[str, ...] = ()
 ) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Path and text of each template below a folder."""
+    """Yield path and text of each template below a folder."""
     for item in sorted(folder.iterdir(), key=lambda i: i.name):
         path = (*above, item.name)
         if item.is_dir():

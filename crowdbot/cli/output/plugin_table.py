@@ -1,4 +1,4 @@
-"""The listing of plugins, for people and for machines."""
+"""The list of plugins, as text or JSON."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 _HEAD = ["plugin", "distribution", "api", "state", "provides"]
 _FEW = 6
-#: Letters that the last column needs beside the others.
+#: Minimum width of the last column beside the others.
 _LEAST = 24
 
 
 def as_text(registry: Registry) -> str:
-    """One row for each plugin; those that are not allowed come last."""
+    """Return one row per plugin; disallowed ones come last."""
     from crowdbot.core.registry.entry_points import ALLOW
 
     rows = [_row(p) for p in registry.plugins]
@@ -40,7 +40,7 @@ def as_dicts(registry: Registry) -> list[dict[str, Any]]:
 
 
 def tracebacks(registry: Registry) -> Iterator[str]:
-    """What is known of the plugins that failed."""
+    """Yield the errors of failed plugins."""
     for plugin in registry.plugins:
         if plugin.failure:
             text = plugin.failure_traceback or plugin.failure
@@ -48,7 +48,7 @@ def tracebacks(registry: Registry) -> Iterator[str]:
 
 
 def table(rows: Sequence[Sequence[str]]) -> str:
-    """Columns as wide as their widest cell; the last one is as wide as the terminal allows."""
+    """Return a table with columns as wide as needed; the last one fits the terminal."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
     lines = []
     for row in rows:
@@ -59,8 +59,8 @@ def table(rows: Sequence[Sequence[str]]) -> str:
 
 
 def _wrapped(before: str, last: str) -> list[str]:
-    """A row, its last cell in several lines where a terminal is not wide enough for one."""
-    seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # elsewhere nothing need be folded
+    """Return a row whose last cell is wrapped if the terminal is too narrow."""
+    seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # other outputs need no wrapping
     room = shutil.get_terminal_size().columns - len(before) if seen else 0
     if not seen or len(last) <= room:
         return [f"{before}{last}".rstrip()]

@@ -1,4 +1,4 @@
-"""Lines of ``crowdbot results``, as a table that fits the terminal, as CSV or as JSON."""
+"""Output of ``crowdbot results``: a table that fits the terminal, CSV or JSON."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from crowdbot.core.support.text import wrap_name
 if TYPE_CHECKING:
     from crowdbot.core.statistics.groups import GroupSummary
 
-#: Wide enough for every table; a terminal wraps what it cannot hold.
+#: Wide enough for every table; a terminal wraps longer lines.
 _WIDTH = 240
-#: Columns of names in terminals that are narrower than the second.
+#: Width of name columns in terminals narrower than the second number.
 _NAME_WIDTH, _WHOLE_NAMES = 10, 80
 #: Counts of runs without a value.
 _WITHOUT = ("undefined", "censored", "failed")
 
 
 def line_of(summary: GroupSummary) -> dict[str, Any]:
-    """A summary as one line."""
+    """Return a summary as one line."""
     return {
         **summary.group,
         "metric": summary.metric,
@@ -43,7 +43,7 @@ def line_of(summary: GroupSummary) -> dict[str, Any]:
 
 
 def print_lines(lines: list[dict[str, Any]], *, as_csv: bool, as_json: bool) -> None:
-    """Print lines that have the same columns."""
+    """Print lines with the same columns."""
     if as_json:
         typer.echo(json.dumps(lines, indent=2))
     elif as_csv:
@@ -67,13 +67,13 @@ def _print_csv(lines: list[dict[str, Any]]) -> None:
 
 
 def print_table(lines: list[dict[str, Any]]) -> None:
-    """Print a table; where not all columns have room, some share one."""
+    """Print a table; on narrow terminals, some columns share one."""
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # elsewhere nothing need be folded
+    seen = sys.stdout.isatty() or "COLUMNS" in os.environ  # other outputs need no wrapping
     console = Console() if seen else Console(width=_WIDTH)
 
     def table_of(rows: list[dict[str, Any]], padding: int = 1) -> Table:
@@ -95,7 +95,7 @@ def print_table(lines: list[dict[str, Any]]) -> None:
 
 
 def with_interval(line: dict[str, Any]) -> dict[str, Any]:
-    """A line of `line_of` with mean and interval in one cell, as report and leaderboard do."""
+    """Return a line of `line_of` with mean and interval in one cell, as in the report."""
     from crowdbot.core.statistics import Estimate
     from crowdbot.core.statistics.estimate_text import joined_text, range_text
 
@@ -110,7 +110,7 @@ def with_interval(line: dict[str, Any]) -> dict[str, Any]:
 
 
 def _narrow(line: dict[str, Any]) -> dict[str, Any]:
-    """A line of `line_of` in fewer columns, for terminals that are not wide enough for all."""
+    """Return a line of `line_of` with fewer columns, for narrow terminals."""
     told = {"metric", "variant", "unit", "n", "median", "mean [95 %]", "mean of all", *_WITHOUT}
     variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
     unit = "" if line["unit"] == "1" else f", {line['unit']}"
@@ -128,7 +128,7 @@ def _narrow(line: dict[str, Any]) -> dict[str, Any]:
 
 
 def _broken(line: dict[str, Any]) -> dict[str, Any]:
-    """A line whose names are broken between their words."""
+    """Return a line whose names are broken between words."""
     return {n: wrap_name(v, _NAME_WIDTH) if isinstance(v, str) else v for n, v in line.items()}
 
 

@@ -1,4 +1,4 @@
-"""The list that ``crowdbot expand`` prints."""
+"""The list printed by ``crowdbot expand``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def print_scenarios(scenarios: Sequence[Scenario], registry: Registry, *, count: bool) -> None:
-    """Print a line with id and hash for each scenario, or only how many there are."""
+    """Print id and hash of each scenario, or only their number."""
     if count:
         print(len(scenarios))
         return
@@ -22,7 +22,7 @@ def print_scenarios(scenarios: Sequence[Scenario], registry: Registry, *, count:
 
 
 def hash_of(scenario: Scenario, registry: Registry) -> str:
-    """Its content hash, with the installed components."""
+    """Return its content hash, with the installed components."""
     from crowdbot.dsl.identity.canonical import content_hash
 
     return content_hash(scenario, registry.spec_versions(scenario))

@@ -1,1 +1,1 @@
-"""Arguments and options of `serve`."""
+"""Arguments and options of ``crowdbot serve``."""

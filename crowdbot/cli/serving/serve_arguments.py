@@ -9,7 +9,7 @@ import typer
 
 
 class ClockChoice(StrEnum):
-    """Where simulated time comes from."""
+    """Source of simulated time."""
 
     internal = "internal"
     external = "external"
@@ -25,7 +25,7 @@ class DistroChoice(StrEnum):
 
 
 class MissedChoice(StrEnum):
-    """What a step does that gets no command."""
+    """Behaviour of a step without a command."""
 
     stop = "stop"
     hold = "hold"
@@ -73,7 +73,7 @@ Hold = Annotated[
 ]
 Wait = Annotated[
     float | None,
-    typer.Option(metavar="SECONDS", help="How long to wait for a client; default: for ever."),
+    typer.Option(metavar="SECONDS", help="Time to wait for a client; default: no limit."),
 ]
 Epoch = Annotated[int, typer.Option(min=0, metavar="SECONDS", help="Time at which stamps begin.")]
 RosVersion = Annotated[int, typer.Option(min=1, max=2, help="ROS 1 or ROS 2 messages.")]

@@ -1,4 +1,4 @@
-"""What the options of ``crowdbot serve`` mean."""
+"""Evaluate the options of ``crowdbot serve``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Listen:
-    """Where to listen, and for whom."""
+    """The address to listen at, and the access rules."""
 
     host: str
     port: int
@@ -46,7 +46,7 @@ def manner_of(
     times: Mapping[str, float | None],
     epoch: int,
 ) -> Manner:
-    """How a live run goes on.
+    """Return the timing of a live run's steps.
 
     Args:
         times: of ``budget``, ``hold`` and ``wait``, s.
@@ -158,7 +158,7 @@ def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
         token = token or secrets.token_urlsafe(16)
         _say(
             f"warning: {listen.host} can be reached from other machines; rosbridge is not "
-            "encrypted, and whoever knows the token drives the robot"
+            "encrypted, and anyone with the token can drive the robot"
         )
     server = RosbridgeServer(
         session,
@@ -175,20 +175,20 @@ def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
 
 
 def watchers_of(doors: Sequence[Door], meshcat: int | None) -> list[Watcher]:
-    """Who shows the truth of a run: Foxglove, and Meshcat at a port.
+    """Return the viewers of a run's ground truth: Foxglove, and Meshcat at a port.
 
     Raises:
-        InputError: the port cannot be had.
+        InputError: the port is not available.
     """
     found = [cast("Watcher", door) for door in doors if hasattr(door, "sample")]
     return found + meshcat_view(meshcat)
 
 
 def meshcat_view(port: int | None) -> list[Watcher]:
-    """Drake's Meshcat at a port; none without one.
+    """Return Drake's Meshcat at a port; empty without a port.
 
     Raises:
-        InputError: the port cannot be had.
+        InputError: the port is not available.
     """
     if port is None:
         return []
@@ -200,7 +200,7 @@ def meshcat_view(port: int | None) -> list[Watcher]:
 
 
 def _services(session: LiveSession) -> dict[str, Service]:
-    """All services that clients may call."""
+    """Return all services that clients can call."""
     from crowdbot.core.live.services import services
     from crowdbot.core.live.simulation_interfaces import simulation_services
 

@@ -1,1 +1,1 @@
-"""Options and helpers that several commands share."""
+"""Options and helpers shared by several commands."""

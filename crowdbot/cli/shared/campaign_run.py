@@ -1,4 +1,4 @@
-"""What `crowdbot campaign` and `crowdbot audit` do with a plan."""
+"""Run or print a plan, for `crowdbot campaign` and `crowdbot audit`."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 def read_seeds(text: str) -> list[int]:
-    """``0,1,2``, ``0..4``, or both mixed.
+    """Parse ``0,1,2``, ``0..4``, or a mix of both.
 
     Raises:
-        UsageError: it is neither.
+        UsageError: the text is not in this format.
     """
     from crowdbot.errors import UsageError
 
@@ -31,14 +31,14 @@ def read_seeds(text: str) -> list[int]:
 
 
 def worker_count(jobs: int) -> int:
-    """So many, or one for each core."""
+    """Return this many, or one per core."""
     from crowdbot.core.support.cores import available_cores
 
     return jobs or available_cores()
 
 
 def run_plan(plan: Plan, size: int, cluster: str | None) -> State:
-    """Do what is missing, on this machine or on a cluster, and show how far it is."""
+    """Execute missing runs, on this machine or a cluster, and show progress."""
     from crowdbot.cli.shared.campaign_view import show
     from crowdbot.core.campaign.run import run_campaign
     from crowdbot.core.campaign.worker_pool import LocalWorkerPool, WorkerPool
@@ -56,7 +56,7 @@ def run_plan(plan: Plan, size: int, cluster: str | None) -> State:
 
 
 def print_plan(plan: Plan, size: int, *, as_json: bool) -> None:
-    """What there is to do, on stdout."""
+    """Print the missing runs on stdout."""
     import shutil
 
     complete = sum(bool(r.status) for r in plan.runs)

@@ -1,4 +1,4 @@
-"""What a campaign shows while it runs: a live table on a terminal, lines elsewhere."""
+"""Progress of a campaign: a live table on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def show(plan: Plan) -> Iterator[Listener]:
-    """Yield what a campaign calls with its state."""
+    """Yield a function that a campaign calls with its state."""
     if logging.getLogger("crowdbot").level > logging.INFO:
         yield _only_failures
         return
@@ -43,13 +43,13 @@ def show(plan: Plan) -> Iterator[Listener]:
 
 
 def _only_failures(state: State, job: Job | None, done: Done | None) -> None:
-    """With ``--quiet``: what went wrong."""
+    """Print failures only, for ``--quiet``."""
     if job is not None and done is not None and (done.error or has_failed(done.status)):
         _say(_line(state, job, done))
 
 
 class _Lines:
-    """A line for each job that ended."""
+    """Prints a line for each finished job."""
 
     def __init__(self) -> None:
         self.state: State | None = None
@@ -70,7 +70,7 @@ def _live() -> Iterator[Listener]:
 
 
 class _Table:
-    """Draws the table again whenever something is told."""
+    """Redraws the table on every update."""
 
     def __init__(self, live: object) -> None:
         self._live = live

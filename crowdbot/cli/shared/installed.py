@@ -1,4 +1,4 @@
-"""What a command makes of the installation."""
+"""The installed registry for commands."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 def installed(
     plugin: Sequence[Path] | None, no_plugins: bool = False, *, strict: bool = True
 ) -> Registry:
-    """The registry that a command works with.
+    """Return the registry for a command.
 
     Args:
-        plugin: paths given by hand.
-        no_plugins: leave out all that are installed.
-        strict: refuse a plugin given by hand that failed; otherwise it is listed as such.
+        plugin: paths of plugins.
+        no_plugins: ignore installed plugins.
+        strict: raise for a given plugin that failed; otherwise list it as failed.
 
     Raises:
-        InputError: there is nothing at a path.
-        PluginError: a plugin given by hand failed.
+        InputError: a path does not exist.
+        PluginError: a given plugin failed.
     """
     from crowdbot.core.support.gc_throttle import seldom_collected
     from crowdbot.core.support.stdout_guard import stdout_to_stderr

@@ -1,4 +1,4 @@
-"""What commands share that make a run in their own process: Drake, Ctrl-C, what is printed."""
+"""Shared code of commands that run in their own process: Drake, Ctrl-C, output."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def import_simulate() -> Callable[..., Run]:
-    """Import Drake, which needs a system library that a bare machine may lack.
+    """Import Drake, which needs a system library that a minimal machine may lack.
 
     Raises:
         MissingLibraryError: it is missing.
@@ -42,9 +42,9 @@ def import_simulate() -> Callable[..., Run]:
 
 @contextmanager
 def interruptible() -> Iterator[Callable[[], bool]]:
-    """The first Ctrl-C asks the run to end and keep its recording; the second one insists.
+    """On the first Ctrl-C, end the run and keep its recording; on the second, abort.
 
-    While nothing runs yet, as when kernels are compiled, the first one is enough.
+    Before the run starts, for example during compilation, the first one aborts.
     """
     asked = running = False
 
@@ -68,7 +68,7 @@ def interruptible() -> Iterator[Callable[[], bool]]:
 
 
 def end_hung_process() -> None:
-    """End this process: there is no other way out of a planner that swallows interruptions."""
+    """Kill this process: a planner that catches interruptions cannot be ended otherwise."""
     print(
         "error: the planner did not return and could not be interrupted; "
         "the recording up to here is in the .partial directory",
@@ -79,7 +79,7 @@ def end_hung_process() -> None:
 
 
 def print_run(run: Run, *, as_json: bool) -> None:
-    """Scores on stdout, as a table or as JSON; what went wrong on stderr, last, to be seen."""
+    """Print scores on stdout, as a table or JSON, and errors last, on stderr."""
     _print_result(run, as_json=as_json)
     if run.failed:
         sys.stdout.flush()

@@ -1,4 +1,4 @@
-"""Options that several commands have, and what they make of the installation."""
+"""Options shared by several commands."""
 
 from __future__ import annotations
 
@@ -46,21 +46,21 @@ PlannerMemory = Annotated[
     float,
     typer.Option(metavar="GIB", min=0.0, help="Memory of a planner's process; 0: no limit."),
 ]
-#: A Python with numpy needs about a third of it.
+#: Minimum; a Python with numpy needs about a third of it.
 _LEAST_GIB = 0.5
 #: Default of `PlannerMemory`, GiB.
 MEMORY_GIB = 4.0
 
 
 def check_ending(out: Path | None, *endings: str) -> None:
-    """Refuse a file for ``--out`` whose name says that something else is in it.
+    """Refuse an ``--out`` file whose suffix does not match its contents.
 
     Args:
-        out: as it was given; None where it was not.
-        endings: those that there are, such as ``.html``.
+        out: the option's value, or None.
+        endings: allowed suffixes, such as ``.html``.
 
     Raises:
-        UsageError: the name ends otherwise.
+        UsageError: the suffix is not allowed.
     """
     from crowdbot.errors import UsageError
 
@@ -70,7 +70,7 @@ def check_ending(out: Path | None, *endings: str) -> None:
 
 
 def planner_place(in_process: bool | None, memory: float, *, lenient: bool = False) -> PlannerPlace:
-    """Where planners are to run.
+    """Return where planners run.
 
     Args:
         in_process: as `InProcess`.
@@ -78,7 +78,7 @@ def planner_place(in_process: bool | None, memory: float, *, lenient: bool = Fal
         lenient: as in `PlannerPlace`.
 
     Raises:
-        UsageError: no process can start with so little.
+        UsageError: the memory is too small for any process.
     """
     from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.errors import UsageError

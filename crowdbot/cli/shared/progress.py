@@ -1,4 +1,4 @@
-"""Progress of simulations on stderr: a bar on a terminal, a line a stage elsewhere."""
+"""Progress of simulations on stderr: a bar on a terminal, otherwise a line per stage."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from crowdbot.core.runs.outcome import Progress as Report
 
 _COMPILES = "the first run compiles"
-#: How long nothing may be seen without an excuse, s.
+#: Longest time without output before a reason is printed, s.
 PATIENCE = 1.0
 _LINE_EVERY = 10.0
 
 
 @contextmanager
 def show_progress() -> Iterator[Callable[[Report], None]]:
-    """Yield what a simulation calls with its progress."""
+    """Yield a function that a simulation calls with its progress."""
     if logging.getLogger("crowdbot").level > logging.INFO:
         yield _silent
     elif sys.stderr.isatty():
@@ -39,7 +39,7 @@ def show_progress() -> Iterator[Callable[[Report], None]]:
 
 @contextmanager
 def _excuse() -> Iterator[None]:
-    """Say why nothing is seen yet, unless it is over at once, as with a wrong name."""
+    """Print why there is no output yet, unless the simulation ends at once."""
     done = threading.Event()
     if nothing_compiled():
         threading.Thread(target=_tell_of_compiling, args=(done,), daemon=True).start()
@@ -50,7 +50,7 @@ def _excuse() -> Iterator[None]:
 
 
 def _tell_of_compiling(done: threading.Event) -> None:
-    """A line at once, and one now and then with how far it is, until all is compiled."""
+    """Print a line at once, and occasional progress until everything is compiled."""
     if done.wait(PATIENCE):
         return
     time = "half a minute" if available_cores() > 1 else "a minute"
@@ -115,7 +115,7 @@ def _silent(report: Report) -> None:
 
 
 class _Lines:
-    """One line when a stage begins, one every 30 simulated seconds."""
+    """Prints a line when a stage begins, and every 30 simulated seconds."""
 
     def __init__(self) -> None:
         self._stage = ""

@@ -1,4 +1,4 @@
-"""Arguments that commands share which make a run."""
+"""Arguments shared by commands that make a run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer
 
 
 class RecordChoice(StrEnum):
-    """Which sensors are simulated and recorded."""
+    """Levels of simulated and recorded sensors."""
 
     all = "all"
     used = "used"

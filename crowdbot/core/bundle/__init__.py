@@ -1,1 +1,1 @@
-"""Submission bundles: a campaign's scores in one archive that others can check and rank."""
+"""Submission bundles: a campaign's scores in one archive that can be checked and ranked."""

@@ -1,4 +1,4 @@
-"""The archive itself: the same content gives the same bytes; foreign ones are read with care."""
+"""The bundle's archive: equal content gives equal bytes; untrusted archives are checked."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ from crowdbot.core.bundle.manifest import MANIFEST, Manifest, Member, parse_mani
 from crowdbot.core.support.atomic_write import atomic_path
 from crowdbot.errors import InputError
 
-#: What may be in a bundle: suffix -> largest size, bytes.
+#: Allowed files in a bundle: suffix -> largest size, bytes.
 LIMITS: Mapping[str, int] = {
     ".json": 64 << 20,
     ".yaml": 4 << 20,
     ".csv": 64 << 20,
     ".mcap": 4 << 30,
 }
-_ALL_TEXTS = 2 << 30  # all members but recordings, which are stored as they are
+_ALL_TEXTS = 2 << 30  # all members except recordings, which are stored uncompressed
 _MOST = 100_000
 _NAME = re.compile(r"(?:[A-Za-z0-9_+.:@~=,-]+/)*[A-Za-z0-9_+.:@~=,-]+")
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the first moment that the format knows
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time in the format
 _CHUNK = 1 << 20
-#: What an archive ends with: a mark, 16 bytes of numbers, the length of a comment.
+#: End of an archive: a marker, 16 bytes of numbers, the length of a comment.
 _END, _END_MARK = struct.Struct("<4s16xH"), b"PK\5\6"
 
 
 # ------------------------------------------------------------------------- writing
 def members_of(files: Mapping[str, Path | bytes]) -> dict[str, Member]:
-    """Hashes and sizes, by name.
+    """Return hashes and sizes, by name.
 
     Raises:
-        InputError: a file cannot be read, or does not belong into a bundle.
+        InputError: a file cannot be read, or is not allowed in a bundle.
     """
     return {name: _member(name, content) for name, content in sorted(files.items())}
 
 
 def write_archive(path: Path, manifest: Manifest, files: Mapping[str, Path | bytes]) -> None:
-    """Write under a temporary name, then rename; members are sorted and carry no time.
+    """Write an archive atomically; members are sorted and have no time stamps.
 
     Raises:
         InputError: the path cannot be written, or a file cannot be read.
@@ -85,7 +85,7 @@ def _member(name: str, content: Path | bytes) -> Member:
 
 # ------------------------------------------------------------------------- reading
 class Archive:
-    """A bundle that is open for reading; nothing is unpacked unless somebody asks for it."""
+    """A bundle open for reading; members are unpacked on demand."""
 
     def __init__(self, path: Path, file: zipfile.ZipFile, manifest: Manifest) -> None:
         self.path, self.manifest, self._file = path, manifest, file
@@ -93,20 +93,20 @@ class Archive:
 
     @property
     def names(self) -> set[str]:
-        """All members but the manifest."""
+        """Return all members except the manifest."""
         return set(self._infos) - {MANIFEST}
 
     def read(self, name: str) -> bytes:
-        """One member, compared with its hash.
+        """Return one member, checked against its hash.
 
         Raises:
-            InputError: it is missing, damaged, or not what the manifest says.
+            InputError: it is missing, damaged, or does not match the manifest.
         """
         with self._open(name) as file:
             return _checked(self.path, name, self.manifest, iter([file.read()]))
 
     def text(self, name: str) -> str:
-        """One member as text.
+        """Return one member as text.
 
         Raises:
             InputError: as `read`, or it is not UTF-8.
@@ -117,7 +117,7 @@ class Archive:
             raise InputError(f"{self.path}: {name} is not UTF-8 text") from None
 
     def check(self, name: str) -> None:
-        """Compare one member with its hash, without holding it in memory.
+        """Check one member against its hash, without holding it in memory.
 
         Raises:
             InputError: as `read`.
@@ -151,10 +151,10 @@ class Archive:
 
 @contextmanager
 def open_archive(path: Path) -> Iterator[Archive]:
-    """Open a bundle; names, sizes and the manifest are looked at before anything else is read.
+    """Open a bundle; names, sizes and the manifest are checked before anything else.
 
     Raises:
-        InputError: no such file, no bundle, or one that no crowdbot has made.
+        InputError: missing file, not a bundle, or not written by crowdbot.
     """
     try:
         file = zipfile.ZipFile(path)
@@ -178,7 +178,7 @@ def open_archive(path: Path) -> Iterator[Archive]:
 
 
 def _check_bounds(path: Path, file: zipfile.ZipFile) -> None:
-    """Refuse bytes before and after the archive: other programs may see another file in them."""
+    """Refuse bytes before and after the archive, in which other programs may see another file."""
     first = min((i.header_offset for i in file.infolist()), default=0)
     with path.open("rb") as content:
         content.seek(-_END.size, os.SEEK_END)
@@ -190,7 +190,7 @@ def _check_bounds(path: Path, file: zipfile.ZipFile) -> None:
 
 
 def _check_listing(path: Path, file: zipfile.ZipFile) -> None:
-    """Refuse what could fill a disk or memory, or lead out of a folder."""
+    """Refuse members that could fill a disk or memory, or lead out of a folder."""
     infos = file.infolist()
     if len(infos) > _MOST:
         raise InputError(f"{path}: {len(infos)} members; a bundle has at most {_MOST}")

@@ -1,4 +1,4 @@
-"""What can be told about a bundle without simulating anything."""
+"""Check a bundle without simulating anything."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from crowdbot.errors import InputError
 
 __all__ = ["ClaimedRun", "check_members", "check_suite", "claimed_runs", "problems_of"]
 
-#: Files that a bundle holds of each run, and of each calibration run.
+#: Files in a bundle for each run, and for each calibration run.
 _OF_A_RUN = (files.RECORD, files.SCENARIO, files.SCORES)
 _REFERENCES = "runs/references/"
 
@@ -32,18 +32,18 @@ _REFERENCES = "runs/references/"
 def problems_of(
     archive: Archive, expansion: Expansion, registry: Registry
 ) -> tuple[list[ClaimedRun], list[str]]:
-    """All runs that can be read, and everything that is wrong with a bundle, each thing once."""
+    """Return all readable runs, and all problems of a bundle without duplicates."""
     problems = list(check_members(archive))
     runs, wrong = claimed_runs(archive)
     problems += wrong
     problems += check_suite(archive, expansion, registry)
-    if not problems:  # what is damaged or contradicts itself need not be read to its end
+    if not problems:  # damaged or inconsistent bundles need not be read to the end
         problems += recording_problems(archive, runs)
     return runs, list(dict.fromkeys(problems))
 
 
 def check_members(archive: Archive) -> Iterator[str]:
-    """Problems of the archive as such: members that are missing, more, or other than listed."""
+    """Yield problems of the archive itself: members that are missing, extra, or changed."""
     listed, there = set(archive.manifest.members), archive.names
     yield from (f"{name} is missing" for name in sorted(listed - there))
     yield from (f"{name} is not in the manifest" for name in sorted(there - listed))
@@ -56,7 +56,7 @@ def check_members(archive: Archive) -> Iterator[str]:
 
 
 def claimed_runs(archive: Archive) -> tuple[list[ClaimedRun], list[str]]:
-    """All runs that can be read, and what is wrong with the others."""
+    """Return all readable runs, and the problems of the others."""
     found, problems = [], list(_list_problems(archive.manifest))
     for entry in archive.manifest.runs:
         try:
@@ -70,7 +70,7 @@ def claimed_runs(archive: Archive) -> tuple[list[ClaimedRun], list[str]]:
 
 
 def check_suite(archive: Archive, expansion: Expansion, registry: Registry) -> Iterator[str]:
-    """Where a bundle's scenarios are not those that are installed here, or not all of them."""
+    """Yield scenarios of a bundle that differ from the installed ones or are missing."""
     yield from edition_problems(archive.manifest, expansion)
     known = {s.id: s for s in expansion.scenarios}
     for run in archive.manifest.runs:
@@ -99,7 +99,7 @@ def _claimed(archive: Archive, entry: BundledRun) -> ClaimedRun:
 
 
 def _list_problems(manifest: Manifest) -> Iterator[str]:
-    """Runs that are listed twice, or share a folder."""
+    """Yield runs that are listed twice or share a folder."""
     if not manifest.runs:
         yield "there is no run in it"
     for what in ("directory", "run_id"):
@@ -119,7 +119,7 @@ def _list_problems(manifest: Manifest) -> Iterator[str]:
 
 
 def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:
-    """Members that belong to no run of the bundle."""
+    """Yield members that belong to no run of the bundle."""
     own = {f"{run.directory}/{name}" for run in manifest.runs for name in _OF_A_RUN}
     recordings = {f"{run.directory}/{files.RECORDING}" for run in manifest.runs}
     for name in sorted(names - own - recordings - {LOCK}):
@@ -132,9 +132,9 @@ def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:
 
 
 def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]) -> Iterator[str]:
-    """Labels and crowd that are not those of the scenario; intervals and orders rest on them.
+    """Yield labels and crowds that differ from the scenario's, since intervals and orders use them.
 
-    How a crowd is told by a text of its own may change with the version.
+    The crowd's fingerprint may change between versions.
     """
     record, crowd = run.record, scenario.crowd
     if record.axes != dict(axes):
@@ -159,7 +159,7 @@ def _scenario_problems(
         claimed = _claimed(archive, run)
         text = archive.text(name)
     except InputError:
-        return  # told already
+        return  # already reported
     yield from (f"{run.directory}: {text}" for text in declared_problems(claimed, registry))
     axes = expansion.axes.get(run.scenario, {})
     yield from (f"{run.directory}: {text}" for text in _place_problems(claimed, scenario, axes))

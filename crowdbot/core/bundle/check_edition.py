@@ -1,4 +1,4 @@
-"""Whether a bundle is of the edition that is installed here: suite, lock, rules, seeds."""
+"""Check that a bundle is of the installed edition: suite, lock, rules, seeds."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _SHOWN = 3
 
 
 def missing_runs(expansion: Expansion, there: set[tuple[str, int]]) -> list[str]:
-    """``ID seed-N`` of the edition's runs that are not there, in the suite's order.
+    """Return ``ID seed-N`` of the edition's missing runs, in the suite's order.
 
     Args:
-        expansion: of the suite, which says the seeds.
-        there: scenario and seed of the runs.
+        expansion: the expanded suite, with the seeds.
+        there: scenario and seed of existing runs.
     """
     return [
         f"{scenario.id} seed-{seed}"
@@ -28,14 +28,14 @@ def missing_runs(expansion: Expansion, there: set[tuple[str, int]]) -> list[str]
 
 
 def lock_of(expansion: Expansion) -> Path | None:
-    """The lock file of a suite; None where it has none."""
+    """Return the lock file of a suite; None without one."""
     found = (s.locked.files.lock_path for s in expansion.scenarios if s.locked is not None)
     path = next(found, None)
     return path if path is not None and path.exists() else None
 
 
 def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
-    """Everything that a manifest says about its edition and that does not hold."""
+    """Yield false statements of a manifest about its edition."""
     edition, name = manifest.edition, expansion.suite_id
     lock = lock_of(expansion)
     wanted = {
@@ -62,7 +62,7 @@ def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
 
 
 def _missing(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
-    """Runs that are neither there nor said to be missing, and the other way round."""
+    """Yield runs that are missing but not declared missing, and the opposite."""
     there = {(r.scenario, r.seed) for r in manifest.runs}
     lacking, said = missing_runs(expansion, there), set(manifest.missing)
     hidden = [n for n in lacking if n not in said]

@@ -1,4 +1,4 @@
-"""Whether the scores of a bundled run of several robots fit each other."""
+"""Check that the scores of a bundled fleet run are consistent."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.fleet_scores import AT, fleet_scores
 from crowdbot.core.types.score import Score
 
-#: Of sums that are read from texts.
+#: Rounding tolerance for sums of parsed numbers.
 _ROUNDING = 1e-12
 
 

@@ -1,4 +1,4 @@
-"""Whether the recordings of a bundle are those of its runs: each is read, and hashed again."""
+"""Check that a bundle's recordings belong to its runs, by reading and hashing each."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from crowdbot.errors import InputError
 
 
 def recording_problems(archive: Archive, runs: Sequence[ClaimedRun]) -> Iterator[str]:
-    """What is wrong with the recordings that are in a bundle; nothing where there are none.
+    """Yield problems of the recordings in a bundle; none without recordings.
 
     Args:
-        archive: members and records of it fit each other already.
-        runs: all runs of it.
+        archive: the archive, whose members and records were checked.
+        runs: all its runs.
     """
     used: dict[str, str] = {}
     for run in runs:
@@ -51,7 +51,7 @@ def reference_members(run: ClaimedRun) -> dict[str, str]:
 
 
 def read_member(archive: Archive, name: str) -> RecordedRun:
-    """A recording of a bundle, by way of a temporary file.
+    """Read a recording of a bundle through a temporary file.
 
     Raises:
         InputError: it cannot be read.
@@ -62,7 +62,7 @@ def read_member(archive: Archive, name: str) -> RecordedRun:
 
 @contextmanager
 def _unpacked(archive: Archive, name: str) -> Iterator[Path]:
-    """A recording of a bundle as a file; errors inside do not name that."""
+    """Yield a recording of a bundle as a file; errors do not name the temporary file."""
     with tempfile.TemporaryDirectory(prefix="crowdbot-bundle-") as folder:
         file = Path(folder) / files.RECORDING
         archive.unpack(name, file)
@@ -73,7 +73,7 @@ def _unpacked(archive: Archive, name: str) -> Iterator[Path]:
 
 
 def ownership_problems(run: ClaimedRun, found: RecordedRun) -> Iterator[str]:
-    """Where a recording is not that of a run."""
+    """Yield reasons why a recording does not belong to a run."""
     header, record = found.header, run.record
     hashes = provenance.recording_hashes(record)
     if header.scenario != run.entry.scenario:
@@ -105,10 +105,10 @@ def _run_problems(archive: Archive, run: ClaimedRun, name: str) -> Iterator[str]
 def _attachment_problems(
     archive: Archive, run: ClaimedRun, attachments: Sequence[tuple[str, bytes]]
 ) -> Iterator[str]:
-    """Files inside a recording that are not those of its run; it need not have any.
+    """Yield files inside a recording that differ from those of its run; they are optional.
 
-    The record inside is older than the list of sizes, which the recording's own is in, and than
-    the axes of a run that was made from Python, which `pack` adds.
+    The record inside lacks the list of sizes, which includes the recording itself, and the axes
+    that `pack` adds to runs made from Python.
     """
     if len({name for name, _ in attachments}) < len(attachments):
         yield "two files inside it have one name"
@@ -150,7 +150,7 @@ def _reference_problems(archive: Archive, name: str, wanted: str) -> Iterator[st
 
 
 def _strangers(archive: Archive, used: set[str]) -> Iterator[str]:
-    """Members among the calibration runs that no run was compared with."""
+    """Yield calibration members that no run uses."""
     own = {posixpath.dirname(name) for name in used}
     for name in sorted(archive.names):
         inside = name.startswith("runs/references/")

@@ -1,4 +1,4 @@
-"""Whether the record, the scores and the manifest of one bundled run fit each other."""
+"""Check that record, scores and manifest of one bundled run are consistent."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClaimedRun:
-    """One run as the bundle has it.
+    """One run as contained in the bundle.
 
     Attributes:
-        planners: names that its rows of scores give the planner.
+        planners: names of the planner in its score rows.
     """
 
     entry: BundledRun
@@ -35,7 +35,7 @@ class ClaimedRun:
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Return a readable name."""
         return f"{self.entry.scenario} seed-{self.entry.seed}"
 
 
@@ -48,14 +48,14 @@ def run_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
 
 
 def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
-    """Scores whose unit, direction, category or value is not what their metric declares."""
+    """Yield scores whose unit, direction, category or value contradicts their metric."""
     known = registry.components("metric")
     for score in run.scores:
         metric = known.get(score.metric)
         scored = run.record.metrics.get(score.metric)
         version = None if scored is None else scored.spec_version
         if not isinstance(metric, MetricComponent) or metric.spec_version != version:
-            continue  # not comparable, which is told where scores are compared
+            continue  # not comparable, which the comparison reports
         declared = metric.variants.get(score.variant.partition(AT)[0])
         if declared is None:
             yield f"{score.metric} has no variant '{score.variant[:60]}'"

@@ -1,4 +1,4 @@
-"""The entries of a leaderboard: bundles that are read, checked and, where need be, scored again."""
+"""Leaderboard entries: bundles that are read, checked and, if needed, scored again."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class LeaderboardEntry:
     """One bundle on the leaderboard.
 
     Attributes:
-        name: team and planner, different for each entry.
-        sha256: of the archive.
-        verification: the record beside it, or None.
-        rescored: metrics that were scored again from recordings, as their version had changed.
-        outdated: metrics that were left out, as their version had changed and nothing of the
-            bundle can be scored again.
+        name: team and planner, unique per entry.
+        sha256: hash of the archive.
+        verification: the verification record beside it, or None.
+        rescored: metrics scored again from recordings, since their version has changed.
+        outdated: metrics left out, since their version has changed and the bundle cannot be scored
+            again.
     """
 
     path: Path
@@ -55,7 +55,7 @@ class LeaderboardEntry:
 
     @property
     def ranked(self) -> bool:
-        """Whether it is complete."""
+        """Return True if it is complete."""
         return not self.manifest.missing
 
     @property
@@ -65,7 +65,7 @@ class LeaderboardEntry:
 
 
 def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntry], dict[str, str]]:
-    """All bundles of a folder, by file name, and those that are left out, with the reason.
+    """Return all bundles of a folder, by file name, and reasons for those left out.
 
     Raises:
         InputError: no such folder, or no bundle in it.
@@ -79,7 +79,7 @@ def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntr
             entries.append(_entry(path, registry))
         except InputError as error:
             left_out[path.name] = str(error).removeprefix(f"{path}: ")
-        except Exception as error:  # whatever somebody thought of: it is one bundle, not all
+        except Exception as error:  # any error concerns one bundle only
             left_out[path.name] = f"malformed: {type(error).__name__}: {str(error)[:200]}"
     return _named_apart(entries), left_out
 
@@ -114,14 +114,14 @@ def _named_apart(entries: Sequence[LeaderboardEntry]) -> list[LeaderboardEntry]:
 
 
 def _looks(name: str) -> str:
-    """Equal for names that readers take for the same one."""
+    """Return a key that is equal for names that look alike."""
     plain = unicodedata.normalize("NFKC", name).casefold()
     return " ".join("".join(c for c in plain if unicodedata.category(c) != "Cf").split())
 
 
 # ------------------------------------------------------------------ metrics' versions
 def old_metrics(run: ClaimedRun, registry: Registry) -> set[str]:
-    """Metrics of a run whose version is not the one that is installed."""
+    """Return metrics of a run whose version is not the installed one."""
     known = registry.components("metric")
     return {s.metric for s in run.scores if _version(run, s.metric) != (
         known[s.metric].spec_version if s.metric in known else None)}  # fmt: skip
@@ -165,7 +165,7 @@ def _scored_again(
 def _score(
     archive: Archive, run: ClaimedRun, metrics: Sequence[str], registry: Registry
 ) -> list[Any]:
-    """Scores from the recordings in the archive, with the calibration runs that are there.
+    """Score the recordings in the archive, with the available calibration runs.
 
     Raises:
         InputError: a recording cannot be read, or is not that of the run.

@@ -1,4 +1,4 @@
-"""Writes the leaderboard: one offline page, in the reader's light or dark, that can be sorted."""
+"""Write the leaderboard: one offline, sortable page in the reader's light or dark mode."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
         "suspicion": table.suspicion,
         "crowds": table.crowds,
         "by_crowd": table.by_crowd,
-        "audit": table.audit.text if table.audit else "nobody has audited this suite",
+        "audit": table.audit.text if table.audit else "this suite has not been audited",
         "level": f"{table.summary.level:.0%}",
     }
 
@@ -74,7 +74,7 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
 def _mains(
     table: Standings, entry: LeaderboardEntry, rows: Sequence[Mapping[str, Any]], names: list[str]
 ) -> list[dict[str, str]]:
-    """What stands of the four scores beside an entry's name; ``sort`` is the plain number."""
+    """Return the four main scores beside an entry's name; ``sort`` is the plain number."""
     ranked = [e.name for e in table.entries if e.ranked]
     found = []
     for name, row in zip(names, rows, strict=True):
@@ -87,7 +87,7 @@ def _mains(
 
 
 def _runs(entry: LeaderboardEntry, here: Path) -> list[dict[str, str]]:
-    """Every run, with a link where the bundle was unpacked into a folder of its name beside it."""
+    """Return every run, with a link if the bundle is unpacked in a folder of its name beside it."""
     unpacked = entry.path.with_suffix("")
     listed = []
     for run in entry.runs:
@@ -102,7 +102,7 @@ def _runs(entry: LeaderboardEntry, here: Path) -> list[dict[str, str]]:
 
 
 def _link(file: Path, here: Path) -> str:
-    """Address of a file as seen from the folder of the page."""
+    """Return the address of a file relative to the page's folder."""
     relative = Path(os.path.relpath(file.resolve(), here)).as_posix()
     return quote(relative if relative.startswith(".") else f"./{relative}")
 
@@ -142,7 +142,7 @@ def _state(entry: LeaderboardEntry) -> str:
 
 
 def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
-    """Category -> metrics, each with a cell for every ranked entry; the four scores first."""
+    """Return category -> metrics, with a cell per ranked entry; the four main scores first."""
     ranked = [e for e in table.entries if e.ranked]
     found: dict[str, list[dict[str, Any]]] = {}
     for metric in dict.fromkeys(s.metric for s in table.summary.scores):

@@ -1,4 +1,4 @@
-"""The manifest of a bundle: what is in it, who made it, and by which rules."""
+"""The manifest of a bundle: contents, author, and rules."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, 
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.errors import InputError, hidden_character
 
-#: The version of the bundle format that this release reads and writes.
+#: Version of the bundle format of this release.
 BUNDLE = 1
 MANIFEST, LOCK = "bundle.json", "suite.lock.json"
 
-#: The rules that a bundle is made by; their number is raised when they change.
+#: Version of the bundle rules, raised when they change.
 RULES = 2
 RULES_TEXT = (
     "One planner with one set of parameters drives all scenarios of the suite.",
@@ -27,10 +27,10 @@ RULES_TEXT = (
 
 
 def _shown_alike(text: str) -> str:
-    """A name, as every reader of the leaderboard sees it.
+    """Return a name that every reader of the leaderboard sees alike.
 
     Raises:
-        ValueError: a character in it shows nothing, or turns the text around.
+        ValueError: it contains invisible or bidirectional characters.
     """
     hidden = hidden_character(text, allowed="")
     if hidden:
@@ -38,7 +38,7 @@ def _shown_alike(text: str) -> str:
     return text
 
 
-#: Of a team, or whom to ask: a line of text.
+#: One line of text for a team or contact.
 Name = Annotated[str, Field(max_length=200), AfterValidator(_shown_alike)]
 _NAME: TypeAdapter[str] = TypeAdapter(Name)
 Class = Literal["privileged", "sensors only"]
@@ -56,13 +56,13 @@ class Member(_Model):
 
 
 class Edition(_Model):
-    """What was run.
+    """The suite and rules of a bundle.
 
     Attributes:
-        suite, title: of the suite.
-        lock: SHA-256 of its lock, or empty if it has none.
-        scenarios: how many it has.
-        rules: number of the rules.
+        suite, title: id and title of the suite.
+        lock: SHA-256 of its lock, or empty.
+        scenarios: number of scenarios.
+        rules: version of the rules.
     """
 
     suite: str
@@ -73,12 +73,12 @@ class Edition(_Model):
 
     @property
     def name(self) -> str:
-        """For people; that of the manifest has the seeds, too."""
+        """Return a readable name; the manifest's own also contains the seeds."""
         return f"{self.suite} · {self.lock[:8] or 'no lock'} · rules {self.rules}"
 
 
 class BundledRun(_Model):
-    """One run: where its files are, and the hashes that identify it."""
+    """One run: the location of its files, and the hashes that identify it."""
 
     scenario: str
     seed: int
@@ -92,10 +92,10 @@ class Manifest(_Model):
 
     Attributes:
         planner: as in ``run.json``: kind, name, label and every parameter.
-        classed: whether the planner senses or knows.
-        versions: of the software, the same in all runs.
-        seeds: of the edition; each scenario has a run with each.
-        missing: ``ID seed-N`` of the runs that a partial bundle lacks.
+        classed: class of the planner: sensors only, or privileged.
+        versions: software versions, equal in all runs.
+        seeds: seeds of the edition; each scenario has a run with each.
+        missing: ``ID seed-N`` of runs missing in a partial bundle.
     """
 
     bundle: Annotated[int, Ge(1)]
@@ -114,22 +114,22 @@ class Manifest(_Model):
 
     @property
     def edition_name(self) -> str:
-        """For people: bundles with equal names may be ranked together."""
+        """Return a readable name: bundles with equal names may be ranked together."""
         seeds = "" if self.seeds == [0] else f" · seeds {_ranges(self.seeds)}"
         return f"{self.edition.name}{seeds}"
 
     @property
     def label(self) -> str:
-        """Of the planner."""
+        """Return the planner's label."""
         return str(self.planner.get("label", ""))
 
     def text(self) -> str:
-        """The file."""
+        """Return the file's text."""
         return json.dumps(self.model_dump(mode="json"), indent=1, ensure_ascii=False) + "\n"
 
 
 def name_problem(text: str) -> str:
-    """Why a text is not the name of a team, or of whom to ask; empty if it is."""
+    """Return why a text is not a valid team or contact; empty if it is."""
     try:
         _NAME.validate_python(text)
     except ValidationError as error:
@@ -138,7 +138,7 @@ def name_problem(text: str) -> str:
 
 
 def _ranges(seeds: list[int]) -> str:
-    """``0-4, 7``, whatever the numbers are."""
+    """Return ranges such as ``0-4, 7``."""
     parts: list[list[int]] = []
     for seed in sorted(set(seeds)):
         if parts and seed == parts[-1][-1] + 1:
@@ -149,7 +149,7 @@ def _ranges(seeds: list[int]) -> str:
 
 
 def parse_manifest(text: str) -> Manifest:
-    """A manifest from its text.
+    """Parse a manifest.
 
     Raises:
         InputError: it is not a manifest, or a newer release wrote it.

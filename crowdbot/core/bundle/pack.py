@@ -1,4 +1,4 @@
-"""Packing a bundle from run directories."""
+"""Pack a bundle from run directories."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ _SHOWN = 10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Submission:
-    """What to pack.
+    """The arguments of `pack`.
 
     Attributes:
-        root: of the run directories.
-        planner: name of its folders.
-        team, contact: for the leaderboard; may be empty.
-        partial: whether a set that is not complete may be packed.
-        recordings: whether recordings go in, too.
+        root: root of the run directories.
+        planner: name of the planner's folders.
+        team, contact: texts for the leaderboard; may be empty.
+        partial: True to allow an incomplete set.
+        recordings: True to include recordings.
     """
 
     root: Path
@@ -73,15 +73,15 @@ def pack(
     """Write the bundle of one planner.
 
     Args:
-        submission: what to pack.
-        expansion, lock: of the suite.
+        submission: the selection to pack.
+        expansion, lock: the suite and its lock.
         registry: the installed components.
-        out: the archive; appears under its name only when whole.
+        out: the archive, written atomically.
 
     Raises:
-        InputError: runs are missing, belong to another state of the suite, or differ in what must
-            be equal; or something cannot be read or written.
-        UnknownNameError: no run of this planner is there.
+        InputError: runs are missing, belong to another version of the suite, or are inconsistent;
+            or reading or writing fails.
+        UnknownNameError: there is no run of this planner.
     """
     for option, text in (("--team", submission.team), ("--contact", submission.contact)):
         if problem := name_problem(text):
@@ -107,7 +107,7 @@ def pack(
 
 # ------------------------------------------------------------------------ finding
 def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
-    """Complete runs of the planner, in the suite's order."""
+    """Return complete runs of the planner, in the suite's order."""
     base = submission.root / expansion.folder
     labels = {p.parent.name for p in base.glob("*/*/seed-*") if p.is_dir()}
     if submission.planner not in labels:
@@ -141,7 +141,7 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
 
 
 def other_seeds(submission: Submission, expansion: Expansion) -> list[int]:
-    """Seeds of runs that are there and that the edition does not have."""
+    """Return seeds of existing runs that the edition does not include."""
     base = submission.root / expansion.folder
     names = {p.name for p in base.glob(f"*/{submission.planner}/seed-*") if p.is_dir()}
     numbers = {n.removeprefix("seed-") for n in names}
@@ -156,7 +156,7 @@ def _record(place: Path) -> RunRecord | None:
         return None
     if wrong := record_problems(document):
         raise InputError(f"{place / files.RECORD}: damaged: {wrong[0]}; run it again")
-    if (place / files.SCORES).is_file():  # a missing one is told with the others
+    if (place / files.SCORES).is_file():  # missing files are reported with the others
         read_scores_csv(place / files.SCORES)
     return RunRecord.parse(document, place)
 
@@ -173,7 +173,7 @@ def _check_fits(found: Sequence[_Found], expansion: Expansion, registry: Registr
 
 
 def _check_alike(found: Sequence[_Found]) -> None:
-    """Refuse a bundle of runs that must not be compared with each other."""
+    """Refuse a bundle of runs that cannot be compared with each other."""
     first = found[0]
     for name in ("planner", "versions", "pinned"):
         for run in found[1:]:
@@ -257,7 +257,7 @@ def _manifest(
 
 
 def read_json(text: str, what: str) -> dict[str, Any]:
-    """A JSON document that is a mapping.
+    """Return a JSON document that is a mapping.
 
     Raises:
         InputError: it is not a mapping.

@@ -1,4 +1,4 @@
-"""The verdict on a bundle from runs that were made again: comparison only, no simulation."""
+"""The verdict on a bundle after rerunning runs: comparison only, no simulation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Outcome = Literal[
     "invalid",
     "not re-run",
 ]
-#: What a bundle may be accepted with.
+#: Verdicts with which a bundle is accepted.
 FINE: tuple[Outcome, ...] = ("verified", "within tolerance", "not re-run")
 
 #: How a run that was made again relates to what the bundle claims.
@@ -35,7 +35,7 @@ Relation = Literal["identical", "different", "different_platform", "nondetermini
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rerun:
-    """One run, made again.
+    """One repeated run.
 
     Attributes:
         record: that of the new run.
@@ -56,7 +56,7 @@ class Rerun:
 
     @property
     def relation(self) -> Relation:
-        """How both relate."""
+        """Return the relation of both trajectories."""
         if self.trajectory == self.claimed.entry.trajectory:
             return "identical"
         if not self.same_platform:
@@ -66,16 +66,16 @@ class Rerun:
 
     @property
     def same_platform(self) -> bool:
-        """Whether processor and software are the same, so that trajectories must be, too."""
+        """Return True if processor and software are equal, so that trajectories must be too."""
         return same_platform(self.claimed.record, self.record)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RerunVerdict:
-    """The outcome, and why: one line for each thing that was found.
+    """The outcome, and its reasons: one line per finding.
 
     Attributes:
-        not_comparable: metrics whose version or parameters are not those that are here.
+        not_comparable: metrics whose version or parameters differ from those here.
     """
 
     outcome: Outcome
@@ -85,7 +85,7 @@ class RerunVerdict:
 
 
 def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
-    """What the runs that were made again say about a bundle."""
+    """Return the verdict on a bundle from its reruns."""
     relations = {a.claimed.name: a.relation for a in reruns}
     findings = [
         f"{a.claimed.name}: the trajectory is another one on the same processor "
@@ -130,7 +130,7 @@ def same_platform(claimed: RunRecord, record: RunRecord) -> bool:
 _ENDING = (
     "status", "goal_time", "toppled_time", "sim_time", "density", "privileged", "clamped_commands",
 )  # fmt: skip
-#: Those that follow from the suite.
+#: Keys that follow from the suite.
 _OF_SUITE = ("axis_words", "suite_metrics", "crowd")
 
 
@@ -146,9 +146,9 @@ def _other_ending(rerun: Rerun) -> Iterator[str]:
 
 
 def _other_people(rerun: Rerun) -> Iterator[str]:
-    """People who are not those of the scenario, in a suite that has no lock to compare with.
+    """Yield people that differ from the scenario's, in a suite without a lock.
 
-    On another platform they may be drawn differently; then the trajectory is another one, too.
+    On another platform they may be sampled differently, and then the trajectory differs too.
     """
     said, found = (r.hashes.realisation for r in (rerun.claimed.record, rerun.record))
     if said != found and (rerun.same_platform or rerun.relation == "identical"):
@@ -159,7 +159,7 @@ def _other_people(rerun: Rerun) -> Iterator[str]:
 
 
 def _not_comparable(reruns: Sequence[Rerun]) -> dict[str, str]:
-    """Metrics that were scored otherwise than here -> what to say of each."""
+    """Return metrics that were scored differently here -> explanation."""
     found: dict[str, str] = {}
     for rerun in reruns:
         for metric in sorted({s.metric for s in rerun.claimed.scores}):
@@ -181,10 +181,10 @@ def _versions(said: MetricPart | None, here: MetricPart | None) -> str:
 
 
 def _other_conditions(rerun: Rerun) -> Iterator[str]:
-    """Parameters of metrics and conditions that are not those of the same software here.
+    """Yield metric parameters and conditions that differ although the software is the same.
 
-    With other versions of software or of a metric they may differ; such scores are not compared,
-    and have no rank.
+    With other versions of software or metric they may differ; such scores are neither compared nor
+    ranked.
     """
     claimed, here = rerun.claimed.record, rerun.record
     if claimed.versions != here.versions:
@@ -203,9 +203,9 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
 
 
 def _other_role(rerun: Rerun) -> Iterator[str]:
-    """A role that the planner does not declare; nobody can see it in what it did.
+    """Yield a role that the planner does not declare, which its behaviour cannot show.
 
-    Also what the same software says of the same suite: words, named metrics, the crowd.
+    Also other texts, named metrics and crowds of the same suite and software.
     """
     if rerun.claimed.record.versions == rerun.record.versions:
         for key in _OF_SUITE:
@@ -227,7 +227,7 @@ def _other_version(a: Any, b: Any) -> bool:
 
 # ------------------------------------------------------------------- equal trajectories
 def _unequal(rerun: Rerun) -> Iterator[str]:
-    """Scores that the trajectory, which is the same, does not give."""
+    """Yield scores that do not follow from the equal trajectory."""
     computed = {(s.metric, s.variant): s for s in rerun.scores}
     for score in rerun.claimed.scores:
         if not _comparable(rerun, score):
@@ -247,7 +247,7 @@ def _unequal(rerun: Rerun) -> Iterator[str]:
 
 
 def _comparable(rerun: Rerun, score: Score) -> bool:
-    """Whether a score must be the same if the trajectory is."""
+    """Return True if equal trajectories must give this score."""
     if score.metric in WALL_CLOCK or not _same_metric(rerun, score.metric):
         return False
     return rerun.own is None or (score.metric, score.variant) in rerun.own
@@ -271,7 +271,7 @@ def _same_metric(rerun: Rerun, metric: str) -> bool:
 
 # --------------------------------------------------------------- different trajectories
 def _beyond(others: Sequence[Rerun]) -> Iterator[str]:
-    """Differences that other processors do not explain."""
+    """Yield differences that another processor cannot explain."""
     for metric, spread in SPREADS.items():
         gaps = {a.claimed.name: g for a in others if (g := _gap(a, metric)) is not None}
         for name, gap in gaps.items():
@@ -290,7 +290,7 @@ def _beyond(others: Sequence[Rerun]) -> Iterator[str]:
 
 
 def _gap(rerun: Rerun, metric: str) -> float | None:
-    """Claimed minus computed value of the corrected variant; None where one has no value."""
+    """Return claimed minus computed corrected variant; None without a value."""
     if not _same_metric(rerun, metric):
         return None
     found = []

@@ -1,4 +1,4 @@
-"""A bundle as rows of results, so that statistics and linter read it like a campaign."""
+"""A bundle as result rows, for statistics and the linter, like a campaign."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from crowdbot.core.types.score import Score
 
 
 def results_of(runs: Iterable[tuple[str, ClaimedRun]]) -> Results:
-    """Rows of several bundles' runs.
+    """Return the rows of several bundles' runs.
 
     Args:
-        runs: name to give the planner, which tells entries apart; the run.
+        runs: unique planner name of the entry; the run.
     """
     rows, scores = [], []
     for planner, run in runs:

@@ -1,4 +1,4 @@
-"""Who stands where: entries of one edition and one class, ranked only as far as data goes."""
+"""Leaderboard standings: entries of one edition and class, ranked as far as data allows."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ class Standings:
     """One table of the leaderboard.
 
     Attributes:
-        edition, classed: of all entries.
-        entries: the best in ``by`` first, those that are not ranked last.
-        findings: what besides the planner differs.
-        summary: of the ranked entries.
-        by: metric that decides the order.
-        audit: of the suite; None where nobody has audited it.
-        suspicion: why ranks here may mean nothing, from the audit.
-        crowds: how human the people are, a line for each different crowd.
-        by_crowd: what the order owes to the crowd; None for runs in one crowd.
+        edition, classed: edition and class of all entries.
+        entries: best in ``by`` first, unranked ones last.
+        findings: differences other than the planner.
+        summary: summary of the ranked entries.
+        by: the metric that decides the order.
+        audit: audit of the suite, or None.
+        suspicion: why ranks may be meaningless, from the audit.
+        crowds: realism of the people, a line per different crowd.
+        by_crowd: dependence of the order on the crowd; None for runs in one crowd.
     """
 
     edition: str
@@ -45,18 +45,18 @@ class Standings:
     by_crowd: CrowdRanks | None = None
 
     def rank(self, metric: str, entry: LeaderboardEntry) -> int | None:
-        """1 + how many are better for certain; None where it is not ranked."""
+        """Return 1 + the number of significantly better entries; None if not ranked."""
         if not entry.ranked or metric in entry.outdated:
             return None
         return self.summary.ranks(metric).get(entry.name)
 
     def shares_rank(self, metric: str, entry: LeaderboardEntry) -> bool:
-        """Whether another entry has the same rank."""
+        """Return True if another entry has the same rank."""
         ranks = self.summary.ranks(metric)
         return list(ranks.values()).count(ranks.get(entry.name, 0)) > 1
 
     def score(self, metric: str, entry: LeaderboardEntry) -> PlannerScore | None:
-        """The entry's score, if it is ranked."""
+        """Return the entry's score, if ranked."""
         found = (s for s in self.summary.scores if (s.metric, s.planner) == (metric, entry.name))
         return next(found, None)
 
@@ -68,14 +68,14 @@ def standings(
     audits: Iterable[Audit] = (),
     scales: Scales | None = None,
 ) -> list[Standings]:
-    """One table for each edition and class.
+    """Return one table per edition and class.
 
     Args:
         entries: from `load_entries`.
         by: metric that decides the order.
-        accept: confounds that are accepted; tables print them.
-        audits: of suites, those of others are left out.
-        scales: of the scores, from `score_scales`: intervals do not leave bounds.
+        accept: accepted confounds, which the tables show.
+        audits: audits of suites; unrelated ones are ignored.
+        scales: scales of the scores, from `score_scales`, which bound the intervals.
 
     Raises:
         InputError: entries differ in more than the planner, or a suite has two audits.
@@ -100,16 +100,16 @@ def standings(
 def set_apart(
     entries: Sequence[LeaderboardEntry], accept: Iterable[str]
 ) -> tuple[list[LeaderboardEntry], dict[str, str]]:
-    """Entries that may be compared with each other, and why the others may not, by file name.
+    """Return comparable entries, and reasons against the others, by file name.
 
-    Those stay that can be compared with the most others of their edition and class; of equally
-    many the ones that were verified, then those that come first.
+    Entries comparable with the most others of their edition and class stay; ties go to verified
+    entries, then to the first.
 
     Raises:
         UnknownNameError: there is no such confound.
     """
     accepted = tuple(accept)
-    confounds(results_of(()), accepted)  # a wrong name is the user's, not a bundle's
+    confounds(results_of(()), accepted)  # a wrong name is the user's fault, not a bundle's
     groups: dict[tuple[str, str], list[LeaderboardEntry]] = {}
     for entry in entries:
         groups.setdefault((entry.manifest.edition_name, entry.manifest.classed), []).append(entry)
@@ -120,7 +120,7 @@ def set_apart(
 
 
 def _strangers(group: Sequence[LeaderboardEntry], accept: tuple[str, ...]) -> dict[str, str]:
-    """Why entries of one table cannot be compared with most others of it."""
+    """Return why entries of one table cannot be compared with most of its others."""
     why = dict[str, str]()
     for entry in group:
         if text := _own_trouble(entry, accept):
@@ -140,7 +140,7 @@ def _strangers(group: Sequence[LeaderboardEntry], accept: tuple[str, ...]) -> di
         return sum(frozenset((entry.path, o.path)) in fits for o in left), verified
 
     kept: list[LeaderboardEntry] = []
-    for entry in sorted(left, key=liked, reverse=True):  # equal ones stay in their order
+    for entry in sorted(left, key=liked, reverse=True):  # stable for equal keys
         if text := _difference([*kept, entry], accept):
             why[entry.path.name] = f"cannot be compared with {kept[0].path.name}: {text}"
         else:
@@ -149,18 +149,18 @@ def _strangers(group: Sequence[LeaderboardEntry], accept: tuple[str, ...]) -> di
 
 
 def _own_trouble(entry: LeaderboardEntry, accept: tuple[str, ...]) -> str:
-    """Why an entry cannot even stand alone; empty where it can."""
+    """Return why an entry is inconsistent by itself; empty if it is not."""
     try:
         if text := _difference((entry,), accept):
             return f"its own runs cannot be compared: {text}"
         summarise(results_of((entry.name, run) for run in entry.runs))
-    except Exception as error:  # whatever somebody thought of: it is one bundle, not all
+    except Exception as error:  # any error concerns one bundle only
         return f"malformed: {type(error).__name__}: {str(error)[:200]}"
     return ""
 
 
 def _difference(entries: Sequence[LeaderboardEntry], accept: tuple[str, ...]) -> str:
-    """The first thing besides the planner in which entries differ; empty where there is none."""
+    """Return the first difference of entries other than the planner; empty if there is none."""
     results = results_of((e.name, run) for e in entries if e.ranked for run in e.runs)
     errors = [f for f in confounds(results, accept) if f.severity == "error" and not f.accepted]
     kinds = ", ".join(dict.fromkeys(f.kind for f in errors))
@@ -197,7 +197,7 @@ def _table(
 
     def order(entry: LeaderboardEntry) -> tuple[bool, int, int, float, str]:
         name = entry.name
-        mean = means.get(name, math.inf)  # of few and short runs, where many have failed
+        mean = means.get(name, math.inf)  # few, short runs, many failed
         return not entry.ranked, ranks.get(name, 1), entry.failed, mean, name
 
     return Standings(

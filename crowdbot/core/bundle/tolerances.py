@@ -1,12 +1,12 @@
-"""How far scores of the same run may be apart on two processors.
+"""Tolerances for scores of the same run on two processors.
 
-Processors round differently, and a crowd turns the last digit into another history within some
-seconds. Scores of one run then differ like scores of two runs: no bound on a single one is both
+Processors round differently, and in a crowd a difference in the last digit grows to a different run
+within seconds. Scores then differ like those of two runs: no bound on a single difference is both
 fair and sharp, but differences of honest runs scatter around zero. So there are two rules, both
-from one published number for each score, its ``spread``:
+from one published number per score, its ``spread``:
 
 - no single difference is larger than `SINGLE` spreads;
-- the mean of n differences is no further from zero than `MEAN` spreads over the root of n.
+- the mean of n differences is within `MEAN` spreads / sqrt(n) of zero.
 
 The spread of a score is twice the root mean square by which two runs of one scenario differ that
 have come apart for good: 12 scenarios of challenge-2020, planner dwa, two seeds
@@ -23,13 +23,13 @@ from collections.abc import Mapping
 
 SINGLE, MEAN = 10.0, 4.0
 
-#: Scores of equal trajectories are equal but for the last digits, which sums may round.
+#: Equal trajectories give equal scores up to the last digits, since sums round.
 EQUAL = 1e-9
 
 #: Scores that measure the machine instead of the run.
 WALL_CLOCK = ("max_planner_time", "mean_planner_time")
 
-#: Metric, corrected variant -> spread in its unit; those of success are set, the others measured.
+#: Metric, corrected variant -> spread in its unit; success spreads are set, others measured.
 SPREADS: Mapping[str, float] = {
     "ade_to_reference": 2.3,
     "avg_wall_clearance": 0.96,
@@ -70,15 +70,15 @@ SPREADS: Mapping[str, float] = {
 
 
 def are_equal(a: float, b: float) -> bool:
-    """Whether two scores of one trajectory agree."""
+    """Return True if two scores of one trajectory agree."""
     return math.isclose(a, b, rel_tol=EQUAL, abs_tol=EQUAL)
 
 
 def single_limit(spread: float) -> float:
-    """Largest difference of one run."""
+    """Return the largest allowed difference of one run."""
     return SINGLE * spread
 
 
 def mean_limit(spread: float, runs: int) -> float:
-    """Largest absolute mean of the differences of some runs."""
+    """Return the largest allowed absolute mean difference of some runs."""
     return MEAN * spread / math.sqrt(runs)

@@ -1,4 +1,4 @@
-"""The record of a verification, kept beside the bundle for the leaderboard."""
+"""The record of a verification, stored beside the bundle for the leaderboard."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.errors import InputError
 
 
 def content_hash(bundle: Path) -> str:
-    """SHA-256 of an archive.
+    """Return the SHA-256 of an archive.
 
     Raises:
         InputError: it cannot be read.
@@ -26,7 +26,7 @@ def content_hash(bundle: Path) -> str:
 
 
 def record_path(bundle: Path) -> Path:
-    """Where the record of a bundle's verification is."""
+    """Return the path of a bundle's verification record."""
     return bundle.with_suffix(".verified.json")
 
 
@@ -40,7 +40,7 @@ def save_verification(bundle: Path, record: Mapping[str, Any]) -> None:
 
 
 def read_verification(bundle: Path) -> dict[str, Any] | None:
-    """The record of this very bundle; None if there is none, or it is of another one."""
+    """Return the record of this bundle; None if there is none, or it is of another bundle."""
     try:
         record = parse_json(record_path(bundle).read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,8 +1,8 @@
-"""A worker pool on many machines: workers of a Dask scheduler that somebody else started.
+"""A worker pool on many machines: workers of an existing Dask scheduler.
 
-Every Dask worker keeps one process of ours for each of its threads, so that a planner that hangs
-or crashes ends that process and not the worker. A lost worker's jobs are done by others; what was
-published before is found again by its hash, so that nothing is made twice.
+Every Dask worker keeps one process of ours for each of its threads, so that a planner that hangs or
+crashes ends that process and not the worker. Other workers take over a lost worker's jobs;
+published results are found by their hash, so nothing is repeated.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from crowdbot.core.campaign.worker_process import WorkerProcess
 from crowdbot.core.runs import provenance
 from crowdbot.errors import InputError, MissingLibraryError, SimulationError
 
-#: How long the scheduler and a first worker may take to answer, s.
+#: Timeout for the scheduler and a first worker, s.
 _PATIENCE = 30.0
-#: How long anybody may take to listen at its address, s.
+#: Timeout for a connection to the address, s.
 _LISTENING = 5.0
 _ADDRESS = re.compile(
     r"(?:(?:tcp|tls)://)?(?P<host>\[[0-9a-fA-F:]+\]|[^:/\s\[\]]+):(?P<port>\d{1,5})"
@@ -35,7 +35,7 @@ _own = threading.local()
 
 
 def execute_job(job: Job, versions: dict[str, str]) -> Done:
-    """Execute a job; runs in a Dask worker."""
+    """Execute a job in a Dask worker."""
     if (found := provenance.versions()) != versions:
         return _refused(job, _difference(versions, found))
     if not hasattr(_own, "worker"):
@@ -49,15 +49,15 @@ def execute_job(job: Job, versions: dict[str, str]) -> Done:
 
 
 def probe(token: str) -> tuple[dict[str, str], bool]:
-    """Versions of a worker, and whether it sees a file; runs in a Dask worker."""
+    """Return a worker's versions, and True if it sees a file; runs in a Dask worker."""
     return provenance.versions(), Path(token).exists()
 
 
 def _await_listener(address: str) -> None:
-    """See that somebody listens; Dask's client would go on trying for minutes.
+    """Check that the address accepts connections, since Dask's client would retry for minutes.
 
     Raises:
-        InputError: nobody does, or it is not an address.
+        InputError: it does not, or it is not an address.
     """
     found = _ADDRESS.fullmatch(address)
     if found is None:
@@ -80,10 +80,10 @@ class DaskWorkerPool:
 
     Args:
         address: ``tcp://HOST:PORT`` of the scheduler.
-        out: root of the results; every worker must see it under this name.
+        out: root of the results; every worker must see it under this path.
 
     Attributes:
-        size: threads of all workers when it began.
+        size: number of all workers' threads at the start.
 
     Raises:
         MissingLibraryError: ``distributed`` is not installed.
@@ -99,7 +99,7 @@ class DaskWorkerPool:
             raise MissingLibraryError(text) from error
         _await_listener(address)
         try:
-            connect: Any = distributed.Client  # has no types
+            connect: Any = distributed.Client  # untyped
             self._client: Any = connect(address, timeout=_PATIENCE, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise InputError(f"--cluster {address}: no Dask scheduler answers") from error
@@ -114,18 +114,18 @@ class DaskWorkerPool:
         self.size = self._threads()
 
     def free_slots(self) -> int:
-        """One job is kept waiting for each thread, so that no worker waits for us."""
+        """Return the free slots; one job per thread is queued, so that no worker waits."""
         return max(0, 2 * max(1, self._threads()) - len(self._futures))
 
     def submit(self, job: Job) -> None:
-        """Submit a job; a second one of the same key would be another task."""
+        """Submit a job; another one with the same key would be a separate task."""
         key = f"crowdbot-{job.key}-{uuid.uuid4().hex[:8]}"
         future = self._client.submit(execute_job, job, self._versions, key=key, pure=False)
         self._futures[job.key] = (job, future)
         future.add_done_callback(lambda f, k=job.key: self._ended.put((k, f)))
 
     def finished(self, timeout: float) -> list[Done]:
-        """Jobs that ended.
+        """Return finished jobs.
 
         Raises:
             SimulationError: the scheduler is gone.
@@ -142,11 +142,11 @@ class DaskWorkerPool:
         return [self._done(key, future) for key, future in ended if key in self._futures]
 
     def busy(self) -> list[Busy]:
-        """Jobs that were handed out; the scheduler does not tell how far they are."""
+        """Return submitted jobs; the scheduler does not report their progress."""
         return [Busy(job, None) for job, _ in self._futures.values()]
 
     def close(self) -> None:
-        """Take back what was handed out, and leave the scheduler to others."""
+        """Cancel submitted jobs, and leave the scheduler running."""
         self._client.cancel([future for _, future in self._futures.values()], force=True)
         self._client.close()
 

@@ -1,4 +1,4 @@
-"""What a campaign is going to take: a rough model, corrected by the runs that are there."""
+"""Estimated cost of a campaign: a rough model, corrected by finished runs."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.run_record import RunRecord
 
 # Measured with the challenge's corridor and dwa on one core (docs/reference/performance.md): per
-# simulated second, and for each person in it. Only their proportions matter once runs are there.
+# simulated second, and per person in it. Only the ratios matter once there are runs.
 _SECONDS = {"run": (0.035, 0.00027), "robot_alone": (0.035, 0.0), "crowd_alone": (0.002, 0.00007)}
 _BYTES = {"run": (40e3, 1000.0), "robot_alone": (3e3, 0.0), "crowd_alone": (1e3, 480.0)}
-#: What every job takes besides, s.
+#: Additional time of every job, s.
 _START = 0.5
-#: Robots that arrive do so long before the time limit.
+#: Share of the time limit after which robots that arrive have arrived.
 _SHARE_OF_LIMIT = 0.6
 
 
 @dataclass(slots=True)
 class CostEstimate:
-    """Time and space for jobs; learns from every run that it is shown.
+    """Time and space for jobs, adapted with every finished run.
 
-    The proportion of what was measured to what was expected is kept for each planner, and one
-    for all of them together for a planner that nothing is known of.
+    The ratio of measured to expected cost is kept per planner, and overall for planners without
+    data.
     """
 
     _time: dict[str, list[float]] = field(default_factory=lambda: defaultdict(lambda: [0.0, 0.0]))
     _size: list[float] = field(default_factory=lambda: [0.0, 0.0])
 
     def learn(self, label: str, cost: float, took: float) -> None:
-        """A job of a planner took so many seconds where ``cost`` were expected."""
+        """Learn from a job that took ``took`` seconds with an expected ``cost``."""
         for name in (label, ""):
             self._time[name][0] += took
             self._time[name][1] += cost
@@ -49,26 +49,26 @@ class CostEstimate:
         self._size[1] += expected_bytes("run", people, limit)
 
     def seconds(self, job: Job) -> float:
-        """What a job is going to take, s on one core."""
+        """Return the expected time of a job, s on one core."""
         label = "" if job.kind == "crowd_alone" else job.label
         took, cost = self._time[label] if self._time[label][1] else self._time[""]
         return job.cost * (took / cost if cost else 1.0)
 
     def size(self, kind: Kind, people: int, limit: float) -> float:
-        """What it is going to leave, bytes."""
+        """Return the expected size of its files, bytes."""
         found, expected = self._size
         factor = found / expected if expected and kind == "run" else 1.0
         return expected_bytes(kind, people, limit) * factor
 
 
 def expected_seconds(kind: Kind, people: int, limit: float) -> float:
-    """Processor time of a job before anything was measured, s."""
+    """Return the expected processor time of a job without data, s."""
     base, each = _SECONDS[kind]
     return _START + (base + each * people) * _simulated(kind, limit)
 
 
 def expected_bytes(kind: Kind, people: int, limit: float) -> float:
-    """Size of a recording before anything was measured."""
+    """Return the expected size of a recording without data."""
     base, each = _BYTES[kind]
     return (base + each * people) * _simulated(kind, limit)
 

@@ -1,4 +1,4 @@
-"""Executes jobs one after the other in one process; what the next job needs stays loaded."""
+"""Execute jobs one by one in one process; loaded data stays for the next job."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def execute(
     progress: Callable[[Progress], None] | None = None,
     on_hang: Callable[[], object] | None = None,
 ) -> Done:
-    """Execute one job; whatever goes wrong is part of the answer.
+    """Execute one job; any error is part of the result.
 
     Args:
-        job: what to do.
-        progress: called several times a simulated second.
-        on_hang: called when a planner cannot be interrupted; should end the process.
+        job: the job.
+        progress: called several times per simulated second.
+        on_hang: called if a planner cannot be interrupted; should end the process.
     """
     begin = time.perf_counter()
     try:
@@ -47,7 +47,7 @@ def execute(
 
 
 def failed_job(job: Job, error: Exception, wall_time: float = 0.0) -> Done:
-    """A job that ended with an exception."""
+    """Return a job that ended with an exception."""
     known = isinstance(error, CrowdbotError)
     return Done(
         key=job.key,
@@ -83,10 +83,10 @@ def _execute(
 
 
 def _check_loaded(job: Job, request: Request, prepared: Prepared) -> None:
-    """Refuse a run that would be recorded as that of another planner than the campaign planned.
+    """Refuse a run whose planner differs from the one in the campaign's plan.
 
     Raises:
-        PlannerError: the planner's process died before it said what it is.
+        PlannerError: the planner's process died before it sent its description.
     """
     if not request.choice.died:
         return
@@ -139,14 +139,14 @@ def _open(source: SuiteSource) -> Expansion:
 
 @cache
 def _populate(source: SuiteSource) -> Populate:
-    del source  # each has a memory of its own
+    del source  # each source has its own cache
     return cached_population()
 
 
 def _choice(
     planner: str, settings: tuple[str, ...], source: SuiteSource, place: PlannerPlace
 ) -> PlannerChoice:
-    """Loaded once, but again where its process died: that is one run's misfortune, not of all."""
+    """Load the planner once, or again if its process died, so that only one run fails."""
     key = (planner, settings, source, place)
     if key not in _loaded:
         choice = resolve_planner(planner, _registry(source), settings, place)

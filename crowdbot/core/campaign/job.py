@@ -1,4 +1,4 @@
-"""What is sent to a worker and what comes back: plain values that can be pickled."""
+"""Messages to and from workers: plain values that can be pickled."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Kind = Literal["crowd_alone", "robot_alone", "run"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SuiteSource:
-    """Where a worker finds a suite, to open it itself.
+    """The location of a suite, for a worker to open.
 
     Attributes:
         spec: absolute path, or the name of a packaged suite.
         overrides: ``key=value`` texts.
         plugins: absolute paths of plugins that are not installed.
         allowed: the allow-list of installed plugins; None allows all.
-        crowds: names or absolute paths of crowds that take the place of the scenarios' own.
+        crowds: names or absolute paths of crowds that replace the scenarios' own.
     """
 
     spec: str
@@ -35,9 +35,9 @@ class Job:
     """One simulation: a run, or a calibration run that several runs share.
 
     Attributes:
-        key: id of what it makes; equal keys mean equal jobs.
-        index: of the scenario in its suite; ``spec_hash`` says which one it has to be.
-        planner, settings: as `resolve_planner` takes them, file names absolute.
+        key: id of its result; equal keys mean equal jobs.
+        index: index of the scenario in its suite; ``spec_hash`` must match.
+        planner, settings: arguments of `resolve_planner`, with absolute file names.
         label: the planner's folder.
         out: absolute root of the results.
         directory: what is made, relative to ``out``.
@@ -65,20 +65,20 @@ class Job:
 
     @property
     def title(self) -> str:
-        """What people call it."""
+        """Return a readable name."""
         who = {"crowd_alone": "crowd alone", "robot_alone": f"{self.label} alone"}
         return f"{self.scenario} · {who.get(self.kind, self.label)} · seed {self.seed}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Done:
-    """How a job ended.
+    """The outcome of a job.
 
     Attributes:
-        status: of the run; empty when there is none, and then ``error`` says why.
-        exit_code: what `crowdbot simulate` would have ended with.
-        traceback: what Python said, or what a process left on stderr before it died.
-        wall_time: of the whole job, s.
+        status: status of the run; empty without a run, and then ``error`` explains it.
+        exit_code: the equivalent exit code of `crowdbot simulate`.
+        traceback: the Python traceback, or the last stderr output of a dead process.
+        wall_time: wall time of the whole job, s.
         stages: name -> wall time of its parts, s.
     """
 

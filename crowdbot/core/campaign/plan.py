@@ -1,4 +1,4 @@
-"""The plan of a campaign: which runs there are to be, which are there, what is to be done."""
+"""The plan of a campaign: all its runs, existing ones, and missing jobs."""
 
 from __future__ import annotations
 
@@ -57,16 +57,16 @@ class PlannedRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
-    """What is to be done.
+    """The runs and jobs of a campaign.
 
     Attributes:
         out: absolute root of the results.
-        runs: every run of the campaign, there or not.
-        jobs: what is missing: calibration runs, then runs, the longest first.
-        references: calibration runs of all runs, there or not.
-        estimate: knows the runs that are there.
-        size: what the jobs are going to leave, bytes.
-        left_out: planners that nobody named and that some robot cannot do with -> why.
+        runs: all runs of the campaign, existing or not.
+        jobs: missing calibration runs, then missing runs, longest first.
+        references: calibration runs of all runs, existing or not.
+        estimate: cost estimate, adapted to existing runs.
+        size: expected size of the jobs' files, bytes.
+        left_out: planners added by role that some robot cannot run -> reason.
     """
 
     out: Path
@@ -79,21 +79,21 @@ class Plan:
 
     @property
     def seconds(self) -> float:
-        """Expected time of all jobs on one core."""
+        """Return the expected time of all jobs on one core."""
         return sum(self.estimate.seconds(job) for job in self.jobs)
 
     def count(self, kind: Kind) -> int:
-        """How many jobs of a kind are to be done."""
+        """Return the number of missing jobs of a kind."""
         return sum(job.kind == kind for job in self.jobs)
 
     @property
     def labels(self) -> list[str]:
-        """The planners."""
+        """Return the planners' labels."""
         return list(dict.fromkeys(r.label for r in self.runs))
 
 
 def make_plan(campaign: CampaignRequest, registry: Registry) -> Plan:
-    """Open and check everything, and see what is missing. Nothing is written.
+    """Open and check everything, and find missing runs, without writing.
 
     Raises:
         CrowdbotError: a suite, a scenario, a planner or a setting is wrong.
@@ -106,7 +106,7 @@ def make_plan(campaign: CampaignRequest, registry: Registry) -> Plan:
 
 
 class _PlanBuilder:
-    """Goes through all runs and collects what is missing."""
+    """Goes through all runs and collects missing ones."""
 
     def __init__(
         self, campaign: CampaignRequest, registry: Registry, planners: Sequence[PlannerEntry]
@@ -209,7 +209,10 @@ class _PlanBuilder:
             self._job("run", key, suite, entry, request, prepared, missing)
 
     def _can_run(self, entry: PlannerEntry, request: Request) -> bool:
-        """Whether the robot has what the planner needs; an error, where the user named it."""
+        """Return True if the robot has the planner's sensors.
+
+        Raise if the user named the planner.
+        """
         try:
             preflight(request)
         except InputError as error:
@@ -222,7 +225,7 @@ class _PlanBuilder:
     def _is_missing(
         self, suite: SelectedSuite, entry: PlannerEntry, request: Request, reference: Reference
     ) -> bool:
-        """Whether a calibration run has to be made first; then there is a job for it."""
+        """Return True if a calibration run is missing, and add a job for it."""
         if reference.run_id not in self._jobs:
             there = reference.complete is not None and not self._campaign.options.force
             if self._references[reference.run_id] or there:

@@ -1,4 +1,4 @@
-"""Remembers who walks in a suite: many scenarios share one drawn crowd."""
+"""A cache of a suite's people, since many scenarios share one sampled crowd."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def cached_population() -> Callable[[Scenario, Registry], Population]:
-    """A `population` that draws or reads each table once; every scenario is still checked."""
+    """Return a `population` that samples or reads each table once, but checks every scenario."""
     known: dict[tuple[str, str], Population] = {}
 
     def populate(scenario: Scenario, registry: Registry) -> Population:

@@ -1,4 +1,4 @@
-"""What a campaign is asked for, with every suite and planner opened and checked."""
+"""The request for a campaign, with opened and checked suites and planners."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from crowdbot.errors import InputError, UnknownNameError, UsageError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CampaignRequest:
-    """What a campaign is to run, as the user wrote it.
+    """The request for a campaign, as written by the user.
 
     Attributes:
         suites: paths or names of packaged suites.
-        seeds: of the runs; None: those that each suite names, else 0.
-        roles: planners with these roles are run as well, where the robot has what they need.
-        floors: run floors and ceilings besides, in a sample of the scenarios and at the first
-            seed, where the robot has what they need.
-        only: pattern of scenario ids; must fit something in some suite.
-        sample: run so many scenarios of each suite, drawn; None: all.
+        seeds: seeds of the runs; None: those of each suite, else 0.
+        roles: also run planners with these roles, if the robot has their sensors.
+        floors: also run floors and ceilings, in a sample of the scenarios and with the first seed,
+            if the robot has their sensors.
+        only: pattern of scenario ids; must match at least one scenario.
+        sample: number of randomly chosen scenarios per suite; None: all.
         planner_settings: ``key=value`` texts, for all planners.
         crowds: names of crowds, in each of which every scenario is run; none: in its own.
         options: how; ``force`` makes calibration runs again, too.
@@ -53,7 +53,7 @@ class CampaignRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelectedSuite:
-    """An opened suite, and those of its scenarios that are to be run."""
+    """An opened suite, and its selected scenarios."""
 
     source: SuiteSource
     expansion: Expansion
@@ -61,18 +61,18 @@ class SelectedSuite:
 
     @property
     def name(self) -> str:
-        """The folder of its runs."""
+        """Return the folder of its runs."""
         return self.expansion.folder
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannerEntry:
-    """A planner of the campaign: the text by which a worker finds it, and what it is.
+    """A planner of the campaign: the text with which a worker finds it, and its choice.
 
     Attributes:
         settings: ``key=value`` texts.
-        optional: left out of scenarios whose robot lacks what it needs.
-        sampled: run in a sample of the scenarios, at the first seed.
+        optional: skipped in scenarios whose robot lacks its sensors.
+        sampled: run in a sample of the scenarios, with the first seed.
     """
 
     text: str
@@ -83,11 +83,11 @@ class PlannerEntry:
 
 
 def open_suites(request: CampaignRequest, registry: Registry) -> list[SelectedSuite]:
-    """All suites of a campaign.
+    """Return all suites of a campaign.
 
     Raises:
         SpecError: a document is wrong.
-        UnknownNameError: no such suite, or the pattern fits no scenario.
+        UnknownNameError: no such suite, or the pattern matches no scenario.
         InputError: two suites have the same id.
     """
     suites = []
@@ -113,11 +113,11 @@ def open_suites(request: CampaignRequest, registry: Registry) -> list[SelectedSu
 
 
 def open_planners(request: CampaignRequest, registry: Registry) -> list[PlannerEntry]:
-    """All planners of a campaign.
+    """Return all planners of a campaign.
 
     Raises:
-        UsageError: none is named.
-        InputError: one is wrong, or two would write into the same folders.
+        UsageError: no planner is named.
+        InputError: a planner is invalid, or two would share folders.
         PlannerError: a Python file cannot be imported.
     """
     if not request.planners and not request.roles:
@@ -146,7 +146,7 @@ def open_planners(request: CampaignRequest, registry: Registry) -> list[PlannerE
 
 
 def _by_role(request: CampaignRequest, registry: Registry) -> list[PlannerEntry]:
-    """Planners that nobody named: those of some roles, then floors and ceilings."""
+    """Return planners added by role, then floors and ceilings."""
     sampled: tuple[PlannerRole, ...] = ("floor", "ceiling") if request.floors else ()
     found = []
     for role in (*request.roles, *(r for r in sampled if r not in request.roles)):
@@ -170,12 +170,12 @@ def _check_folders(suites: Sequence[SelectedSuite]) -> None:
 
 
 def _absolute(spec: str) -> str:
-    """A file may be opened from another working directory; a packaged suite has no path."""
+    """Return an absolute path, valid in other working directories; a packaged suite has none."""
     return str(Path(spec).resolve()) if Path(spec).is_file() else spec
 
 
 def _planner(text: str) -> str:
-    """A planner whose files are found from another working directory."""
+    """Return a planner with absolute file names, valid in other working directories."""
     by_robot = planners_by_robot(text)
     if by_robot:
         return ",".join(f"{robot}={_planner(planner)}" for robot, planner in by_robot.items())

@@ -1,4 +1,4 @@
-"""Runs a campaign: jobs in order, what fails put on record, the store kept up to date."""
+"""Run a campaign: execute jobs in order, record failures, and update the store."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ _LOOK = 0.25
 
 @dataclass(slots=True)
 class State:
-    """How far a campaign is.
+    """Progress of a campaign.
 
     Attributes:
-        statuses: of the runs that are there, by key; those of failures are ``failed``.
+        statuses: statuses of existing runs, by key; ``failed`` for failures.
         labels: planner of each run, by key.
-        left: jobs that did not end yet.
-        busy: who does what.
-        failures: jobs that failed, with how.
-        began: monotonic time, s.
-        made: runs that were made in this campaign.
+        left: jobs that have not ended.
+        busy: jobs of the workers.
+        failures: failed jobs with their outcome.
+        began: start in monotonic time, s.
+        made: number of new runs.
     """
 
     plan: Plan
@@ -47,7 +47,7 @@ class State:
 
     @property
     def remaining(self) -> float:
-        """Seconds until the end, as far as one can tell."""
+        """Return the estimated seconds remaining."""
         seconds = sum(self.estimate.seconds(job) for job in self.left.values())
         for at_work in self.busy:
             progress = at_work.progress
@@ -58,7 +58,7 @@ class State:
 
     @property
     def exit_code(self) -> int:
-        """0 when every run is there; 3 when planners or plugins failed, 4 when anything else."""
+        """Return 0 if all runs exist; 3 if planners or plugins failed, 4 for other failures."""
         codes = {d.exit_code for d in self.failures.values()}
         if codes - {PluginError.exit_code}:
             return SimulationError.exit_code
@@ -70,16 +70,16 @@ Listener = Callable[[State, Job | None, Done | None], None]
 
 
 def run_campaign(plan: Plan, pool: WorkerPool, size: int, listener: Listener) -> State:
-    """Do everything that is missing.
+    """Execute all missing jobs.
 
-    What is finished stays, whatever interrupts this function.
+    Finished runs are kept if this function is interrupted.
 
     Args:
         plan: from `make_plan`.
-        pool: executes the jobs; closed at the end.
-        size: how many work at a time, for the estimate.
-        listener: called at the beginning, with each job that ended, and several times a second
-            without one.
+        pool: worker pool; closed at the end.
+        size: number of parallel jobs, for the estimate.
+        listener: called at the start, with each finished job, and several times per second without
+            one.
 
     Raises:
         InputError: the folder cannot be written.
@@ -100,7 +100,7 @@ def run_campaign(plan: Plan, pool: WorkerPool, size: int, listener: Listener) ->
 
 
 class _Campaign:
-    """Which jobs are ready, at work and ended."""
+    """The state of all jobs: ready, running and ended."""
 
     def __init__(self, plan: Plan, pool: WorkerPool, size: int, store: Store) -> None:
         self._pool, self._store, self._out = pool, store, plan.out
@@ -113,13 +113,13 @@ class _Campaign:
             left=jobs,
             size=size,
         )
-        # A run may begin as soon as its calibration runs are there; others go on meanwhile.
+        # A run may start once its calibration runs exist; others run meanwhile.
         self._queue = deque(j for j in jobs.values())
         self._ended: set[str] = set()
         self._axes = {r.key: r.axes for r in plan.runs}
 
     def submit(self) -> None:
-        """Hand out as many jobs as there are free slots for."""
+        """Submit as many jobs as there are free slots."""
         for _ in range(self._pool.free_slots()):
             job = next((j for j in self._queue if self._ended.issuperset(j.depends_on)), None)
             if job is None:
@@ -128,7 +128,7 @@ class _Campaign:
             self._pool.submit(job)
 
     def take(self) -> list[tuple[Job, Done]]:
-        """Jobs that ended, with those that can no longer be done."""
+        """Return finished jobs, and jobs that became impossible."""
         ended = []
         for done in self._pool.finished(_LOOK):
             job = self.state.left.get(done.key)
@@ -182,7 +182,7 @@ def _failure(job: Job, done: Done, axes: dict[str, str]) -> Failure:
 
 
 def _relabel(plan: Plan) -> None:
-    """A suite may call its axes otherwise without changing what happens in a run."""
+    """Update axis labels in records, since a suite may rename axes without affecting runs."""
     for run in plan.runs:
         record = run.record
         if record is not None and (record.axes, record.position) != (run.axes, run.position):

@@ -1,4 +1,4 @@
-"""Samples of scenarios: few, but with as many different crowds as there can be."""
+"""Samples of scenarios with as many different crowds as possible."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ import numpy as np
 from crowdbot.core.runs.identity import Prepared
 from crowdbot.dsl.scenario.seeds import stream_seed
 
-#: Scenarios of a suite in which floors and ceilings are run, where nobody asked for more: as many
-#: as the challenge has crowd draws.
+#: Default number of scenarios per suite for floors and ceilings: that of the challenge's crowd
+#: draws.
 FLOOR_SCENARIOS = 18
 
 
 def sample(scenarios: Sequence[Prepared], count: int, suite: str) -> list[Prepared]:
-    """So many scenarios in their order, equal for equal suites; all if there are no more.
+    """Return this many scenarios in order, equal for equal suites; all if there are no more.
 
-    The crowd draw is the unit of statistics: a second scenario with one crowd is taken only when
-    every crowd has its first.
+    The crowd draw is the unit of statistics: a second scenario with the same crowd is chosen only
+    after every crowd has one.
 
     Args:
-        scenarios: of one suite.
-        count: how many.
-        suite: its name, which names the random stream.
+        scenarios: scenarios of one suite.
+        count: number of scenarios.
+        suite: the suite's name, which also names the random stream.
     """
     rng = np.random.Generator(np.random.PCG64(stream_seed(0, suite, "campaign.sample")))
     draws: dict[str, list[int]] = {}

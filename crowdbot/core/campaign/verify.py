@@ -1,4 +1,4 @@
-"""Makes a random sample of a bundle's runs again."""
+"""Repeat a random sample of a bundle's runs."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
-#: Keys of a planner in run.json that are not parameters of it.
+#: Keys of a planner in run.json that are not parameters.
 _NAMES = ("kind", "name", "label")
 
 
 class NotRunnable(InputError):  # noqa: N818 - an outcome of verification, told as such
-    """The planner of a bundle is not here, or is another one."""
+    """The planner of a bundle is missing or different here."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RerunSetup:
-    """How to make runs again.
+    """The setup for repeating runs.
 
     Attributes:
         choice: the planner, from `choose_planner`.
@@ -59,17 +59,17 @@ class RerunSetup:
 def choose_planner(
     manifest: Manifest, registry: Registry, given: str | None, place: PlannerPlace = ANYWHERE
 ) -> PlannerChoice:
-    """The planner that a bundle was made with.
+    """Return the planner that a bundle was made with.
 
     Args:
-        manifest: of the bundle.
+        manifest: manifest of the bundle.
         registry: the installed components.
-        given: what to use in place of the kind that the bundle names: ``file.py:Class``, or the
-            document of a program.
-        place: where it is to run.
+        given: replacement for the kind in the bundle: ``file.py:Class``, or the document of a
+            program.
+        place: where it runs.
 
     Raises:
-        NotRunnable: it is not here, or what is here is not what the bundle was made with.
+        NotRunnable: it is missing, or differs from the one that made the bundle.
     """
     record = manifest.planner
     kind, digest = str(record.get("kind", "")), record.get("sha256")
@@ -103,12 +103,12 @@ def choose_planner(
 
 
 def draw_sample(runs: Sequence[ClaimedRun], size: int | None, seed: int, content: str) -> list[int]:
-    """Numbers of the runs to make again; None is all of them.
+    """Return the indices of the runs to repeat; all of them if ``size`` is None.
 
     Args:
-        runs: of the bundle.
-        size: how many.
-        seed: chosen by who verifies; a team that knows it in advance knows the sample.
+        runs: runs of the bundle.
+        size: number of runs.
+        seed: chosen by the verifier; a team that knows it in advance knows the sample.
         content: hash of the bundle, so that it cannot be changed without changing the sample.
     """
     if size is None or size >= len(runs):
@@ -120,8 +120,8 @@ def draw_sample(runs: Sequence[ClaimedRun], size: int | None, seed: int, content
 def make_rerun(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
     """Simulate and score one run of a bundle.
 
-    Where the trajectory is another one for no reason it is made a third time, to find out whether
-    the planner does the same twice.
+    If the trajectory differs without a reason, the run is repeated once more, to check if the
+    planner is deterministic.
 
     Raises:
         CrowdbotError: it cannot be simulated.
@@ -164,7 +164,7 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
 
 
 def _own_scores(setup: RerunSetup, run: Run, scores: Sequence[Score]) -> frozenset[tuple[str, str]]:
-    """Scores that calibration runs have no part in, which may be others on this processor."""
+    """Return scores independent of calibration runs, which may differ on this processor."""
     metrics = "*" if setup.expansion.metrics is None else setup.expansion.metrics
     without = {
         (s.metric, s.variant): (s.status, s.value, s.lower, s.upper)
@@ -183,12 +183,12 @@ def _own_scores(setup: RerunSetup, run: Run, scores: Sequence[Score]) -> frozens
 
 
 def _class(record: Mapping[str, Any]) -> str:
-    """Name of the class of a planner from a file."""
+    """Return the class name of a planner from a file."""
     return str(record.get("kind", "")).rpartition(":")[2]
 
 
 def _named(record: Mapping[str, Any]) -> tuple[str, list[str]]:
-    """A planner as `resolve_planner` takes it, with its settings; also those of several robots."""
+    """Return a planner and settings as arguments of `resolve_planner`, also for several robots."""
     robots = record.get("robots")
     if record.get("kind") != "fleet" or not isinstance(robots, Mapping):
         return str(record.get("kind", "")), _settings(record)
@@ -197,12 +197,12 @@ def _named(record: Mapping[str, Any]) -> tuple[str, list[str]]:
 
 
 def _settings(record: Mapping[str, Any]) -> list[str]:
-    """Parameters as texts that `resolve_planner` reads; JSON is YAML."""
+    """Return parameters as texts for `resolve_planner`; JSON is valid YAML."""
     return [f"{k}={json.dumps(v)}" for k, v in _parameters(record).items()]
 
 
 def _parameters(record: Mapping[str, Any]) -> dict[str, Any]:
-    """What the planner was told; of a class from a file these stand apart."""
+    """Return the planner's parameters; those of a class in a file are separate."""
     if "sha256" in record:
         return dict(record.get("parameters") or {})
     return {k: v for k, v in record.items() if k not in _NAMES}

@@ -1,7 +1,7 @@
-"""A worker process: receives jobs through a socket, reports progress, ends when nobody listens.
+"""A worker process: receives jobs through a socket, reports progress, ends with its parent.
 
-A thread sends a beat every second. Code that keeps the interpreter lock stops it, and so its
-silence tells the parent of a planner that hangs where no watchdog of this process can act.
+A thread sends a heartbeat every second. Code that holds the interpreter lock stops it; the silence
+then shows the parent that a planner hangs where no watchdog in this process can act.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from crowdbot.core.campaign.job import Done, Job
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.support.skip_final_gc import end_without_collecting
 
-#: Seconds between beats.
+#: Seconds between heartbeats.
 BEAT = 1.0
 _SEND_PROGRESS = 0.25
 _PR_SET_PDEATHSIG = 1
 
 
 class Beat(NamedTuple):
-    """The process lives; ``progress`` of the job, None before it moves.
+    """The process is alive; ``progress`` of the job, None before it starts.
 
-    ``patient``: the planner may be loading a model, or scores are computed.
+    ``patient``: True while the planner may load a model, or scores are computed.
     """
 
     progress: Progress | None
@@ -37,12 +37,12 @@ class Beat(NamedTuple):
 
 
 class Hung(NamedTuple):
-    """The planner swallows every interruption; the process ends now."""
+    """The planner catches every interruption; the process ends now."""
 
 
 def main(handle: int, parent: int) -> None:
-    """Do jobs until the other end of the socket is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
+    """Execute jobs until the other end of the socket is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # only the parent handles Ctrl-C
     _die_with(parent)
     faulthandler.enable()
     end_without_collecting()
@@ -62,7 +62,7 @@ def main(handle: int, parent: int) -> None:
 
 
 class _Line:
-    """The socket; several threads send through it."""
+    """The socket, shared by several threads."""
 
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
@@ -71,7 +71,7 @@ class _Line:
         self._sent = 0.0
 
     def send(self, message: Beat | Hung | Done) -> None:
-        """Send; without a listener the process ends at once."""
+        """Send a message; if the parent is gone, end the process."""
         with self._lock:
             try:
                 self.connection.send(message)
@@ -79,13 +79,13 @@ class _Line:
                 os._exit(1)
 
     def beat(self) -> None:
-        """For ever; the thread's work."""
+        """Send heartbeats until the process ends."""
         while True:
             self._beat()
             time.sleep(BEAT)
 
     def report(self, progress: Progress) -> None:
-        """Called by the simulation."""
+        """Report progress, called by the simulation."""
         self.progress = progress
         now = time.monotonic()
         if now >= self._sent + _SEND_PROGRESS or progress.t >= progress.limit:
@@ -93,7 +93,7 @@ class _Line:
             self._beat()
 
     def hung(self) -> None:
-        """Called by the watchdog's thread when a planner cannot be interrupted."""
+        """Report a hang, called by the watchdog's thread if a planner cannot be interrupted."""
         self.send(Hung())
         os._exit(3)
 
@@ -104,11 +104,11 @@ class _Line:
 
 
 def _die_with(parent: int) -> None:
-    """Be killed when the parent is: at once on Linux, elsewhere at the next beat."""
+    """Die with the parent: at once on Linux, elsewhere at the next heartbeat."""
     if sys.platform == "linux":
         libc: Any = ctypes.CDLL(None)
         libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it was killed before this line
+    if os.getppid() != parent:  # the parent died before this line
         os._exit(1)
 
 

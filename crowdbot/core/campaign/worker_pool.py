@@ -1,4 +1,4 @@
-"""The contract of worker pools, and the one whose workers are processes on this machine."""
+"""The interface of worker pools, and the pool of local processes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.runs.outcome import Progress
 
 
 class Busy(NamedTuple):
-    """A job that a worker executes now; ``progress`` where it is known."""
+    """A job that a worker is executing; ``progress`` if known."""
 
     job: Job
     progress: Progress | None
@@ -22,29 +22,29 @@ class WorkerPool(Protocol):
     """Executes jobs, several at a time."""
 
     def free_slots(self) -> int:
-        """How many more jobs may be submitted now."""
+        """Return the number of jobs that can be submitted now."""
 
     def submit(self, job: Job) -> None:
         """Start a job; there must be a free slot."""
 
     def finished(self, timeout: float) -> list[Done]:
-        """Jobs that ended; waits up to ``timeout`` seconds for one."""
+        """Return finished jobs; wait up to ``timeout`` seconds for one."""
 
     def busy(self) -> Sequence[Busy]:
-        """Jobs that are executed now, for people to look at."""
+        """Return running jobs, for display."""
 
     def close(self) -> None:
         """End all workers at once."""
 
 
 class LocalWorkerPool:
-    """Processes on this machine."""
+    """A pool of processes on this machine."""
 
     def __init__(self, size: int) -> None:
         self._workers = [WorkerProcess() for _ in range(size)]
 
     def free_slots(self) -> int:
-        """How many processes have nothing to do."""
+        """Return the number of idle processes."""
         return sum(w.job is None for w in self._workers)
 
     def submit(self, job: Job) -> None:
@@ -52,13 +52,13 @@ class LocalWorkerPool:
         next(w for w in self._workers if w.job is None).submit(job)
 
     def finished(self, timeout: float) -> list[Done]:
-        """Jobs that ended."""
+        """Return finished jobs."""
         at_work = [w for w in self._workers if w.job is not None]
         wait([w.connection for w in at_work], timeout)
         return [done for w in at_work if (done := w.poll()) is not None]
 
     def busy(self) -> list[Busy]:
-        """Jobs that are executed now."""
+        """Return running jobs."""
         return [Busy(w.job, w.progress) for w in self._workers if w.job is not None]
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""One worker process as its parent sees it: sent jobs, watched, replaced when it dies."""
+"""One worker process, as used by its parent: sent jobs, monitored, replaced if it dies."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.errors import PlannerHungError, SimulationError
 
-#: Jobs after which a process is replaced: libraries and plugins may leak.
+#: Number of jobs after which a process is replaced: libraries and plugins may leak.
 RECYCLE = 200
-#: How often a job is tried when its process dies.
+#: Number of attempts at a job whose process dies.
 TRIES = 3
-#: Beyond the watchdog's own limits, for a machine that is busy, s.
+#: Additional time beyond the watchdog's limits, for a busy machine, s.
 _SLACK = 5.0
 _TAIL = 20_000
 _ONE_THREAD = (
     "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
 )  # fmt: skip
-#: A step of Drake's contact solver makes and frees some hundreds of small objects, and glibc keeps
-#: seven freed ones of a size at hand; with more the plant's step is a quarter faster. The C
-#: library reads this when a process starts; others than glibc do not.
+#: A step of Drake's contact solver allocates and frees hundreds of small objects, and glibc caches
+#: seven freed ones per size; with more the plant's step is a quarter faster. The C library reads
+#: this at process start; only glibc does.
 _ALLOCATOR = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=400"}
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
@@ -42,16 +42,16 @@ _START = (
 
 
 def worker_environment() -> dict[str, str]:
-    """Environment of a worker: this process's, one thread, and a roomy allocator."""
+    """Return the environment of a worker: one thread, and a larger allocator cache."""
     return {**_ALLOCATOR, **os.environ, **dict.fromkeys(_ONE_THREAD, "1")}
 
 
 class WorkerProcess:
-    """A warm process that does one job at a time, and is started when it is needed.
+    """A warm process that executes one job at a time, started on demand.
 
     Attributes:
-        job: what it is doing.
-        progress: how far it is with that.
+        job: its job.
+        progress: progress of the job.
     """
 
     def __init__(self) -> None:
@@ -66,26 +66,26 @@ class WorkerProcess:
 
     @property
     def connection(self) -> Connection:
-        """What becomes readable when there is a message; of a process that does a job."""
+        """Return the connection of a busy process, readable when there is a message."""
         assert self._connection is not None
         return self._connection
 
     @property
     def pid(self) -> int | None:
-        """Of the process, if there is one."""
+        """Return the process's id, if it runs."""
         return self._process.pid if self._process else None
 
     def submit(self, job: Job) -> None:
-        """Start a job; the process must have none."""
+        """Start a job; the process must be idle."""
         assert self.job is None
         self.job, self.progress, self._deaths = job, None, 0
         self._began = time.monotonic()
         self._send()
 
     def poll(self) -> Done | None:
-        """Look at what was sent; the end of the job, if it is that.
+        """Read messages; return the end of the job, if there is one.
 
-        A process that died is replaced, and does the same job again, `TRIES` times in all.
+        A dead process is replaced and repeats the job, with at most `TRIES` attempts.
         """
         try:
             while self.connection.poll():
@@ -102,7 +102,7 @@ class WorkerProcess:
         return self._give_up(self._silence()) if self._is_silent() else None
 
     def stop(self) -> None:
-        """End the process, whatever it does."""
+        """End the process, regardless of its state."""
         if self._process is not None:
             self._process.kill()
             self._process.wait()
@@ -123,12 +123,12 @@ class WorkerProcess:
         try:
             self.connection.send(self.job)
         except OSError:
-            return  # it died; the next look at it tells
+            return  # it died, which the next poll detects
 
     def _start(self) -> None:
-        """A fresh interpreter: threads do not survive a fork, and no script is run again."""
+        """Start a fresh interpreter: threads do not survive a fork, and no script is run again."""
         ours, theirs = Pipe()
-        # What it prints must not get into tables; the end of it tells why it died.
+        # Its output must not get into tables; the end of it shows why it died.
         self._said = tempfile.TemporaryFile(mode="ab+")  # noqa: SIM115
         command = [sys.executable, "-c", _START, json.dumps(sys.path)]
         with theirs:

@@ -1,13 +1,13 @@
 """The crowd engine, usable without Drake.
 
 - `engine`: decisions and ticks of one crowd; `step` is one tick, compiled.
-- `agents`, `world`: what stays the same; `parameters` is the form that compiled code takes.
-- `state`: what changes, one flat vector; `routes`, `portals`, `periodic_boundary` change goals.
-- `policy`: the contract of crowd policies; `build` builds and checks them,
-  `desired_acceleration` asks them, `from_spec` makes one from fields as in a scenario.
+- `agents`, `world`: constant data; `parameters` is their form for compiled code.
+- `state`: variable data, one flat vector; `routes`, `portals`, `periodic_boundary` change goals.
+- `policy`: the interface of crowd policies; `build` builds and checks them, `desired_acceleration`
+calls them, `from_spec` makes one from fields as in a scenario.
 - `contact/`: forces between people, walls, pillars and robots.
-- `response/`: how people take robots.
-- `routing/`: how people find their way around walls.
+- `response/`: how people respond to robots.
+- `routing/`: path finding around walls.
 - `velocity_search/`: policies that minimise costs over candidate velocities.
 - `recorded`: trajectories of real people, from a CSV file.
 """

@@ -1,4 +1,4 @@
-"""Agents: what each person keeps for the whole run."""
+"""Agents: constant data of each person."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
 
-#: What happens at the end of a route: through the flow's portals and on; standing still; out of
-#: the world for good; from the first point again; back to where one came in; on in the direction
-#: from the first point to the second, for ever.
+#: Behaviour at the end of a route: through the flow's portals and on; stand still; leave the world
+#: for good; start from the first point again; back to the entrance; on in the direction from the
+#: first point to the second, forever.
 PORTAL, STOP, REMOVE, LOOP, RETURN, ONWARD = range(6)
 
-#: Members of a group walk so far beside each other, between centres, m.
+#: Spacing of group members side by side, between centres, m.
 _ABREAST = 0.75
 
 
@@ -30,22 +30,22 @@ class Agents:
         start_time: (N,) when the agent enters the world, s.
         at_goal: (N,) ``PORTAL``, ``STOP``, ``REMOVE``, ``LOOP``, ``RETURN`` or ``ONWARD``.
         flow: (N,) row of the world's portals, for ``PORTAL``.
-        policy: (N,) number of the policy that the agent follows.
+        policy: (N,) index of the agent's policy.
         route: (W, 2) points of all routes in the agents' order, m; for all but ``PORTAL``.
         first: (N + 1,) rows of ``route`` that belong to agent i: first[i] to first[i + 1].
-        ignores_robot: (N,) whether the agent takes no notice of robots until they touch.
-        late: (N,) whether the agent notices robots late, where people notice them at all.
+        ignores_robot: (N,) True if the agent ignores robots until they touch.
+        late: (N,) True if the agent notices robots late, if people notice them at all.
         goal_area: (W, 3) size along own x and y (m) and rotation (rad) of the area around each
             point of ``route``; zeros: the point itself is the goal.
-        pause: (W,) how long the agent stays at each point, s.
-        ahead: (N,) row of the agent before it in a queue; -1: in no queue, or the first.
-        origin: (N, 5) middle, size and rotation of the area in which the agent comes in, m and
-            rad; zeros: it has no choice.
-        group: (N,) agents with equal numbers belong together; -1: alone.
-        heading: (N,) way faced by who begins at its goal, rad.
-        looks: what sensors see of each; None: of all the usual body.
-        avoided_radius: (N,) of the disc that policies and steering parts keep clear of, m; by
-            default ``radius``, which is what touches.
+        pause: (W,) time at each point, s.
+        ahead: (N,) row of the previous agent in a queue; -1: not in a queue, or first.
+        origin: (N, 5) centre, size and rotation of the area in which the agent enters, m and rad;
+            zeros: a point.
+        group: (N,) number of the agent's group; -1: alone.
+        heading: (N,) facing direction of agents that start at their goal, rad.
+        looks: appearance for sensors; None: all default.
+        avoided_radius: (N,) radius that policies and steering parts keep clear, m; default:
+            ``radius``, which is used for contact.
     """
 
     id: NDArray[np.int64]
@@ -120,10 +120,10 @@ class Agents:
         looks: Appearance | None = None,
         avoided_radius: ArrayLike | None = None,
     ) -> Agents:
-        """Agents from rows or single numbers; with routes they stop at the end, else portals.
+        """Build agents from rows or single numbers; with routes they stop at the end, else portals.
 
-        ``goal_areas`` and ``pauses`` have for each agent nothing or an entry for each point of its
-        route, ``origins`` nothing or five numbers.
+        ``goal_areas`` and ``pauses`` are, per agent, empty or have an entry per point of its route;
+        ``origins`` are empty or five numbers.
 
         Raises:
             ValueError: rows differ in length, ids repeat, or a number is not finite.
@@ -168,7 +168,7 @@ class Agents:
         return made
 
     def check(self) -> None:
-        """Refuse what would make a simulation meaningless.
+        """Refuse data that would make a simulation meaningless.
 
         Raises:
             ValueError: ids repeat, a number is not finite or a size is not positive.
@@ -207,7 +207,10 @@ class Agents:
 
     @property
     def guide(self) -> NDArray[np.int64]:
-        """(N,) id of the first of each one's group, by whose draws all of it go; else the own."""
+        """Return (N,) the id of the first member of each agent's group.
+
+        All members use its draws; alone, it is the own id.
+        """
         guide = self.id.copy()
         for number in np.unique(self.group[self.group >= 0]):
             members = self.group == number
@@ -216,7 +219,7 @@ class Agents:
 
     @property
     def abreast(self) -> Array:
-        """(N,) how far beside the goal of its group each one's own is, to the left; m."""
+        """Return (N,) how far each agent's goal is to the left of its group's goal, m."""
         beside = np.zeros(len(self))
         for number in np.unique(self.group[self.group >= 0]):
             members = np.flatnonzero(self.group == number)
@@ -226,10 +229,10 @@ class Agents:
 
 
 def _along(routes: Sequence[Sequence[Any]] | None, given: Any, usual: Any) -> Array:
-    """One entry for each point of all routes; the usual one for agents who are given none.
+    """Return one entry per point of all routes; the default for agents without entries.
 
     Raises:
-        ValueError: an agent has another number of entries than points.
+        ValueError: an agent has a different number of entries than points.
     """
     routes = routes or ()
     given = given or [()] * len(routes)

@@ -1,4 +1,4 @@
-"""Policies and cost functions as plugins return them, checked before they are used."""
+"""Build policies and cost functions from plugins, and check them before use."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def build_policy(
     costs: Sequence[CompiledCost | NumpyCost],
     agents: Agents,
 ) -> CheckedPolicy:
-    """The policy that a spec describes, for some agents; each of its answers is checked.
+    """Build the policy of a spec, for some agents; each of its results is checked.
 
     Args:
         costs: what it minimises, built.
@@ -60,10 +60,10 @@ def build_policy(
 
 
 def build_cost(registry: Registry, spec: CostFunctionSpec) -> CompiledCost | NumpyCost:
-    """The cost function that a spec describes.
+    """Build the cost function of a spec.
 
     Raises:
-        PluginError: it cannot be built, or does not fit its contract.
+        PluginError: it cannot be built, or does not satisfy its interface.
     """
     call = registry.plugin_call(spec)
     return registry.build(
@@ -72,14 +72,14 @@ def build_cost(registry: Registry, spec: CostFunctionSpec) -> CompiledCost | Num
 
 
 def checked_cost(cost: object, call: PluginCall) -> CompiledCost | NumpyCost:
-    """A cost function that fits its contract, as far as that can be seen before it is called.
+    """Return a cost function, checked as far as possible before calls.
 
     Args:
-        cost: what a build function returned.
-        call: the boundary to its plugin.
+        cost: result of a build function.
+        call: call boundary to its plugin.
 
     Raises:
-        PluginError: it does not.
+        PluginError: it does not satisfy its interface.
     """
     if not isinstance(cost, CompiledCost | NumpyCost):
         raise PluginError(

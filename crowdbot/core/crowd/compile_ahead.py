@@ -1,4 +1,4 @@
-"""The crowd's dearest functions, compiled by a second process while a first run compiles the rest.
+"""Compile the crowd's slowest functions in a second process, in parallel to a first run.
 
 A run calls them late: first it prepares robot, planner and cost functions. They are compiled by
 calling them for one person at most, the dearest first, so that two processes seldom want the same
@@ -24,12 +24,12 @@ from crowdbot.core.types.arrays import Array
 
 
 def crowd_compiled_ahead() -> AbstractContextManager[None]:
-    """Within this a second process compiles, if nothing is compiled yet."""
+    """Compile in a second process during the context, if nothing is compiled yet."""
     return compiled_ahead(__name__)
 
 
 class _Chooses:
-    """A policy that samples velocities, as most crowds do, without cost functions."""
+    """A policy that samples velocities, like most crowds, without cost functions."""
 
     def __init__(self, agents: Agents) -> None:
         self._sampler = Sampler(Sampling(), WeightedCosts((), agents))
@@ -39,7 +39,7 @@ class _Chooses:
 
 
 def compile_ahead() -> None:
-    """Ticks of a crowd without robots, then a decision, then what a robot adds.
+    """Compute ticks of a crowd without robots, then a decision, then with a robot.
 
     Types alone matter: those of a run are the same.
     """

@@ -16,11 +16,11 @@ from crowdbot.errors import PluginError
 
 
 class CheckedPolicy:
-    """A policy with the boundary to its plugin; for everything else the policy itself.
+    """A policy with its call boundary; otherwise it behaves like the policy.
 
     Args:
-        policy: what a build function returned.
-        call: the boundary; by default one that names the policy's class.
+        policy: result of a build function.
+        call: call boundary; default: one that names the policy's class.
 
     Raises:
         PluginError: it is not a policy.
@@ -43,11 +43,11 @@ class CheckedPolicy:
 
 
 def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
-    """Accelerations (N, 2) of those who decide, m/s^2; others' rows mean nothing.
+    """Return accelerations (N, 2) of agents that decide, m/s^2; other rows are meaningless.
 
     Raises:
-        PluginError: the policy raised, its answer has a wrong shape, or is not finite for one who
-            decides.
+        PluginError: the policy raised, its result has a wrong shape, or is not finite for an agent
+            that decides.
     """
     call, accelerates = _call(policy), True
     with call("decision", view.t):
@@ -66,10 +66,10 @@ def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
 
 
 def candidates_of(policy: CrowdPolicy) -> VelocityCandidates | None:
-    """The fixed velocities among which a policy chooses, where it lists them.
+    """Return the fixed velocities among which a policy chooses, if it lists them.
 
     Raises:
-        PluginError: its ``velocity_candidates`` raised, or are something else.
+        PluginError: its ``velocity_candidates`` raised or are invalid.
     """
     call = _call(policy)
     with call("velocity_candidates"):
@@ -97,14 +97,14 @@ def _call(policy: CrowdPolicy) -> PluginCall:
     return policy.call if isinstance(policy, CheckedPolicy) else CheckedPolicy(policy).call
 
 
-#: Components of an answer beyond this would overflow, m/s or m/s^2.
+#: Larger components of a result would overflow, m/s or m/s^2.
 _MOST = 1e9
 
 
 def _check(answer: Array, view: CrowdView, call: PluginCall) -> None:
     if answer.shape != view.position.shape:
         call.fail(f"returned shape {answer.shape} instead of {view.position.shape}")
-    if np.vdot(answer, answer) < _MOST**2:  # neither if one is NaN
+    if np.vdot(answer, answer) < _MOST**2:  # neither is NaN
         return
     finite = np.all(np.abs(answer) < _MOST, axis=1)
     decides = view.present if view.decides is None else view.decides

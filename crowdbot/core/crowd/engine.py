@@ -30,22 +30,22 @@ from crowdbot.core.support.records import numbers_of
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Makes the policy of a set of agents.
+#: Builds the policy of a set of agents.
 PolicyFactory = Callable[[Agents], CrowdPolicy]
 
 NOBODY, DISCS = np.zeros((0, 8)), np.zeros((0, 0, 2))
 NONE, NO_STIFFNESSES = np.zeros(0, np.int64), np.zeros(0)
 _NOT_SHOWN = np.zeros((0, 5))
-_SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot that policies know
-_MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # those that say how it moves
+_SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot used by policies
+_MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # columns of its motion
 
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Agents who follow one policy and see the same.
+    """Agents with the same policy and the same view.
 
     Attributes:
-        foreign: whether the policy is not crowdbot's own, which writes to nothing that it is given.
+        foreign: True for a third-party policy; crowdbot's own never write to their inputs.
     """
 
     policy: CrowdPolicy
@@ -55,7 +55,7 @@ class _Group:
 
 
 class CrowdEngine:
-    """Advances a flat state vector in place; keeps no state of its own.
+    """Advances a flat state vector in place; has no state of its own.
 
     Args:
         agents: all, present or to come.
@@ -112,9 +112,9 @@ class CrowdEngine:
         self._usual: dict[int, tuple[Indices, Array]] = {}
 
     def initial_state(self, robots: int = 1) -> Array:
-        """The state at t = 0, with room for the contacts of some robots.
+        """Return the state at t = 0, with room for the contacts of some robots.
 
-        Those who start at once walk to their first goal at preferred speed; others wait.
+        Agents that start at once walk to their first goal at preferred speed; others wait.
         """
         flat = s.blank(len(self.agents), robots)
         (_, rows), people = s.view(flat), s.people_in(flat)
@@ -148,7 +148,7 @@ class CrowdEngine:
         return flat
 
     def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
-        """(N,) who begins with a stay: where its first goal is, which is a point."""
+        """Return (N,) agents that start with a stay: at their first goal, which is a point."""
         a = self.agents
         found: NDArray[np.bool_] = self._people.traits["stays"] != 0.0
         stays = found.copy()
@@ -174,18 +174,18 @@ class CrowdEngine:
         numbers: Indices | None = None,
         stiffnesses: Array | None = None,
     ) -> None:
-        """One tick of 1/128 s, in place; decides first when a decision is due.
+        """Advance one tick of 1/128 s, in place; first decide if a decision is due.
 
         Args:
             flat: state vector, with room for as many robots.
-            robots: (R, 8) x, y, vx, vy, physical and perceived radius, heading, yaw rate; the
-                last two may be left out.
-            outline: (K, 2) of robots that are not discs, see `robot_contact`; or (R, K, 2) of each
-                of them, those with fewer corners filled up with NaN.
-            dt: length of a tick, s. Another one is for studies of contacts: it is the engine's
-                clock too, so that decisions come every so many ticks, not seconds.
-            numbers: (R,) which of the robots of the state they are; None: the first ones.
-            stiffnesses: (R,) of people against each of them, N/m; None: as the world says.
+            robots: (R, 8) x, y, vx, vy, physical and perceived radius, heading, yaw rate; the last
+                two are optional.
+            outline: (K, 2) of robots that are not discs, see `robot_contact`; or (R, K, 2) per
+                robot, padded with NaN.
+            dt: length of a tick, s. Other values are for studies of contacts: it is also the
+                engine's clock, so decisions depend on ticks, not seconds.
+            numbers: (R,) indices of the robots in the state; None: the first ones.
+            stiffnesses: (R,) stiffness of contact with each, N/m; None: as in the world.
 
         Raises:
             ValueError: there are more robots than the state has room for.
@@ -209,21 +209,21 @@ class CrowdEngine:
         return self._usual[count]
 
     def advance_alone(self, flat: Array, most: int) -> int:
-        """Ticks without robots, in place, as `advance` makes them one by one.
+        """Advance several ticks without robots, in place, with the same result as `advance`.
 
         Ends after a tick in which a trip ends, and before the next decision.
 
         Args:
             flat: state vector.
-            most: how many ticks at most, 1 or more.
+            most: largest number of ticks, at least 1.
 
         Returns:
-            how many ticks it were.
+            number of ticks advanced.
         """
         since = int(flat[s.TICK]) % self._ticks_per_decision
         if since == 0:
             self._decide(flat, NOBODY, DISCS)
-        # What pushes from across a border moves with every tick.
+        # Images across a border move with every tick.
         count = min(most, self._ticks_per_decision - since)
         count = count if self.world.periodic_boundary is None else 1
         return int(
@@ -241,7 +241,7 @@ class CrowdEngine:
         numbers: Indices,
         stiffnesses: Array,
     ) -> tuple[Any, ...]:
-        """All that `tick` is given."""
+        """Return all arguments of `tick`."""
         return (
             flat, robots, outlines, numbers, stiffnesses, self._fixed(flat), dt, *self._parameters,
         )  # fmt: skip
@@ -254,7 +254,7 @@ class CrowdEngine:
             sample_rate: Hz, a power of two up to 128.
 
         Returns:
-            times (T,) in s and positions (T, N, 2) in m, NaN for who is not in the world.
+            times (T,) in s and positions (T, N, 2) in m, NaN for agents outside the world.
         """
         flat, every = self.initial_state(), ticks(sample_rate)
         times, positions = [], []
@@ -326,7 +326,7 @@ class CrowdEngine:
         )
 
     def _fixed(self, flat: Array) -> Array:
-        """Discs (D, 3) that push: pillars, and people across the border."""
+        """Return the discs (D, 3) that push: pillars, and images of people across the border."""
         if self.world.periodic_boundary is None:
             return self.world.pillars
         _, rows = s.view(flat)
@@ -340,12 +340,12 @@ class CrowdEngine:
 
 
 def _alike(outline: Array, robots: int) -> Array:
-    """One outline (K, 2) for each robot."""
+    """Return one outline (K, 2) per robot."""
     return outline[np.newaxis] if robots == 1 else np.repeat(outline[np.newaxis], robots, axis=0)
 
 
 def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
-    """(N,) True for agents whose policy is shown the robots; people who notice late are not."""
+    """Return (N,) agents whose policy sees robots; people who notice late do not."""
     return ~(agents.ignores_robot | agents.late) & world.response.shown_to_policies
 
 

@@ -1,4 +1,4 @@
-"""A crowd's policy from its fields, as in a scenario, but without one."""
+"""Build a crowd's policy from its fields, as in a scenario, but without one."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def policy_of(
 
     Args:
         policy: ``kind`` and other fields of a crowd policy.
-        costs: the same of the cost functions that it minimises, by any names.
-        registry: what is installed; by default looked up now.
+        costs: the same for its cost functions, by any names.
+        registry: the installed components; default: discovered now.
 
     Raises:
-        InputError: a field does not exist or has no valid value.
+        InputError: a field does not exist or has an invalid value.
         UnknownNameError: nothing of a kind is installed.
     """
     known = registry or discover()

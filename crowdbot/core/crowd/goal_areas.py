@@ -1,4 +1,4 @@
-"""Rectangles of the floor that may be turned: goals to enter anywhere, and where people come in."""
+"""Rotatable rectangles of the floor: goals entered at any point, and entrances."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ PLACE = record_type(PlaceRecord)
 def point_in_area(
     x: float, y: float, area: PlaceRecord, margin: float, u: float, v: float
 ) -> tuple[float, float]:
-    """The point of an area, shrunk by a margin, at fractions u and v of its own x and y.
+    """Return the point of a shrunk area at fractions u and v of its own x and y.
 
     Args:
         x, y: middle of the area, m.
@@ -50,7 +50,7 @@ def point_in_area(
 def into_area(
     px: float, py: float, x: float, y: float, area: PlaceRecord, margin: float
 ) -> tuple[float, float]:
-    """The point of an area, shrunk by a margin, that is nearest to p in the area's own frame."""
+    """Return the point of a shrunk area that is nearest to p in the area's own frame."""
     c, s = math.cos(area.turn), math.sin(area.turn)
     a, b = c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
     ha, hb = max(0.0, 0.5 * area.width - margin), max(0.0, 0.5 * area.height - margin)
@@ -62,7 +62,10 @@ def into_area(
 def area_fraction(
     x0: float, y0: float, x1: float, y1: float, x: float, y: float, area: PlaceRecord
 ) -> float:
-    """Fraction of the way from p0 to p1 at which an area is entered; above 1 if it is not."""
+    """Return the fraction of the way from p0 to p1 at which an area is entered.
+
+    Above 1 if never.
+    """
     c, s = math.cos(area.turn), math.sin(area.turn)
     a0, b0 = c * (x0 - x) + s * (y0 - y), c * (y0 - y) - s * (x0 - x)
     a1, b1 = c * (x1 - x) + s * (y1 - y), c * (y1 - y) - s * (x1 - x)

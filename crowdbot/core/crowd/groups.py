@@ -20,7 +20,7 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows, record_type, record_values, rows_in
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Members who are farther away are out of sight, and do not count; ours, m.
+#: Members farther away are out of sight and ignored; our value, m.
 SIGHT = 8.0
 
 
@@ -40,7 +40,10 @@ _FORCES = record_type(GroupForces)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cohesion:
-    """Strengths of what holds groups together, see `crowdbot.dsl.scenario.group_forces`; SI."""
+    """Strengths of the forces that hold groups together, see `crowdbot.dsl.scenario.group_forces`.
+
+    SI.
+    """
 
     gaze: float = 4.0
     cohesion: float = 3.0
@@ -65,7 +68,7 @@ class Cohesion:
 
 
 def groups_of(agents: Agents) -> tuple[Indices, Indices]:
-    """Rows of all members, group by group, and where in them each group begins and the last ends.
+    """Return the rows of all group members by group, and the start of each group.
 
     Returns:
         (M,) rows in the order of their ids, and (G + 1,) places; without people who are alone.
@@ -88,7 +91,7 @@ def hold_together(
     boundary: Array,
     parameters: Rows[GroupForces],
 ) -> None:
-    """Add what groups want to the desired acceleration of each member who is on its way.
+    """Add group forces to the desired acceleration of each member on its way.
 
     Args:
         agents: of the crowd's state, changed in place.
@@ -120,7 +123,7 @@ def _pull(
     boundary: Array,
     forces: GroupForces,
 ) -> tuple[float, float]:
-    """Acceleration of agent i by the others of its group, m/s^2."""
+    """Return agent i's acceleration by the others of its group, m/s^2."""
     count, mx, my, ax, ay = 1, 0.0, 0.0, 0.0, 0.0
     for b in range(begin, end):
         j = members[b]
@@ -137,7 +140,7 @@ def _pull(
         if 0.0 < distance < forces.distance:
             ax -= forces.repulsion * dx / distance
             ay -= forces.repulsion * dy / distance
-    away = math.hypot(mx, my) / count  # to the middle of all, the agent among them
+    away = math.hypot(mx, my) / count  # to the centre of all members, including the agent
     if count == 1 or away == 0.0:
         return ax, ay
     ux, uy = mx / count / away, my / count / away

@@ -1,7 +1,7 @@
 """Parameters of all ticks of a run, in the form that `crowdbot.core.crowd.step` takes.
 
-`tick` takes the fields one by one, in this order, and packs them itself: numba would need some
-3 us to unpack a named tuple that comes from Python.
+`tick` takes the fields one by one, in this order, and packs them itself: numba needs about 3 us to
+unpack a named tuple from Python.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class AgentParameters(NamedTuple):
 
     @classmethod
     def of(cls, agents: Agents, push: Array) -> AgentParameters:
-        """Those of agents who push each other with the stiffness ``push`` (N,)."""
+        """Return the parameters of agents with the contact stiffness ``push`` (N,)."""
         a = agents
         traits = _table(
             TRAITS, len(a), id=a.id, radius=a.radius, mass=a.mass,
@@ -114,7 +114,7 @@ class WorldParameters(NamedTuple):
 
     @classmethod
     def of(cls, world: CrowdWorld) -> WorldParameters:
-        """Those of a world."""
+        """Return the parameters of a world."""
         w, boundary = world, world.periodic_boundary
         rules = _table(
             RULES, 1, keep_offset=np.array([w.exit_point == "offset"]),
@@ -129,7 +129,7 @@ class WorldParameters(NamedTuple):
 
 
 def _sides(outlines: Sequence[Array]) -> Array:
-    """Sides of outlines (K, 2), (M, 5), and to which outline each belongs."""
+    """Return the sides of outlines (K, 2), (M, 5), and the outline of each."""
     rows = [
         np.column_stack([outline, np.roll(outline, -1, axis=0), np.full(len(outline), k)])
         for k, outline in enumerate(outlines)
@@ -138,7 +138,7 @@ def _sides(outlines: Sequence[Array]) -> Array:
 
 
 class Scratch(NamedTuple):
-    """Arrays that ticks write to and do not read from before.
+    """Scratch arrays, which ticks write before reading.
 
     Attributes:
         reaction: (N, 2) force of robots on each agent, N.

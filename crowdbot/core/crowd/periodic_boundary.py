@@ -1,6 +1,6 @@
-"""A floor whose opposite borders are one: people who leave on one side come in on the other.
+"""Periodic boundaries: people who leave the floor on one side enter on the other.
 
-A side may be infinite: then the floor goes on there and nothing wraps.
+A side may be infinite: then nothing wraps there.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ ENDLESS = np.array([-math.inf, math.inf, -math.inf, math.inf])
 
 
 def images(discs: Array, box: Box, reach: float, *, diagonal: bool = True) -> Array:
-    """Discs as they appear across the periodic boundary.
+    """Return the images of discs across the periodic boundary.
 
     Args:
         discs: (M, 5) x, y, vx, vy, radius.
         box: x0, x1, y0, y1, m.
         reach: only images closer than this to the floor, m.
-        diagonal: also those that are seen across a corner.
+        diagonal: True to include images across a corner.
 
     Returns:
         (K, 5); those across the left border first, then right, below, above, corners.
@@ -56,8 +56,8 @@ def images(discs: Array, box: Box, reach: float, *, diagonal: bool = True) -> Ar
 def wrap(agents: People, i: int, box: Array, goals_wrap: bool) -> None:
     """Put agent i back on the floor, one wrap per axis.
 
-    Its goal moves along, so that it walks on as it would on the endless plane that the floor
-    repeats. In the original engine goals stay.
+    Its goal moves too, so that it continues as on an endless plane. In the original engine goals do
+    not move.
     """
     person = agents[i]
     dx, dy = _shift(person.x, box[0], box[1]), _shift(person.y, box[2], box[3])

@@ -13,7 +13,7 @@ from crowdbot.core.crowd.agents import LOOP, PORTAL, REMOVE, STOP, Agents
 from crowdbot.core.crowd.periodic_boundary import Box, images
 from crowdbot.core.types.arrays import Array
 
-#: Push between overlapping people, walls and pillars where a policy does not say, 1/s^2.
+#: Default push between overlapping people, walls and pillars, 1/s^2.
 CONTACT_STIFFNESS = 62.5
 
 
@@ -22,19 +22,19 @@ class CrowdView:
     """The crowd at one decision. Read-only; world frame, SI units.
 
     Attributes:
-        agents: what agents keep for the whole run.
+        agents: constant data of the agents.
         position, velocity, goal: (N, 2), m, m/s, m.
         present: (N,) False for agents that are outside the world.
-        robot: (K, 5) x, y, vx, vy and perceived radius of each robot that these agents are shown;
-            by default none, since what people do about robots is laid over what they want.
+        robot: (K, 5) x, y, vx, vy and perceived radius of each robot that these agents see; empty
+            by default, since the response to robots is added to the policy's result.
         walls: (S, 4) segments, m.
         dt: time between decisions, s.
         t: time of the decision, s.
-        decides: (N,) whose answer is used: those present who follow this policy and are shown
-            these robots; None is all who are present. What is returned for others is ignored.
+        decides: (N,) agents whose result is used: those present with this policy and view; None:
+            all present. Results for others are ignored.
         pillars: (P, 3) x, y and radius of round obstacles, m.
-        periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m.
-        diagonal: whether people see across the corners of the floor, too; in the original engine
+        periodic_boundary: (x0, x1, y0, y1) of a floor with periodic boundaries, m.
+        diagonal: True if people also see across the corners of the floor; in the original engine
             they see along one axis at a time.
     """
 
@@ -53,10 +53,10 @@ class CrowdView:
     diagonal: bool = True
 
     def others(self, reach: float = math.inf) -> Array:
-        """Discs (K, 5) that are seen beside the people: x, y, vx, vy, radius; m, m/s.
+        """Return discs (K, 5) besides the people: x, y, vx, vy, radius; m, m/s.
 
-        Robots, then pillars, which stand, then people as they appear across the border, with the
-        radius that others avoid.
+        Robots, then pillars, then images of people across the border, with the radius that others
+        avoid.
 
         Args:
             reach: distance beyond which no centre is seen, m.
@@ -81,15 +81,15 @@ class AcceleratingPolicy(Protocol):
     """A policy that returns accelerations; the result must not depend on the agents' order.
 
     A policy of either kind may have an attribute ``contact_stiffness``: the push between
-    overlapping people, walls and pillars, 1/s^2; without it, `CONTACT_STIFFNESS`. One that chooses
-    velocities and approaches them says in an attribute ``relaxation_time`` (s) how fast, for the
-    steering parts that limit speeds; without it, the time between decisions. One that chooses
+    overlapping people, walls and pillars, 1/s^2; without it, `CONTACT_STIFFNESS`. A policy that
+    approaches chosen velocities gives the time for it in an attribute ``relaxation_time`` (s), for
+    the steering parts that limit speeds; default: the time between decisions. A policy that chooses
     among fixed velocities may list them in an attribute ``velocity_candidates``
     (`crowdbot.core.types.candidates`), which makes recordings smaller and changes nothing else.
     """
 
     def accelerations(self, view: CrowdView) -> Array:
-        """Accelerations (N, 2) that the agents desire, held until the next decision, m/s^2."""
+        """Return the agents' desired accelerations (N, 2), held until the next decision, m/s^2."""
         ...
 
 
@@ -97,9 +97,9 @@ class VelocityPolicy(Protocol):
     """A policy that returns velocities; the result must not depend on the agents' order."""
 
     def velocities(self, view: CrowdView, dt: float) -> Array:
-        """Velocities (N, 2) to be reached within ``dt`` (s) at the latest decision, m/s.
+        """Return velocities (N, 2) to be reached within ``dt`` (s) at the latest decision, m/s.
 
-        Agents get there as far as their largest acceleration and speed allow.
+        Agents reach them within their largest acceleration and speed.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""Portals: people who enter the out-portal re-enter the world from the in-portal."""
+"""Portals: people who reach the out-portal enter the world again at the in-portal."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _CLEAR = 1e-6
 
 @kernel
 def point_in(box: Array, margin: float, u: float, v: float) -> tuple[float, float]:
-    """The point of a box (x0, x1, y0, y1), shrunk by a margin, at fractions u and v."""
+    """Return the point of a shrunk box (x0, x1, y0, y1) at fractions u and v."""
     mx = min(margin, 0.5 * (box[1] - box[0]))
     my = min(margin, 0.5 * (box[3] - box[2]))
     return (
@@ -39,9 +39,9 @@ def point_in(box: Array, margin: float, u: float, v: float) -> tuple[float, floa
 
 @kernel
 def entry_fraction(box: Array, x0: float, y0: float, x1: float, y1: float) -> float:
-    """Fraction of the way from p0 to p1 at which a box is entered; above 1 if it is not."""
+    """Return the fraction of the way from p0 to p1 at which a box is entered; above 1 if never."""
     if max(x0, x1) < box[0] - _CLEAR or min(x0, x1) > box[1] + _CLEAR:
-        return 2.0  # nearly always, and divisions are expensive
+        return 2.0  # the usual case; divisions are expensive
     enter, leave = 0.0, 1.0
     for start, step, low, high in ((x0, x1 - x0, box[0], box[1]), (y0, y1 - y0, box[2], box[3])):
         if step == 0.0:
@@ -62,7 +62,7 @@ def draw_goal(
     x: float,
     y: float,
 ) -> None:
-    """Set the goal of agent i's current trip: a point of the out-portal, a radius inside.
+    """Set agent i's goal for the current trip: a point of the out-portal, one radius inside.
 
     With `RulesRecord.goal_ahead` it lies in the out-portal as (x, y), where the trip starts, lies
     in the in-portal, beyond whose sides it counts as on them; or else it is drawn.
@@ -81,7 +81,7 @@ def draw_goal(
 
 @kernel
 def leave(agents: People, i: int, when: float) -> None:
-    """Take agent i out of the world at the end of its trip; its position is where it left."""
+    """Remove agent i from the world at the end of its trip, keeping its last position."""
     end_trip(agents, i, when)
     agents[i].waiting, agents[i].attempt = AT_PORTAL, 0.0
 
@@ -144,7 +144,7 @@ def is_off_walls(radius: float, world: WorldParameters, discs: Array, x: float, 
 
 @kernel
 def enter(agents: People, i: int, x: float, y: float, preferred: float, now: float) -> None:
-    """Put agent i into the world, on the way to its goal at preferred speed."""
+    """Put agent i into the world, walking to its goal at preferred speed."""
     agents[i].waiting, agents[i].x, agents[i].y = PRESENT, x, y
     gx, gy = agents[i].goal_x - x, agents[i].goal_y - y
     if agents[i].corner != 0.0:  # around a corner

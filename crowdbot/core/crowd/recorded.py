@@ -1,4 +1,4 @@
-"""Recorded trajectories of people: read from a CSV file, resampled to any time."""
+"""Recorded trajectories of people: read from a CSV file, interpolated at any time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class RecordedCrowd:
     """Places of recorded people.
 
     Attributes:
-        time: id -> (K,) rising times, s.
+        time: id -> (K,) increasing times, s.
         place: id -> (K, 2) positions at these times, m.
     """
 
@@ -31,15 +31,15 @@ class RecordedCrowd:
     place: dict[int, Array]
 
     def at(self, who: int, t: float) -> Array:
-        """Position (2,) of one person at a time, m: on the line between two samples.
+        """Return the position (2,) of one person at a time, m, interpolated linearly.
 
-        Before the first sample it is the first, after the last the last.
+        Outside the record it is the first or last sample.
         """
         time, place = self.time[who], self.place[who]
         return np.array([np.interp(t, time, place[:, 0]), np.interp(t, time, place[:, 1])])
 
     def agents(self, **same_for_all: Any) -> Agents:
-        """Agents who enter where and when the record begins and go when it ends.
+        """Return agents that enter at the start of the record and leave at its end.
 
         Preferred speed is the mean of the recorded one.
 
@@ -71,7 +71,7 @@ def read_record(path: Path) -> RecordedCrowd:
     """Read a CSV file with the columns t (s), id, x, y (m), in any order of rows.
 
     Raises:
-        InputError: it cannot be read, or a row is not one; with its line.
+        InputError: it cannot be read, or a row is invalid (the message names the line).
     """
     rows: dict[int, dict[float, tuple[float, float]]] = defaultdict(dict)
     try:

@@ -1,4 +1,4 @@
-"""Routes: the goals of a trip, what happens when one is reached."""
+"""Routes: the goals of a trip, and behaviour when one is reached."""
 
 from __future__ import annotations
 
@@ -22,8 +22,7 @@ from crowdbot.core.support.compile import kernel
 def head_for(agents: People, i: int, people: AgentParameters, key: np.uint64) -> None:
     """Set the goal of agent i to the next point of its route; to where it is without one.
 
-    In an area every agent has a point of its own; members of a group go to points beside each
-    other.
+    In an area every agent has its own point; members of a group go to points side by side.
     """
     traits = people.traits[i]
     row = int(traits.first) + int(agents[i].route_point)
@@ -41,7 +40,7 @@ def head_for(agents: People, i: int, people: AgentParameters, key: np.uint64) ->
 def _own_point(
     agents: People, i: int, row: int, people: AgentParameters, key: np.uint64
 ) -> tuple[float, float]:
-    """The point of the area around a goal that agent i goes to."""
+    """Return agent i's point in the area around a goal."""
     traits, place = people.traits[i], people.route[row]
     trip, guide, radius = int(agents[i].trip), int(traits.guide), traits.radius
     u = counter_rng.uniform(key, guide, trip, counter_rng.GOAL, 0)
@@ -61,7 +60,10 @@ def _own_point(
 
 @kernel
 def goal_fraction(agents: People, i: int, x: float, y: float, people: AgentParameters) -> float:
-    """Fraction of the way from (x, y) at which agent i has reached its goal; above 1 if not."""
+    """Return the fraction of the way from (x, y) at which agent i reached its goal.
+
+    Above 1 if not.
+    """
     traits, x1, y1 = people.traits[i], agents[i].x, agents[i].y
     fraction = reach_fraction(x, y, x1, y1, agents[i].goal_x, agents[i].goal_y, traits.radius)
     place = people.route[int(traits.first) + int(agents[i].route_point)]
@@ -75,7 +77,10 @@ def goal_fraction(agents: People, i: int, x: float, y: float, people: AgentParam
 def reach_fraction(
     x0: float, y0: float, x1: float, y1: float, gx: float, gy: float, radius: float
 ) -> float:
-    """Fraction of the way from p0 to p1 at which g is within ``radius``; above 1 if it is not."""
+    """Return the fraction of the way from p0 to p1 at which g is within ``radius``.
+
+    Above 1 if never.
+    """
     px, py, dx, dy = x0 - gx, y0 - gy, x1 - x0, y1 - y0
     c = px * px + py * py - radius * radius
     if c <= 0.0:
@@ -89,7 +94,7 @@ def reach_fraction(
 
 @kernel
 def end_trip(agents: People, i: int, when: float) -> None:
-    """Record the arrival of agent i; it is on no trip until it starts another."""
+    """Record the arrival of agent i, which then has no trip until the next start."""
     agents[i].arrived, agents[i].last_start = when, agents[i].trip_start
     agents[i].arrivals += 1.0
     agents[i].on_trip = 0.0
@@ -97,13 +102,13 @@ def end_trip(agents: People, i: int, when: float) -> None:
 
 @kernel
 def start_trip(agents: People, i: int, when: float) -> None:
-    """Let agent i's next trip begin; its goal must be set."""
+    """Start agent i's next trip; its goal must be set."""
     agents[i].trip_start, agents[i].on_trip = when, 1.0
 
 
 @kernel
 def arrive(agents: People, i: int, people: AgentParameters, key: np.uint64, when: float) -> None:
-    """Agent i has reached its goal: it stays a while, or goes on."""
+    """Handle agent i at its goal: it stays a while, or goes on."""
     end_trip(agents, i, when)
     row = int(people.traits[i].first) + int(agents[i].route_point)
     if people.route[row].pause == 0.0 and people.traits[i].ahead < 0.0:
@@ -129,7 +134,7 @@ def stays(agents: People, i: int, people: AgentParameters, now: float) -> bool:
 
 @kernel
 def next_goal(agents: People, i: int, people: AgentParameters, key: np.uint64, when: float) -> None:
-    """After an arrival: on to the next point, or what the agent does at the end of its route."""
+    """After an arrival, go to the next point, or do what the agent does at the end of its route."""
     traits, route = people.traits[i], people.route
     first, end, at_goal = int(traits.first), int(traits.end), traits.at_goal
     if at_goal == ONWARD:
@@ -148,7 +153,7 @@ def next_goal(agents: People, i: int, people: AgentParameters, key: np.uint64, w
             return
         if at_goal != LOOP or _all_here(agents, i, people):
             return
-        # Each lap is walked on the floor as it is drawn, whatever borders were crossed before.
+        # Each lap uses the original floor, regardless of borders crossed before.
         agents[i].route_point = agents[i].lap_x = agents[i].lap_y = 0.0
     agents[i].trip += 1.0
     head_for(agents, i, people, key)

@@ -1,7 +1,7 @@
-"""The crowd's whole state as one flat float64 vector, so that it can live in a Drake context.
+"""The crowd's whole state as one flat float64 vector, so that it can be in a Drake context.
 
-A header, one row per agent, then for each robot what it and people feel of each other: one row of
-sums, and one row per agent. `view` and `contact_with` give these parts as arrays without copying.
+A header, one row per agent, then, for each robot, its contacts with people: one row of sums, and
+one row per agent. `view` and `contact_with` give these parts as arrays without copying.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ UNAWARE = -1.0
 
 
 def blank(agents: int, robots: int = 1) -> Array:
-    """A flat vector of zeros with room for agents and robots."""
+    """Return a flat vector of zeros with room for agents and robots."""
     size = HEADER_SIZE + agents * AGENT_COLUMNS
     flat = np.zeros(size + robots * (FELT_SIZE + agents * TOUCH_COLUMNS))
     flat[ROBOTS] = robots
@@ -171,7 +171,7 @@ def blank(agents: int, robots: int = 1) -> Array:
 
 
 def view(flat: Array) -> tuple[Array, Array]:
-    """Header (H,) and agents (N, C) of a flat vector, sharing its memory."""
+    """Return header (H,) and agents (N, C) of a flat vector, sharing its memory."""
     return flat[:HEADER_SIZE], flat[HEADER_SIZE : _contacts_start(flat)].reshape(-1, AGENT_COLUMNS)
 
 

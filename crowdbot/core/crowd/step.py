@@ -1,4 +1,4 @@
-"""One tick of the crowd: contact, motion, arrival, entry; everything in place."""
+"""One tick of the crowd: contact, motion, arrival, entry; all in place."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows, as_record, as_rows
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Slower people do not turn where they are pushed, m/s.
+#: Slower people do not turn when pushed, m/s.
 _TURNS_ABOVE = 0.1
 
 
@@ -53,13 +53,13 @@ def tick(
 ) -> None:  # fmt: skip
     """Advance from tick k to k + 1.
 
-    All forces come from the state at k. Those between the robot and people act on both during the
-    tick, so that impulses balance exactly.
+    All forces depend on the state at k. Forces between robot and people act on both during the
+    tick, so that impulses are exactly equal and opposite.
 
     Args:
         flat: the crowd's state, changed in place.
         robots, outlines: (R, 8), (R, K, 2) as in `crowdbot.core.crowd.contact.robot_contact`.
-        numbers, stiffnesses: of the robots, as in `robot_contacts`.
+        numbers, stiffnesses: data of the robots, as in `robot_contacts`.
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
         traits to entry_order: fields of `AgentParameters`, as numbers.
@@ -131,11 +131,11 @@ def ticks_without_robots(count: int, flat: Array, *rest: Any) -> int:
     """Several times `tick`; ends early after one in which a trip ends.
 
     Args:
-        count: how many ticks at most.
-        flat, rest: as of `tick`, without robots.
+        count: largest number of ticks.
+        flat, rest: as in `tick`, without robots.
 
     Returns:
-        how many ticks it were.
+        number of ticks advanced.
     """
     header = as_record(flat, HEADER)
     trips = header.trips
@@ -148,7 +148,7 @@ def ticks_without_robots(count: int, flat: Array, *rest: Any) -> int:
 
 @kernel
 def _through(agents: People, i: int, x: float, y: float, out: Array, now: float, dt: float) -> None:
-    """Agent i, which was at (x, y), leaves if it has entered its out-portal."""
+    """Let agent i, which was at (x, y), leave if it has entered its out-portal."""
     fraction = entry_fraction(out, x, y, agents[i].x, agents[i].y)
     if fraction <= 1.0:
         leave(agents, i, now + fraction * dt)
@@ -165,7 +165,7 @@ def _along(
     now: float,
     dt: float,
 ) -> None:
-    """Agent i, which was at (x, y), goes on to its next goal if it has reached this one."""
+    """Let agent i, which was at (x, y), go to its next goal if it has reached this one."""
     fraction = goal_fraction(agents, i, x, y, people)
     if fraction <= 1.0:
         arrive(agents, i, people, key, max(now + fraction * dt, agents[i].trip_start))
@@ -173,7 +173,7 @@ def _along(
 
 @kernel
 def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: float) -> None:
-    """The desired acceleration reaches at most the largest speed; pushes (ax, ay) may exceed it."""
+    """Apply the desired acceleration up to the largest speed; pushes (ax, ay) may exceed it."""
     vx = agents[i].vx + agents[i].ax * dt
     vy = agents[i].vy + agents[i].ay * dt
     if not is_clearly_shorter(vx, vy, fastest):

@@ -1,4 +1,4 @@
-"""CrowdWorld: where a crowd walks and how it takes robots."""
+"""CrowdWorld: a crowd's place, and its response to robots."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
 class CrowdWorld:
     """The floor of a crowd and its response to robots; by default an endless empty floor.
 
-    A single row stands for a table of one.
+    A single row is treated as a table of one.
 
     Attributes:
         walls: (S, 4) segments that people avoid, m.
@@ -32,19 +32,19 @@ class CrowdWorld:
         periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m; infinite
             where it has no border.
         entrance, out: (F, 4) boxes x0, x1, y0, y1 of each flow's portals, m.
-        exit_point: where people come out of the in-portal: at a random point, or opposite to
-            where they went into the out-portal, ``offset`` kept.
-        goal_point: where in the out-portal people go on each trip: to a random point, or straight
-            ``ahead``, opposite to where the trip starts.
-        response: what people do about robots.
-        cohesion: what holds groups together; None: nothing.
-        steering: what people do beside any policy.
-        robot_visible: whether people see the robot's velocity.
+        exit_point: where people leave the in-portal: at a random point, or with ``offset`` opposite
+            to where they entered the out-portal.
+        goal_point: where people go in the out-portal: to a random point, or straight ``ahead``,
+            opposite to the start of the trip.
+        response: response to robots.
+        cohesion: group forces, or None.
+        steering: steering parts besides the policy.
+        robot_visible: True if people see the robot's velocity.
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
         decision_rate: Hz, a power of two up to 128.
-        routing: how people find their way around walls and pillars; None: straight to their goals.
-        parity: do as the original engine does at a periodic boundary: no images across corners,
+        routing: path finding around walls and pillars; None: straight to their goals.
+        parity: behave like the original engine at a periodic boundary: no images across corners,
             and goals that do not wrap. For comparisons only.
     """
 
@@ -87,7 +87,7 @@ class CrowdWorld:
             raise ValueError("there is no routing across a periodic boundary")
 
     def check(self, agents: Agents) -> None:
-        """Refuse agents that this world has no place for.
+        """Refuse agents that do not fit this world.
 
         Raises:
             ValueError: an agent walks through portals that do not exist.

@@ -48,14 +48,14 @@ class GridMap:
 def grid_map(
     found: OutlineMap, walls: Array, inside: Iterable[Point], resolution: float, below: float
 ) -> GridMap:
-    """Cells that something stands in are occupied; those that no way leads to are unknown.
+    """Return a grid map: obstacle cells are occupied, unreachable cells are unknown.
 
     Args:
         found: the polygons.
         walls: (S, 4) outer walls, m; every cell that one touches is occupied.
-        inside: places from which ways lead; without any, everything else is free.
+        inside: positions from which the floor is reached; without any, all other cells are free.
         resolution: side of a cell, m.
-        below: what begins higher is left away, m.
+        below: obstacles that begin higher are left out, m.
 
     Raises:
         InputError: there would be too many cells.
@@ -92,6 +92,6 @@ def _take(taken: NDArray[np.bool_], shape: object, origin: Point, side: float) -
     xs = origin[0] + (np.arange(i0, i1 + 1) + 0.5) * side
     ys = origin[1] + (np.arange(j0, j1 + 1) + 0.5) * side
     x, y = np.meshgrid(xs, ys)
-    # A cell is touched if its middle is nearer than half a side, or in a corner a little more.
+    # A cell is touched if its centre is nearer than half a side, or a little more in a corner.
     near = shapely.distance(shapely.points(x, y), shape) <= 0.5 * side + 1e-9
     taken[j0 : j1 + 1, i0 : i1 + 1] |= near

@@ -1,4 +1,4 @@
-"""An environment as polygons: the floor within its outer walls, and what stands on it."""
+"""An environment as polygons: the floor within its outer walls, and the obstacles on it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import shapely  # type: ignore[import-untyped,unused-ignore]
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.core.types.environment import EnvironmentParts
 
-#: Sides of the polygon that stands for a pillar.
+#: Number of sides of the polygon for a pillar.
 _PILLAR_SIDES = 32
 
 
@@ -23,10 +23,10 @@ class OutlineMap:
     """Polygons of shapely, world frame, m.
 
     Attributes:
-        floor: what outer walls enclose; empty on an open floor.
-        lines: walls that enclose nothing.
+        floor: area enclosed by outer walls; empty on an open floor.
+        lines: walls that do not enclose an area.
         line_heights: (L, 2) bottom and top of these, m.
-        obstacles: what stands, lies or hangs.
+        obstacles: obstacles that stand, lie or hang.
         heights: (O, 2) bottom and top of each obstacle, m.
     """
 
@@ -38,12 +38,12 @@ class OutlineMap:
 
 
 def outline_map(parts: EnvironmentParts, inside: Iterable[Point]) -> OutlineMap:
-    """The polygons of an environment.
+    """Return the polygons of an environment.
 
     Args:
-        parts: what is drawn.
-        inside: places on the floor, such as zones and starts of robots; without any, everything
-            that walls enclose is floor.
+        parts: the environment.
+        inside: positions on the floor, such as zones and robots' starts; without any, all enclosed
+            areas are floor.
     """
     outer = parts.walls[parts.stops_robot]
     rings, _, loose, _ = _polygonized(outer)
@@ -64,7 +64,7 @@ def outline_map(parts: EnvironmentParts, inside: Iterable[Point]) -> OutlineMap:
 def to_geojson(
     found: OutlineMap, zones: Mapping[str, Array], portals: Mapping[str, tuple[float, ...]]
 ) -> str:
-    """The map as GeoJSON, which the environment ``floor_plan`` reads back."""
+    """Return the map as GeoJSON, which the environment ``floor_plan`` can read."""
     features = [_feature(p, {"kind": "walkable"}) for p in found.floor]
     for shapes, heights in ((found.obstacles, found.heights), (found.lines, found.line_heights)):
         for shape, (base, top) in zip(shapes, heights.tolist(), strict=True):
@@ -84,7 +84,7 @@ def _feature(shape: Any, properties: dict[str, Any]) -> dict[str, Any]:
 
 
 def _polygonized(walls: Array) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-    """Rings that walls close, cuts, walls that close nothing, rings that are not valid."""
+    """Return closed rings of walls, cuts, open walls, and invalid rings."""
     lines = shapely.linestrings(walls.reshape(-1, 2, 2))
     noded = shapely.union_all(lines)
     parts = shapely.get_parts(noded)
@@ -94,7 +94,7 @@ def _polygonized(walls: Array) -> tuple[list[Any], list[Any], list[Any], list[An
 
 
 def _obstacles(parts: EnvironmentParts) -> tuple[list[Any], list[tuple[float, float]]]:
-    """Pieces of equal heights put together, and pillars as polygons around them."""
+    """Return pieces merged by equal heights, and pillars as polygons around them."""
     shapes, heights = list[Any](), list[tuple[float, float]]()
     rows = [tuple(row) for row in parts.solid_heights.tolist()]
     for own in dict.fromkeys(rows):

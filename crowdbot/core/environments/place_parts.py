@@ -1,4 +1,4 @@
-"""The arrays of a place: `Place` -> `EnvironmentParts`."""
+"""Build the arrays of a place: `Place` -> `EnvironmentParts`."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from crowdbot.dsl.spec.component_specs import EnvironmentSpec
 from crowdbot.dsl.spec.outlines import counter_clockwise, sides
 from crowdbot.dsl.spec.place import Heights, Place
 
-#: A side as x0, y0, x1, y1; bottom and top; whether it stops the robot, people.
+#: A side: x0, y0, x1, y1; bottom and top; True if it stops the robot, and people.
 _Row = tuple[tuple[float, float, float, float], Heights, bool, bool]
 
 
 def place_parts(spec: EnvironmentSpec, place: Place) -> EnvironmentParts:
-    """Everything that is simulated of a place, with the zones and portals of its spec.
+    """Return all simulated parts of a place, with the zones and portals of its spec.
 
-    Solids stop the robot as a whole, in convex pieces; sensors and people meet their sides.
+    Solids stop the robot as convex pieces; sensors and people use their sides.
     """
     rows = [*_faces(place), *_solids(place)]
     pieces = [

@@ -149,7 +149,7 @@ def _to_segment(x: Array, y: Array, ex: float, ey: float) -> Array:
 
 
 def _to_disc(x: Array, y: Array, dx: Array, dy: Array, radius: Array) -> Array:
-    """When a moving point reaches a disc around the origin; inf if never."""
+    """Return when a moving point reaches a disc around the origin; inf if never."""
     approach = -(x * dx + y * dy)
     under = radius**2 * (dx**2 + dy**2) - (x * dy - y * dx) ** 2
     distance = np.hypot(x, y)
@@ -164,7 +164,7 @@ def _to_disc(x: Array, y: Array, dx: Array, dy: Array, radius: Array) -> Array:
 def _to_side(
     x: Array, y: Array, dx: Array, dy: Array, radius: Array, edge: tuple[float, float]
 ) -> Array:
-    """When a moving point reaches a side ``radius`` off an edge from the origin; inf if never."""
+    """Return when a moving point is ``radius`` away from an edge at the origin; inf if never."""
     length = float(np.hypot(*edge))
     if length == 0:
         return np.full(x.shape, np.inf)

@@ -1,4 +1,4 @@
-"""When a robot's centre enters its goal zone, a polygon (K, 2) of any orientation."""
+"""Entry of a robot's centre to its goal zone, a polygon (K, 2) of any orientation."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crowdbot.core.types.arrays import Array
 
 @array_kernel
 def inside(zone: Array, x: float, y: float) -> bool:
-    """Whether a point lies in a polygon; even-odd rule."""
+    """Return True if a point lies in a polygon; even-odd rule."""
     odd = False
     for k in range(zone.shape[0]):
         x0, y0 = zone[k - 1, 0], zone[k - 1, 1]

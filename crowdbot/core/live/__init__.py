@@ -1,1 +1,1 @@
-"""Live: programs outside drive the robot of a run, through the protocols that they speak."""
+"""Live runs: external programs drive the robot of a run, through their own protocols."""

@@ -1,4 +1,4 @@
-"""Commands and times as ROS writes them, read out of plain values that anybody may have sent."""
+"""Read ROS commands and times from untrusted plain values."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 
-#: Seconds that a stamp can have: those of ROS 2.
+#: Range of seconds of a stamp in ROS 2.
 _MOST_SECONDS = 2**31
 
 
 def twist(message: Any) -> tuple[Command, int | None]:
-    """A Twist, or a TwistStamped, and its stamp (ns).
+    """Return a Twist or TwistStamped as a command, with its stamp (ns).
 
     Raises:
         InputError: it is neither.
@@ -31,7 +31,7 @@ def twist(message: Any) -> tuple[Command, int | None]:
 
 
 def time_ns(message: Any) -> int | None:
-    """A time of ROS 1 or ROS 2 in ns; None where it is not one."""
+    """Return a ROS 1 or ROS 2 time in ns; None if it is not one."""
     if not isinstance(message, Mapping):
         return None
     seconds = message.get("sec", message.get("secs", 0))
@@ -44,7 +44,7 @@ def time_ns(message: Any) -> int | None:
 
 
 def _number(vector: Any, name: str) -> float:
-    """One component; one that is left out is 0, as in messages of rosbridge."""
+    """Return one component; a missing one is 0, as in rosbridge messages."""
     value = vector.get(name, 0.0) if isinstance(vector, Mapping) else math.nan
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e300:
         raise InputError(f"'{name}' of a command must be a number")

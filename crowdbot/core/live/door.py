@@ -1,4 +1,4 @@
-"""The contract of a door: a protocol through which programs outside listen and command."""
+"""The interface of a live connection: a protocol through which programs listen and command."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from crowdbot.core.live.message import LiveMessage, Offer
 
 
 class Door(Protocol):
-    """One way in and out; all methods are called by the thread of the simulation.
+    """One live connection; all methods are called by the simulation's thread.
 
-    What fails behind a door never stops the simulation.
+    Failures of a connection never stop the simulation.
     """
 
     def open(self, offers: Sequence[Offer]) -> None:
-        """A run begins that offers these topics."""
+        """Start a run that offers these topics."""
         ...
 
     def wants(self, topic: str) -> bool:
-        """Whether somebody listens to a topic."""
+        """Return True if a client listens to a topic."""
         ...
 
     def publish(self, messages: Sequence[LiveMessage]) -> None:
-        """Tell those who listen."""
+        """Send messages to the listeners."""
         ...
 
     def close(self) -> None:
-        """End all connections."""
+        """Close all connections."""
         ...

@@ -1,4 +1,4 @@
-"""A live view in Foxglove: its websocket protocol, through foxglove-sdk."""
+"""A live view in Foxglove through its websocket protocol, with foxglove-sdk."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 
 COMMAND = "/cmd_vel"
-#: What a spectator sees and a planner does not.
+#: Topics for viewers that planners do not see.
 SEEN = (
     Offer(str(Topic.PEOPLE_MARKER), MARKER),
     Offer(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
@@ -35,7 +35,10 @@ _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
 class FoxgloveDoor:
-    """A door for Foxglove; what it publishes on ``/cmd_vel`` drives, as from any client."""
+    """A live connection for Foxglove.
+
+    What it publishes on ``/cmd_vel`` drives, as from any client.
+    """
 
     def __init__(
         self,
@@ -45,10 +48,10 @@ class FoxgloveDoor:
         services: Mapping[str, Service],
         epoch: int = 0,
     ) -> None:
-        """Start to listen; ``epoch``: ns that are added to all stamps.
+        """Start listening; ``epoch``: ns added to all stamps.
 
         Raises:
-            InputError: the address cannot be had.
+            InputError: the address is not available.
         """
         import foxglove
         from foxglove.websocket import Capability
@@ -83,12 +86,12 @@ class FoxgloveDoor:
 
     @property
     def port(self) -> int:
-        """The port that it has."""
+        """Return the port in use."""
         return int(self._server.port)
 
     # ---------------------------------------------------------------- the simulation's thread
     def open(self, offers: Sequence[Offer]) -> None:
-        """A run begins that offers these topics."""
+        """Start a run that offers these topics."""
         from foxglove import Channel, Schema
 
         with self._lock:
@@ -103,12 +106,12 @@ class FoxgloveDoor:
         self._server.publish_parameter_values(parameters(self._session))
 
     def wants(self, topic: str) -> bool:
-        """Whether somebody looks at a topic."""
+        """Return True if a client views a topic."""
         channel = self._channels.get(topic)
         return channel is not None and bool(channel.has_sinks())
 
     def publish(self, messages: Sequence[LiveMessage]) -> None:
-        """Show it."""
+        """Send messages to the viewers."""
         for message in messages:
             if message.latched:
                 with self._lock:
@@ -120,13 +123,13 @@ class FoxgloveDoor:
             self._server.broadcast_time(max(m.ns for m in messages))
 
     def begin(self, header: RecordingHeader) -> None:
-        """A run begins whose people are shown, as a watcher shows them."""
+        """Start a run whose people are shown, as for a watcher."""
         agents = header.agents
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
 
     def sample(self, t: float, robot: Sequence[float] | None, agents: Array | None) -> None:
-        """Show the truth to who looks: people, and where the robot really is."""
+        """Show the ground truth to viewers: people, and the robot's true pose."""
         ns = self._epoch + ros.nanoseconds(t)
         for offer in SEEN:
             if not self.wants(offer.topic):
@@ -150,12 +153,12 @@ class FoxgloveDoor:
         return self._people.marker(ns, agents)
 
     def close(self) -> None:
-        """End all connections."""
+        """Close all connections."""
         self._server.stop()
 
     # ------------------------------------------------------------------ the server's threads
     def on_subscribe(self, client: Any, channel: Any) -> None:
-        """Somebody looks at a topic: what is latched is said again."""
+        """Send latched messages to a new subscriber."""
         del client
         with self._lock:
             message = self._latest.get(channel.topic)
@@ -166,14 +169,14 @@ class FoxgloveDoor:
     def on_get_parameters(
         self, client: Any, param_names: list[str], request_id: str | None = None
     ) -> list[Any]:
-        """What run it is."""
+        """Return the parameters of the run."""
         del client, request_id
         return parameters(self._session, param_names)
 
     def on_set_parameters(
         self, client: Any, given: list[Any], request_id: str | None = None
     ) -> list[Any]:
-        """Pause, begin again with another seed, or begin another scenario."""
+        """Pause, restart with another seed, or start another scenario."""
         from foxglove.websocket import StatusLevel
 
         del client, request_id
@@ -183,32 +186,32 @@ class FoxgloveDoor:
         return parameters(self._session)
 
     def on_parameters_subscribe(self, param_names: list[str]) -> None:
-        """Nobody has to know."""
+        """Do nothing."""
 
     def on_parameters_unsubscribe(self, param_names: list[str]) -> None:
-        """Nobody has to know."""
+        """Do nothing."""
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
-        """Nobody has to know."""
+        """Do nothing."""
 
     def on_client_advertise(self, client: Any, channel: Any) -> None:
-        """Somebody wants to publish."""
+        """Register a client's topic."""
         if channel.topic == COMMAND:
             self._clients[client.id, channel.id] = f"{channel.encoding} {channel.schema_name}"
             self._session.drive(self)
 
     def on_client_unadvertise(self, client: Any, client_channel_id: int) -> None:
-        """Somebody does not want to any more, or is gone."""
+        """Remove a client's topic, or a client that is gone."""
         if self._clients.pop((client.id, client_channel_id), None) and not self._clients:
             self._session.leave(self)
 
     def on_message_data(self, client: Any, client_channel_id: int, data: bytes) -> None:
-        """A command, in JSON or CDR; whatever else it is does nothing."""
+        """Take a command in JSON or CDR; ignore everything else."""
         about = self._clients.get((client.id, client_channel_id))
         if about is None:
             return
         encoding, _, kind = about.partition(" ")
-        with suppress(Exception):  # decoders of others, fed with anything
+        with suppress(Exception):  # third-party decoders with untrusted input
             self._session.command(self, *_command(encoding, kind, data))
 
 
@@ -232,7 +235,7 @@ async def _awaited(service: Service, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _offered(name: str, service: Service) -> Any:
-    """A service with requests and answers in JSON."""
+    """Return a service with requests and responses in JSON."""
     from foxglove import MessageSchema, Schema, ServiceSchema
     from foxglove import Service as Offered
 

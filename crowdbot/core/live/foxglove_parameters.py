@@ -1,4 +1,4 @@
-"""Parameters of a live run in Foxglove: what run it is, and three that can be set."""
+"""Parameters of a live run in Foxglove: facts about the run, and three that can be set."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MOST_SEED = 2**63 - 1
 
 
 def parameters(session: LiveSession, names: Iterable[str] = ()) -> list[Any]:
-    """As foxglove-sdk has them; of no names all."""
+    """Return parameters for foxglove-sdk; all if no names are given."""
     from foxglove.websocket import Parameter
 
     values: dict[str, Any] = {
@@ -28,10 +28,10 @@ def parameters(session: LiveSession, names: Iterable[str] = ()) -> list[Any]:
 
 
 def set_parameters(session: LiveSession, given: Iterable[Any]) -> str:
-    """Do what parameters say: ``paused``, ``seed`` (begins again), ``scenario`` (begins another).
+    """Apply parameters: ``paused``, ``seed`` (restarts), ``scenario`` (starts another).
 
     Returns:
-        What cannot be done; empty where all was.
+        Errors, or an empty text.
     """
     problems = []
     for parameter in given:

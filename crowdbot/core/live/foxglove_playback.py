@@ -1,4 +1,4 @@
-"""A finished run in Foxglove: its recording, played, paused and searched from the viewer."""
+"""Play back a finished run in Foxglove, with pause and seek from the viewer."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.recording.reading.contents import contents
 from crowdbot.errors import InputError
 
-#: So far back a search looks for the latest message of each topic, s; topics with fewer messages
-#: than this are kept whole.
+#: Time to look back for the latest message of each topic, s; topics with fewer messages are kept
+#: completely.
 _BACK, _FEW = 2.0, 64
 _SLOWEST, _FASTEST = 0.01, 100.0
 
 
 class FoxglovePlayback:
-    """Serves one recording; Foxglove's own controls say where, and how fast."""
+    """Serves one recording; Foxglove's own controls set position and speed."""
 
     def __init__(self, path: Path, host: str, port: int) -> None:
-        """Look through the file and start to listen.
+        """Index the file and start listening.
 
         Raises:
-            InputError: no complete recording, or the address cannot be had.
+            InputError: no complete recording, or the address is not available.
         """
         import foxglove
         from foxglove.websocket import Capability
@@ -61,11 +61,11 @@ class FoxglovePlayback:
 
     @property
     def port(self) -> int:
-        """The port that it has."""
+        """Return the port in use."""
         return int(self._server.port)
 
     def close(self) -> None:
-        """End all connections."""
+        """Close all connections."""
         with self._changed:
             self._stopped = True
             self._changed.notify_all()
@@ -73,7 +73,7 @@ class FoxglovePlayback:
         self._server.stop()
 
     def _prepare(self, few: set[str]) -> None:
-        """Channels as the file has them; the messages of topics that have few."""
+        """Create the file's channels, and load the messages of topics with few."""
         from foxglove import Channel, Schema
 
         records = Records(self._path)
@@ -91,17 +91,17 @@ class FoxglovePlayback:
 
     # ------------------------------------------------------------------ the server's threads
     def on_subscribe(self, client: Any, channel: Any) -> None:
-        """Somebody looks: what is there now is said again."""
+        """Send the current state to a new subscriber."""
         del client, channel
         with self._changed:
             self._sought = True
             self._changed.notify_all()
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
-        """Nobody has to know."""
+        """Do nothing."""
 
     def on_playback_control_request(self, request: Any) -> Any:
-        """Play, pause, go elsewhere, faster or slower."""
+        """Play, pause, seek, or change the speed."""
         from foxglove.websocket import PlaybackCommand
 
         with self._changed:
@@ -112,7 +112,7 @@ class FoxglovePlayback:
             if sought:
                 self._now = min(max(int(request.seek_time), 0), self._end)
                 self._sought = True
-            elif self._playing and self._now >= self._end:  # from the beginning again
+            elif self._playing and self._now >= self._end:  # from the start again
                 self._now, self._sought = 0, True
             self._changed.notify_all()
             return self._state(sought, request.request_id)
@@ -137,7 +137,7 @@ class FoxglovePlayback:
                 self._play(begin)
 
     def _show(self, ns: int) -> None:
-        """The latest message of each topic at a time."""
+        """Send the latest message of each topic at a time."""
         latest = {r.topic: (r.ns, r.data) for r in self._rare if r.ns <= ns}
         for topic, at, data in self._messages(ns - round(_BACK * 1e9), ns + 1):
             latest[topic] = (at, data)
@@ -146,7 +146,7 @@ class FoxglovePlayback:
         self._server.broadcast_time(ns)
 
     def _play(self, begin: int) -> None:
-        """Go on until something is wanted, or the end is there."""
+        """Play until there is a request, or the end."""
         started, speed = time.monotonic(), self._speed
         for topic, ns, data in self._messages(begin + 1, self._end + 1):
             if not self._wait(started + (ns - begin) / 1e9 / speed, speed):
@@ -161,7 +161,7 @@ class FoxglovePlayback:
                 self._server.broadcast_playback_state(self._state(False, None))
 
     def _wait(self, until: float, speed: float) -> bool:
-        """Wait for a time; False where something else is wanted."""
+        """Wait until a time; return False if there is a request."""
         with self._changed:
             while True:
                 if self._stopped or self._sought or not self._playing or self._speed != speed:
@@ -172,7 +172,7 @@ class FoxglovePlayback:
                 self._changed.wait(min(left, 1.0))
 
     def _messages(self, begin: int, end: int) -> Iterator[tuple[str, int, bytes]]:
-        """Topic, time (ns) and bytes from one time up to another, in their order."""
+        """Yield topic, time (ns) and bytes between two times, in order."""
         with self._path.open("rb") as file:
             reader = SeekingReader(file)
             for _, channel, message in reader.iter_messages(

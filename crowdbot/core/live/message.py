@@ -1,4 +1,4 @@
-"""A message of a live run, serialised once and told in the form that each listener wants."""
+"""A message of a live run, serialised once and sent in each listener's format."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.core.recording import messages as ros
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """A topic that a live run publishes; ``latched``: who comes late gets the last message."""
+    """A topic that a live run publishes; ``latched``: late subscribers get the last message."""
 
     topic: str
     msgtype: str
@@ -25,7 +25,7 @@ class LiveMessage:
     Attributes:
         msgtype: ``package/msg/Name``.
         ns: simulated time, ns.
-        data: as CDR.
+        data: the message as CDR.
     """
 
     topic: str
@@ -36,10 +36,10 @@ class LiveMessage:
 
     @cached_property
     def fields(self) -> Any:
-        """The message as an object, read back from its bytes."""
+        """Return the message as an object, decoded from its bytes."""
         return ros.from_cdr(self.data, self.msgtype)
 
 
 def told(topic: str, ns: int, message: Any, *, latched: bool = False) -> LiveMessage:
-    """A message object as a live message."""
+    """Return a message object as a live message."""
     return LiveMessage(topic, message.__msgtype__, ns, ros.to_cdr(message), latched)

@@ -1,4 +1,4 @@
-"""What a planner sees, as the messages that a robot of ROS sends."""
+"""The planner's observations as messages of a ROS robot."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from crowdbot.core.types.sensor import CameraFrame, Reading, SensorInfo
 OBSERVATION, JOINTS = "/crowdbot/observation", "/joint_states"
 _ODOM = "/odom"
 _JOINTS, _OBSERVED = "sensor_msgs/msg/JointState", "crowdbot_msgs/msg/Observation"
-#: Readings with more numbers are images, which have topics of their own.
+#: Readings with more numbers are images, which have their own topics.
 _MOST_NUMBERS = 40_000
 _LIDAR, _IMU = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu"
 
 
 class Observed:
-    """Makes the messages of one run's observations; of topics that nobody wants, none.
+    """Builds the messages of one run's observations, for requested topics only.
 
-    Sensors have the topics that they have in recordings. ``/scan`` is the first lidar's, too,
-    ``/scan/NAME`` that of each, and ``/imu/data`` the first IMU's.
+    Sensors have the topics that they have in recordings. The first lidar also publishes ``/scan``,
+    each lidar ``/scan/NAME``, and the first IMU ``/imu/data``.
     """
 
     def __init__(
         self, sensors: Mapping[str, SensorInfo], model: RobotModel, *, epoch: int = 0
     ) -> None:
-        """``epoch``: ns that are added to all stamps."""
+        """Prepare the messages. ``epoch``: ns added to all stamps."""
         self._sensors, self._epoch = dict(sensors), epoch
         cameras = {n: i for n, i in sensors.items() if i.camera is not None}
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
@@ -49,7 +49,7 @@ class Observed:
         self._told: dict[str, float] = {}
 
     def offers(self) -> list[Offer]:
-        """The topics, the clock last."""
+        """Return the topics, the clock last."""
         found = [Offer(n, t.msgtype) for s, t in self._topics.items() for n in self._names[s]]
         for name, info in self._sensors.items():
             kinds = () if info.camera is None else ("depth", "color")[: 1 + info.camera.colour]
@@ -65,11 +65,11 @@ class Observed:
         return found
 
     def messages(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
-        """What is new, the clock last.
+        """Yield new messages, the clock last.
 
         Args:
-            obs: of one step.
-            wanted: whether somebody listens to a topic.
+            obs: observation of one step.
+            wanted: function that returns True if a client listens to a topic.
         """
         self._wheels.turn(obs)
         for name, reading in obs.readings.items():
@@ -79,7 +79,7 @@ class Observed:
         yield from self._state(obs, wanted)
 
     def again(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
-        """The latest of everything, for who came after `messages` were sent."""
+        """Yield the latest messages, for clients that came after `messages` were sent."""
         for name, reading in obs.readings.items():
             yield from self._reading(name, reading, wanted)
         yield from self._state(obs, wanted)
@@ -126,7 +126,7 @@ class Observed:
                 yield LiveMessage(image.topic, image.msgtype, ns, b"".join(image.pieces))
 
     def _odometer(self, ns: int, obs: Observation) -> bytes:
-        """For a robot without odometry, which knows where it started and nothing else."""
+        """Return odometry for a robot without it, which knows only its start."""
         x, y, yaw = obs.pose
         speed, turn = template.two(obs.twist[0], obs.vy), template.one(obs.twist[1])
         pose_known, twist_known = template.NO_COVARIANCE
@@ -137,7 +137,7 @@ class Observed:
 
 
 def _names(name: str, topic: SensorTopic, topics: Mapping[str, SensorTopic]) -> tuple[str, ...]:
-    """Under what names a sensor's messages go out."""
+    """Return the names under which a sensor's messages are sent."""
     first = {t.msgtype: n for n, t in reversed(list(topics.items()))}
     names = [topic.name]
     if topic.msgtype == _LIDAR:
@@ -149,7 +149,7 @@ def _names(name: str, topic: SensorTopic, topics: Mapping[str, SensorTopic]) -> 
 
 
 class _Wheels:
-    """Angles of the driven wheels, added up from the speeds of odometry."""
+    """Angles of the driven wheels, integrated from odometry's speeds."""
 
     def __init__(self, model: RobotModel) -> None:
         drive = model.drive
@@ -158,7 +158,7 @@ class _Wheels:
         self._angles, self._rates = [0.0, 0.0], [0.0, 0.0]
 
     def turn(self, obs: Observation) -> None:
-        """Go on to the time of an observation."""
+        """Advance to the time of an observation."""
         if self._drive is None:
             return
         v, w = obs.twist
@@ -168,7 +168,7 @@ class _Wheels:
         self._angles = [a + r * since for a, r in zip(self._angles, self._rates, strict=True)]
 
     def message(self, ns: int) -> Any:
-        """As ``sensor_msgs/JointState``; without wheels that are driven, one without joints."""
+        """Return a ``sensor_msgs/JointState``; without joints if there are no driven wheels."""
         drive = self._drive
         return ros.new(
             "sensor_msgs/JointState",
@@ -181,7 +181,7 @@ class _Wheels:
 
 
 def _observation(ns: int, obs: Observation) -> Any:
-    """All numbers of an observation, bit by bit; images are left to their own topics."""
+    """Return all numbers of an observation exactly; images have their own topics."""
     readings = [
         ros.new(
             "crowdbot_msgs/Reading",

@@ -1,4 +1,4 @@
-"""Message objects as plain values, in the words of ROS 1 or ROS 2, for JSON and CBOR."""
+"""Convert message objects to plain values with ROS 1 or ROS 2 names, for JSON and CBOR."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from numpy.typing import NDArray
 Ros = Literal[1, 2]
 _TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 _HEADER = "std_msgs/msg/Header"
-#: Bytes of a number of single precision; powers of ten up to which float64 has them exactly.
+#: Bytes of a single-precision number; powers of ten that float64 represents exactly.
 _SINGLE, _EXACT = 4, 22
 
 
 def to_plain(message: Any, ros: Ros, array: Callable[[NDArray[Any]], Any]) -> dict[str, Any]:
-    """A message as nested dicts.
+    """Return a message as nested dicts.
 
     Args:
-        message: of rosbags' type store.
-        ros: whose names times have: ``secs``, ``nsecs`` or ``sec``, ``nanosec``.
-        array: what becomes of an array of numbers.
+        message: message of rosbags' type store.
+        ros: version of the names of times: ``secs``, ``nsecs`` or ``sec``, ``nanosec``.
+        array: conversion of an array of numbers.
     """
     kind = type(message)
     if message.__msgtype__ in _TIMES:
@@ -39,7 +39,7 @@ _KNOWN: dict[str, tuple[str, ...]] = {}
 
 
 def _names(msgtype: str, kind: type[Any]) -> tuple[str, ...]:
-    """The fields of a type."""
+    """Return the fields of a type."""
     names = _KNOWN.get(msgtype)
     if names is None:
         names = _KNOWN[msgtype] = tuple(f.name for f in fields(kind) if not f.name.startswith("_"))
@@ -59,7 +59,7 @@ def _value(value: Any, ros: Ros, array: Callable[[NDArray[Any]], Any]) -> Any:
 
 
 def json_array(array: NDArray[Any]) -> list[Any]:
-    """Numbers of an array; JSON has no infinity and no NaN, which become None."""
+    """Return the numbers of an array; infinity and NaN, which JSON lacks, become None."""
     if array.dtype.kind != "f":
         return list(array.tolist())
     finite = np.isfinite(array).all()
@@ -68,10 +68,10 @@ def json_array(array: NDArray[Any]) -> list[Any]:
 
 
 def _short(array: NDArray[Any]) -> NDArray[np.float64]:
-    """Single precision as the numbers of nine digits that stand for it: half as long as text.
+    """Round single-precision numbers to nine digits, which halves their text.
 
-    A whole number over a power of ten is rounded once, so that its shortest text has no more
-    digits; nine of them are enough to get the same number of single precision back.
+    An integer divided by a power of ten is rounded once, so its shortest text has no more digits;
+    nine digits restore the same single-precision number.
     """
     wide = array.astype(np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -83,5 +83,5 @@ def _short(array: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def ros_type(msgtype: str, ros: Ros) -> str:
-    """``package/msg/Name`` as ROS 1 or 2 spell it."""
+    """Return ``package/msg/Name`` in the spelling of ROS 1 or 2."""
     return msgtype.replace("/msg/", "/") if ros == 1 else msgtype

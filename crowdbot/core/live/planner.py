@@ -1,4 +1,4 @@
-"""The planner of a live run: it tells what it sees, and commands what it is told."""
+"""The planner of a live run: publishes its observations and obeys external commands."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from crowdbot.errors import PlannerError
 Missed = Literal["stop", "hold", "fail"]
 STATUS, _STATUS = "/crowdbot/status", "crowdbot_msgs/msg/LiveStatus"
 _TELL = 1.0  # s of wall time between two messages about the state
-#: Without anybody who drives, steps wait for one for so long altogether, s; then no more.
+#: Total time that steps wait for a driver while there is none, s; then they do not wait.
 _ALONE = 30.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Manner:
-    """How a live run goes on from step to step.
+    """Timing of a live run's steps.
 
     Attributes:
-        rate: simulated seconds in a second; None waits for the command of each step.
-        external_clock: steps are taken when a clock outside says so.
-        budget: s that a step waits for its command.
-        missed: what becomes of a step without one.
-        hold: s of simulated time for which a command counts where steps do not wait.
-        wait: s to wait for the first client that drives.
-        epoch: ns that are added to all stamps.
+        rate: simulated seconds per second; None waits for the command of each step.
+        external_clock: True if an external clock triggers steps.
+        budget: s to wait for a step's command.
+        missed: behaviour of a step without a command.
+        hold: s of simulated time for which a command is valid if steps do not wait.
+        wait: s to wait for the first driving client.
+        epoch: ns added to all stamps.
     """
 
     rate: float | None = None
@@ -52,12 +52,12 @@ class Manner:
 
     @property
     def lockstep(self) -> bool:
-        """Whether each step waits for its command."""
+        """Return True if each step waits for its command."""
         return self.rate is None and not self.external_clock
 
 
 class LivePlanner:
-    """Drives as it is told from outside."""
+    """Drives with external commands."""
 
     def __init__(
         self, session: LiveSession, doors: Sequence[Door], scene: LiveScene, manner: Manner
@@ -70,7 +70,7 @@ class LivePlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Offer the topics of this run, and say what does not change in it."""
+        """Offer the topics of this run, and publish constant data."""
         del limits
         self._observed = Observed(sensors, self._scene.model, epoch=self._manner.epoch)
         constant = latched(self._scene, task, seed, self._manner.epoch)
@@ -83,11 +83,11 @@ class LivePlanner:
         self._tell()
 
     def step(self, obs: Observation) -> Command:
-        """Publish what is seen; the command of somebody outside.
+        """Publish the observation; return the external command.
 
         Raises:
-            NoValidCommand: nobody commands.
-            PlannerError: the same, where that is to end the run.
+            NoValidCommand: there is no command.
+            PlannerError: there is no command, and that ends the run.
         """
         session, manner = self._session, self._manner
         session.t, session.pose = obs.t, obs.pose
@@ -125,7 +125,7 @@ class LivePlanner:
         return answer
 
     def _paced(self, obs: Observation) -> Command | None:
-        """Keep to a clock; the command is the latest, if it is not too old."""
+        """Keep to a clock; return the latest command if it is not too old."""
         session, manner = self._session, self._manner
         if manner.external_clock:
             session.wait_for_clock(obs.t)
@@ -145,7 +145,7 @@ class LivePlanner:
         return None
 
     def _obeyed(self, answer: Command | None, t: float) -> Command:
-        """The command, or what stands for one that is missing."""
+        """Return the command, or the substitute for a missing one."""
         if answer is not None:
             self._last = answer
             return answer
@@ -159,7 +159,7 @@ class LivePlanner:
         raise NoValidCommand
 
     def _publish(self, obs: Observation) -> set[str]:
-        """Tell what is new; what topics it was."""
+        """Publish new data; return its topics."""
         return self._pass_on(self._observed.messages(obs, self._wanted))
 
     def _pass_on(self, found: Iterable[LiveMessage]) -> set[str]:
@@ -179,7 +179,7 @@ class LivePlanner:
 
 
 def status(session: LiveSession, epoch: int) -> LiveMessage:
-    """The state of the run that is going on, or just ended."""
+    """Return the state of the current run, or of the one that just ended."""
     counts = session.counts
     message = ros.new(
         "crowdbot_msgs/LiveStatus",

@@ -1,4 +1,4 @@
-"""How ROS 2 names topics on zenoh (rmw_zenoh): keys of data, tokens of who is there, attachments.
+"""ROS 2 names on zenoh (rmw_zenoh): keys of data, liveliness tokens, attachments.
 
 Source: the design document of rmw_zenoh, https://github.com/ros2/rmw_zenoh.
 """
@@ -16,9 +16,9 @@ from rosbags.typesys import Stores, get_typestore
 from crowdbot.core.recording import messages as ros
 
 Distro = Literal["humble", "jazzy", "kilted", "lyrical"]
-#: Kinds of entities in tokens: node, publisher, subscription, server of a service.
+#: Kinds of entities in tokens: node, publisher, subscription, service server.
 NODE, PUBLISHER, SUBSCRIPTION, SERVER = "NN", "MP", "MS", "SS"
-#: Humble knows no hashes of types.
+#: Humble has no type hashes.
 _NO_HASH = "TypeHashNotSupported"
 #: Reliable, keep last; depth 10 and volatile, or depth 1 and transient local.
 _QOS, _LATCHED_QOS = "::,10:,:,:,,", ":1:,1:,:,:,,"
@@ -27,7 +27,7 @@ _ATTACHMENT = struct.Struct("<qqB16s")
 
 @dataclass(frozen=True, slots=True)
 class Ros2Topic:
-    """A topic as ROS 2 knows it; ``hash`` depends on the distribution."""
+    """A topic in ROS 2; ``hash`` depends on the distribution."""
 
     name: str
     msgtype: str
@@ -36,16 +36,16 @@ class Ros2Topic:
 
     @property
     def dds_type(self) -> str:
-        """``package::msg::dds_::Name_``; of a service ``package::srv::dds_::Name_``."""
+        """Return ``package::msg::dds_::Name_``, or ``package::srv::dds_::Name_`` for a service."""
         package, kind, name = self.msgtype.split("/")
         return f"{package}::{kind}::dds_::{name}_"
 
     def key(self, domain: int) -> str:
-        """The key under which its messages are put."""
+        """Return the key of its messages."""
         return f"{domain}/{self.name.strip('/')}/{self.dds_type}/{self.hash}"
 
     def token(self, domain: int, session: str, entity: int, kind: str, node: str) -> str:
-        """What says that a node publishes it, or listens to it."""
+        """Return the token of a node that publishes or subscribes to it."""
         mangled = self.name.replace("/", "%")
         qos = _LATCHED_QOS if self.latched else _QOS
         return (
@@ -55,17 +55,17 @@ class Ros2Topic:
 
 
 def node_token(domain: int, session: str, node: str) -> str:
-    """What says that a node is there."""
+    """Return the token of a node."""
     return f"@ros2_lv/{domain}/{session}/0/0/{NODE}/%/%/{node}"
 
 
 def drivers_of(domain: int, name: str) -> str:
-    """Fits the tokens of all who publish a topic."""
+    """Return the pattern of all tokens of a topic's publishers."""
     return f"@ros2_lv/{domain}/*/*/*/{PUBLISHER}/*/*/*/{name.replace('/', '%')}/**"
 
 
 def read_attachment(data: bytes) -> tuple[int, bytes] | None:
-    """Number and sender of a request; None of bytes that are not an attachment."""
+    """Return number and sender of a request; None if the bytes are not an attachment."""
     if len(data) != _ATTACHMENT.size:
         return None
     sequence, _, size, gid = _ATTACHMENT.unpack(data)
@@ -73,23 +73,23 @@ def read_attachment(data: bytes) -> tuple[int, bytes] | None:
 
 
 def attachment(sequence: int, time_ns: int, gid: bytes) -> bytes:
-    """What goes with each message: 33 bytes."""
+    """Return the attachment of each message: 33 bytes."""
     return _ATTACHMENT.pack(sequence, time_ns, len(gid), gid)
 
 
 def gid_of(token: str) -> bytes:
-    """16 bytes that name a publisher."""
+    """Return 16 bytes that identify a publisher."""
     return hashlib.blake2b(token.encode(), digest_size=16).digest()
 
 
 def service_hash_in(text: str, distro: Distro) -> str:
-    """The hash of a service in a distribution."""
+    """Return the hash of a service in a distribution."""
     return _NO_HASH if distro == "humble" else text
 
 
 @cache
 def hash_in(msgtype: str, distro: Distro) -> str:
-    """The hash of a type in a distribution."""
+    """Return the hash of a type in a distribution."""
     if distro == "humble":
         return _NO_HASH
     if msgtype in _changed(distro):
@@ -99,7 +99,7 @@ def hash_in(msgtype: str, distro: Distro) -> str:
 
 
 def in_distro(data: bytes, msgtype: str, distro: Distro) -> bytes:
-    """A message as a distribution has it: types that grew a field since have it at the end, 0."""
+    """Return a message for a distribution: fields added since Humble are 0 at its end."""
     if distro == "humble" or msgtype not in _changed(distro):
         return data
     store = get_typestore(Stores(f"ros2_{distro}"))
@@ -111,7 +111,7 @@ def in_distro(data: bytes, msgtype: str, distro: Distro) -> bytes:
 
 @cache
 def _changed(distro: Distro) -> frozenset[str]:
-    """Types of ours whose definition differs from that of Humble, which recordings have."""
+    """Return our types whose definition differs from that of Humble, which recordings use."""
     store, mine = get_typestore(Stores(f"ros2_{distro}")), ros.ros2_store()
     known = set(store.types) & set(mine.types)
     return frozenset(t for t in known if store.fielddefs[t][1] != mine.fielddefs[t][1])

@@ -1,4 +1,4 @@
-"""What a live run says once: frames, map, the robot's description, goal, task."""
+"""Constant data of a live run: frames, map, the robot's description, goal, task."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from crowdbot.core.types.task import Task
 
 @dataclass(frozen=True, kw_only=True)
 class LiveScene:
-    """Where a live run happens, and with what robot.
+    """Place and robot of a live run.
 
     Attributes:
-        name: of the robot.
-        sensors: those that the planner gets.
+        name: name of the robot.
+        sensors: sensors of the planner.
     """
 
     scenario: str
@@ -43,7 +43,7 @@ class LiveScene:
 
 
 def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
-    """Everything that is said once, stamped ``ns``."""
+    """Return all constant messages, stamped ``ns``."""
     header = _header(scene, task)
     found = [
         (Topic.TF_STATIC, ros.transforms(scenery.static_frames(header))),

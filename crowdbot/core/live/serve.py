@@ -1,4 +1,4 @@
-"""Serves runs: each is an ordinary run, whose planner listens to programs outside."""
+"""Serve live runs: ordinary runs whose planner listens to external programs."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _SWITCH = 0.0005  # s
 
 @dataclass(frozen=True, kw_only=True)
 class LiveServe:
-    """What is served.
+    """The configuration of a live server.
 
     Attributes:
-        scenarios: in their order; ``first`` is the one to begin with.
-        request: makes the request of a scenario's run from planner and seed.
-        stay: whether to wait for what clients want when a run is complete.
-        watchers: show what a planner does not see.
-        on_run: called with each complete run.
+        scenarios: scenarios in order; ``first`` is the initial one.
+        request: function that builds the request for a scenario from planner and seed.
+        stay: True to wait for clients' requests after a complete run.
+        watchers: viewers of the ground truth.
+        on_run: callback for each complete run.
     """
 
     session: LiveSession
@@ -53,14 +53,14 @@ class LiveServe:
 
 
 def serve_runs(service: LiveServe) -> Run:
-    """Serve runs until one is complete, or with ``stay`` until the user ends it.
+    """Serve runs until one is complete, or with ``stay`` until the user stops.
 
     Returns:
         The last complete run.
 
     Raises:
-        Interrupted: the user ended it; a ``.partial`` directory is left.
-        InputError: a scenario, or the folder for its run, is wrong.
+        Interrupted: the user stopped the run; a ``.partial`` directory is left.
+        InputError: a scenario, or its run's folder, is invalid.
     """
     session, index = service.session, service.first
     session.seed = service.seed
@@ -90,7 +90,7 @@ def _ended(last: Run | None) -> Run:
 
 @contextmanager
 def _quick_switches() -> Iterator[None]:
-    """The simulation waits for the thread of the connections in each step."""
+    """Switch threads quickly, since each step waits for the connections' thread."""
     usual = sys.getswitchinterval()
     sys.setswitchinterval(_SWITCH)
     try:
@@ -100,7 +100,7 @@ def _quick_switches() -> Iterator[None]:
 
 
 def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
-    """One run; None where a client wanted another one before its end."""
+    """Run once; return None if a client requested another run before its end."""
     from crowdbot.core.sim.simulate import make_run
 
     session = service.session
@@ -137,10 +137,10 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
 
 
 def live_choice(name: str, manner: Manner, build: Callable[[], LivePlanner]) -> PlannerChoice:
-    """The planner that listens, as one that runs can be made with.
+    """Return a planner choice that listens to external commands.
 
     Raises:
-        InputError: the name cannot be that of a folder.
+        InputError: the name is not valid for a folder.
     """
     if not name or name.startswith(".") or set(name) & set("/\\\0"):
         raise InputError(f"'{name}' cannot be the name of a planner, which a folder has")
@@ -158,7 +158,7 @@ def live_choice(name: str, manner: Manner, build: Callable[[], LivePlanner]) -> 
 
 
 def _built(request: Request) -> BuiltRun:
-    """The run of the one robot that clients drive: what they are told of is what is simulated."""
+    """Build the run of the only robot; clients get the data of this robot."""
     from crowdbot.core.sim.preflight import preflight
 
     check_one_robot(request.scenario, "'crowdbot serve'")
@@ -177,7 +177,7 @@ def _scene(request: Request, built: BuiltRun) -> LiveScene:
 
 
 def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:
-    """Add to run.json what only a live run knows."""
+    """Add data of the live run to run.json."""
     counts = session.counts
     lag = {} if manner.rate is None else {"largest_lag": round(counts.most_lag, 4)}
     live = LivePart(

@@ -1,6 +1,6 @@
-"""Types of services: their hashes in ROS 2, requests out of CDR, responses into it.
+"""Service types: their hashes in ROS 2, and requests and responses as CDR.
 
-Source of hashes: REP-2016; a service is a type of three, request, response and event.
+Source of hashes: REP-2016; a service type consists of request, response and event.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ _ZERO: dict[str, Any] = {"string": "", "wstring": "", "bool": False}
 
 @cache
 def _store() -> Any:
-    """Of Jazzy: a store of its own, since services are registered in it."""
+    """Return a separate store of Jazzy types, since services are registered in it."""
     store = get_typestore(Stores.ROS2_JAZZY)
     types: dict[str, Any] = {}
     for name, text in MESSAGES.items():
         types.update(get_types_from_msg(text, f"{PACKAGE}/msg/{name}"))
     store.register(types)
-    # Its char is uint8 in the descriptions that hashes are made of; rosbags takes it for another.
+    # A char is uint8 in the descriptions for hashes; rosbags treats it differently.
     store.fielddefs = {**store.fielddefs, **get_types_from_msg(_EVENT_TEXT, _EVENT)}
     return store
 
@@ -42,7 +42,7 @@ class ServiceType:
     """The types of one service."""
 
     def __init__(self, kind: str, request: Fields, response: Fields) -> None:
-        """``kind``: ``package/srv/Name``."""
+        """Build the types. ``kind``: ``package/srv/Name``."""
         self.kind = kind
         store = _store()
         self._request, self._response = f"{kind}_Request", f"{kind}_Response"
@@ -57,33 +57,33 @@ class ServiceType:
 
     @property
     def hash(self) -> str:
-        """As ROS 2 tells versions of it apart."""
+        """Return the hash with which ROS 2 identifies its version."""
         return f"RIHS01_{_store().hash_rihs01(self.kind).removeprefix('RIHS01_')}"
 
     def request(self, data: bytes) -> Values:
-        """A request as plain values.
+        """Return a request as plain values.
 
         Raises:
             InputError: it is not one.
         """
         try:
             message = _store().deserialize_cdr(data, self._request)
-        except Exception as error:  # generated code, fed with anything
+        except Exception as error:  # generated code with untrusted input
             raise InputError(f"not a request of {self.kind}") from error
         return to_plain(message, 2, json_array)
 
     def response(self, values: Mapping[str, Any]) -> bytes:
-        """Plain values as a response; what they lack is 0 or empty."""
+        """Encode plain values as a response; missing ones are 0 or empty."""
         return bytes(_store().serialize_cdr(_made(self._response, values), self._response))
 
 
 def service_type(service: Service) -> ServiceType:
-    """The types of a service."""
+    """Return the types of a service."""
     return ServiceType(service.kind, service.request, service.response)
 
 
 def _parts(kind: str, which: str) -> Any:
-    """Fields of the type that stands for the service, or of its event."""
+    """Return the fields of the type for the service, or its event."""
     names = (f"{kind}_Request", f"{kind}_Response", f"{kind}_Event")
     if which == kind:
         fields = ("request_message", "response_message", "event_message")
@@ -95,7 +95,7 @@ def _parts(kind: str, which: str) -> Any:
 
 
 def _made(msgtype: str, values: object) -> Any:
-    """A message of a type, out of plain values."""
+    """Return a message of a type from plain values."""
     given = values if isinstance(values, Mapping) else {}
     fields = {n: _value(d, given.get(n)) for n, d in _store().fielddefs[msgtype][1]}
     return _store().types[msgtype](**fields)

@@ -1,4 +1,4 @@
-"""Services of a live run, whatever protocol they are called through."""
+"""Services of a live run, for all protocols."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
 
 Values = dict[str, Any]
-#: Field -> type of a request or of a response.
+#: Field -> type of a request or response.
 Fields = Mapping[str, str]
 _MOST_STEPS, _MOST_SEED = 10**6, 2**63 - 1
 _LOOK, _LONGEST = 0.005, 3600.0
@@ -26,7 +26,7 @@ class Service:
     Attributes:
         kind: ``package/srv/Name``.
         request, response: their fields.
-        call: raises `InputError` for what cannot be done.
+        call: function; raises `InputError` if impossible.
     """
 
     kind: str
@@ -36,7 +36,7 @@ class Service:
 
 
 def services(session: LiveSession) -> dict[str, Service]:
-    """Those of crowdbot, by name."""
+    """Return crowdbot's services, by name."""
 
     def trigger(act: Callable[[], object]) -> Service:
         async def call(values: Values) -> Values:
@@ -71,7 +71,7 @@ def services(session: LiveSession) -> dict[str, Service]:
 
 
 async def steps_taken(session: LiveSession, count: int) -> None:
-    """Take so many planner steps, hold, and return when they were taken or the run is over.
+    """Take this many planner steps, pause, and return when done or at the end of the run.
 
     Raises:
         InputError: the run ended before.
@@ -87,7 +87,7 @@ async def steps_taken(session: LiveSession, count: int) -> None:
 
 
 def whole(values: Values, name: str, least: int, most: int, default: int | None = None) -> int:
-    """A whole number out of a request.
+    """Return a whole number from a request.
 
     Raises:
         InputError: it is not one, or out of range.

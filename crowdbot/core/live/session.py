@@ -1,6 +1,6 @@
-"""A live session: what the simulation and those who are connected share.
+"""A live session: shared state of the simulation and its clients.
 
-The simulation asks in its own thread; connections tell in theirs. All of it is behind one lock.
+The simulation and the connections have separate threads; one lock protects all state.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from crowdbot.core.types.motion import Command
 
 Request = Literal["", "reset", "next", "load"]
 State = Literal["waiting", "running", "paused", "ended"] | Ending
-#: How often a wait looks whether the run was interrupted, s.
+#: Interval at which a wait checks for interruptions, s.
 _LOOK = 0.05
-#: A command whose stamp is older than the step that is asked, by more than this, answers another.
+#: A command with a stamp older than the current step by more than this belongs to another step.
 _ROUNDING = 1_000
 
 
 @dataclass
 class LiveCounts:
-    """What is told about a run.
+    """Counters of a run.
 
     Attributes:
         steps: planner steps so far.
-        missed: steps for which no new command came in time.
-        refused: commands that were not finite, came from somebody who does not drive, or answered
+        missed: steps without a new command in time.
+        refused: commands that were not finite, came from a client that does not drive, or were for
             another step.
-        lag, most_lag: how far the simulation is behind the time it should keep, s.
+        lag, most_lag: delay of the simulation behind its clock, s.
     """
 
     steps: int = 0
@@ -52,14 +52,15 @@ class _Asked:
 
 @dataclass
 class LiveSession:
-    """Shared by the simulation and its connections.
+    """State shared by the simulation and its connections.
 
     Attributes:
-        interrupted: whether the user wants to end.
-        counts: of the run that is going on.
-        state, scenario, run, seed, t: of the same.
-        robot, pose, twist: of the same: name of the robot; x, y, yaw and v, w, vy by odometry.
-        scenarios: ids of those that can be loaded; ``wanted`` is the one that somebody chose.
+        interrupted: True if the user stopped the run.
+        counts: counters of the current run.
+        state, scenario, run, seed, t: facts about it.
+        robot, pose, twist: its robot's state: name of the robot; x, y, yaw and v, w, vy by
+            odometry.
+        scenarios: ids of the available scenarios; ``wanted`` is the requested one.
     """
 
     interrupted: Callable[[], bool] = lambda: False
@@ -87,10 +88,10 @@ class LiveSession:
 
     # ------------------------------------------------------------------ the simulation asks
     def begin(self, scenario: str, seed: int) -> None:
-        """A run begins."""
+        """Start a run."""
         with self._changed:
             self.scenario, self.seed, self.t = scenario, seed, 0.0
-            if self.run:  # what was said before the first run begins counts
+            if self.run:  # requests from before the first run are kept
                 self._latest, self._fresh, self._clock = None, False, -math.inf
             self.run += 1
             self.counts, self.state = LiveCounts(), "waiting"
@@ -98,27 +99,27 @@ class LiveSession:
             self._request = ""
 
     def finish(self, state: State) -> None:
-        """The run ended."""
+        """End the run."""
         with self._changed:
             self.state = state
             self._changed.notify_all()
 
     @property
     def must_stop(self) -> bool:
-        """Whether the run is to end before its end."""
+        """Return True if the run has to stop early."""
         return bool(self._request) or self.interrupted()
 
     def ask(self, ns: int) -> None:
-        """From now on a command answers the step at ``ns``."""
+        """From now on, commands are for the step at ``ns``."""
         with self._changed:
             self._asked, self._listeners = _Asked(ns), False
 
     def answer(self, budget: float, listened: Callable[[], None]) -> Command | None:
-        """Wait for the command of the step that was asked; None where none came in time.
+        """Wait for the command of the current step; return None if there is none in time.
 
         Args:
             budget: s to wait.
-            listened: called when somebody began to listen meanwhile, who has to be told.
+            listened: callback for new subscribers during the wait.
         """
         until = time.monotonic() + budget
         while True:
@@ -133,13 +134,13 @@ class LiveSession:
             listened()
 
     def wait_for_driver(self, patience: float) -> bool:
-        """Wait until somebody wants to drive, at most so many seconds; whether there is one."""
+        """Wait for a driving client, at most this many seconds; return True if there is one."""
         with self._changed:
             self._wait(lambda: self._driver is not None, time.monotonic() + patience)
             return self._driver is not None
 
     def newest(self) -> tuple[Command | None, bool]:
-        """The latest command, and whether it came since the last call."""
+        """Return the latest command, and True if it is new since the last call."""
         with self._changed:
             fresh, self._fresh = self._fresh, False
             return self._latest, fresh
@@ -153,29 +154,29 @@ class LiveSession:
             self._changed.notify_all()
 
     def wait_for_clock(self, t: float) -> None:
-        """Return when the clock outside shows at least ``t``, s."""
+        """Return when the external clock is at least ``t``, s."""
         with self._changed:
             self._wait(lambda: self._clock >= t - 1e-9, math.inf)
 
     def sleep(self, until: float) -> None:
-        """Sleep until a time of `time.monotonic`, or until the run is to end."""
+        """Sleep until a time of `time.monotonic`, or until the run has to end."""
         with self._changed:
             self._wait(lambda: False, until)
 
     def wait_for_request(self) -> Request:
-        """Wait until somebody wants another run; nothing when the user wants to end."""
+        """Wait for a request for another run; return nothing when the user stops."""
         with self._changed:
             self._wait(lambda: False, math.inf)
             return self.take_request()
 
     def take_request(self) -> Request:
-        """What somebody wanted, once."""
+        """Return the pending request once."""
         with self._changed:
             wanted, self._request = self._request, ""
             return wanted
 
     def _wait(self, done: Callable[[], bool], until: float) -> None:
-        """Wait for something, for a time, or for the end of the run; the lock is held."""
+        """Wait for a condition, a time, or the end of the run; requires the lock."""
         while not done() and not self.must_stop:
             left = until - time.monotonic()
             if left <= 0.0:
@@ -184,7 +185,7 @@ class LiveSession:
 
     # ------------------------------------------------------------------ connections tell
     def drive(self, who: Hashable) -> bool:
-        """Somebody wants to drive; whether he may: the first one does, until he leaves."""
+        """Return True if this client may drive; the first client keeps control until it leaves."""
         with self._changed:
             if self._driver is None:
                 self._driver = who
@@ -192,7 +193,7 @@ class LiveSession:
             return self._driver == who
 
     def leave(self, who: Hashable) -> None:
-        """Somebody is gone, or does not drive any more."""
+        """Handle a client that left or stopped driving."""
         with self._changed:
             if self._driver == who:
                 self._driver = None
@@ -200,19 +201,19 @@ class LiveSession:
 
     @property
     def driven(self) -> bool:
-        """Whether somebody drives."""
+        """Return True if a client drives."""
         return self._driver is not None
 
     def command(self, who: Hashable, command: Command, stamp: int | None = None) -> str:
-        """Somebody commands.
+        """Take a client's command.
 
         Args:
-            who: he.
+            who: the client.
             command: m/s, rad/s.
-            stamp: of the message, ns; None or 0 where it has none.
+            stamp: stamp of the message, ns; None or 0 if it has none.
 
         Returns:
-            Why the command is refused; empty where it is taken.
+            Why the command is refused; empty if accepted.
         """
         why = self._taken(who, command, stamp)
         if why:
@@ -236,26 +237,26 @@ class LiveSession:
         return ""
 
     def listened(self) -> None:
-        """Somebody began to listen."""
+        """Handle a new subscriber."""
         with self._changed:
             self._listeners = True
             self._changed.notify_all()
 
     def clock(self, t: float) -> None:
-        """The clock outside shows ``t``, s; it never goes back."""
+        """Set the external clock to ``t``, s; it never goes back."""
         with self._changed:
             if t > self._clock and math.isfinite(t):
                 self._clock = t
                 self._changed.notify_all()
 
     def pause(self, wanted: bool) -> None:
-        """Hold the run before its next step, or let it go on."""
+        """Pause the run before its next step, or resume it."""
         with self._changed:
             self._paused, self._steps = wanted, 0
             self._changed.notify_all()
 
     def step(self, count: int) -> int:
-        """Take so many steps and hold again; returns the number of the last one."""
+        """Take this many steps and pause again; return the number of the last one."""
         with self._changed:
             self._paused = True
             self._steps += count
@@ -263,19 +264,19 @@ class LiveSession:
             return self.counts.steps + self._steps
 
     def ask_for(self, request: Request, seed: int | None = None) -> None:
-        """End the run and begin another one: the same scenario again, or the next one."""
+        """Stop the run and start another: the same scenario again, or the next one."""
         with self._changed:
             self._request = request
             self.seed = self.seed if seed is None else seed
             self._changed.notify_all()
 
     def load(self, scenario: str) -> None:
-        """End the run and begin one of another scenario."""
+        """Stop the run and start another scenario."""
         with self._changed:
             self.wanted = scenario
         self.ask_for("load")
 
     @property
     def paused(self) -> bool:
-        """Whether the run is held."""
+        """Return True if the run is paused."""
         return self._paused

@@ -1,4 +1,4 @@
-"""The standard services of simulators for ROS 2, as far as they make sense here.
+"""Standard simulator services for ROS 2, as far as applicable.
 
 Source: https://github.com/ros-simulation/simulation_interfaces, version 2.1.0.
 """
@@ -15,27 +15,27 @@ from crowdbot.core.recording.messages import half_turn
 from crowdbot.errors import InputError
 
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = 0, 1, 2, 3, 4
-#: Of LoadWorld: neither a resource nor a text is given.
+#: Result code of LoadWorld: neither a resource nor a text is given.
 NO_RESOURCE = 102
 STOPPED, PLAYING, PAUSED, QUITTING = 0, 1, 2, 3
-#: Of SimulatorFeatures: state of an entity; reset; state of the simulation, to read, to set, to
-#: pause; one step, several; loading of worlds, which one it is, which there are.
+#: Supported SimulatorFeatures: entity state; reset; simulation state (get, set, pause); single and
+#: multiple steps; worlds (load, get, list).
 FEATURES = (10, 20, 24, 25, 26, 31, 32, 40, 43, 44)
-#: Scopes of a reset: the default, time, state, what was spawned, all. A part is not possible.
+#: Scopes of a reset: default, time, state, spawned entities, all. Partial resets are not supported.
 _WHOLE = (0, 255)
-#: Nobody has a longer pattern for a single name.
+#: Longest pattern of a single name.
 _LONGEST_FILTER = 100
 Call = Callable[[Values], Awaitable[Values]]
 
 
 def simulation_services(session: LiveSession) -> dict[str, Service]:
-    """The services, by name."""
+    """Return the services, by name."""
     calls = {**_course(session), **_entities(session), **_worlds(session)}
     return {f"/{_snake(name)}": _service(name, call) for name, call in calls.items()}
 
 
 def _course(session: LiveSession) -> dict[str, Call]:
-    """Those about the course of a simulation."""
+    """Return the services for running a simulation."""
 
     async def reset(values: Values) -> Values:
         if whole(values, "scope", 0, 255, default=0) not in _WHOLE:
@@ -75,7 +75,7 @@ def _course(session: LiveSession) -> dict[str, Call]:
 
 
 def _entities(session: LiveSession) -> dict[str, Call]:
-    """Those about what is there: of the robot what it knows itself, of people nothing."""
+    """Return the services for entities: the robot's own knowledge, and no data about people."""
 
     async def entities(values: Values) -> Values:
         return {**_result(OK), "entities": _found(session, values)}
@@ -95,13 +95,13 @@ def _entities(session: LiveSession) -> dict[str, Call]:
         "GetEntityState": entity_state,
         "GetEntitiesStates": states,
         "SpawnEntity": _never("the scenario says who is there; nothing can be spawned"),
-        "DeleteEntity": _never("the scenario says who is there; nobody can be taken away"),
+        "DeleteEntity": _never("the scenario defines the entities; they cannot be deleted"),
         "SetEntityState": _never("the robot is moved by commands alone, people by their policies"),
     }
 
 
 def _never(why: str) -> Call:
-    """A service that is there so that nobody waits for it; it says why it does nothing."""
+    """Return a service that only reports why it is not supported, so that clients do not wait."""
 
     async def answer(values: Values) -> Values:
         del values
@@ -111,7 +111,7 @@ def _never(why: str) -> Call:
 
 
 def _found(session: LiveSession, values: Values) -> list[str]:
-    """Names of entities that the filter of a request lets through."""
+    """Return the names of entities that match a request's filter."""
     pattern = _inside(values, "filters").get("filter", "")
     if not isinstance(pattern, str) or len(pattern) > _LONGEST_FILTER:
         raise InputError("'filter' must be a text of at most 100 characters")
@@ -122,7 +122,7 @@ def _found(session: LiveSession, values: Values) -> list[str]:
 
 
 def _worlds(session: LiveSession) -> dict[str, Call]:
-    """Those about worlds, which are the scenarios of a suite."""
+    """Return the services for worlds, which are a suite's scenarios."""
 
     async def available(values: Values) -> Values:
         if _inside(values, "filter").get("tags"):
@@ -157,7 +157,7 @@ def _snake(name: str) -> str:
 
 
 def _service(name: str, call: Call) -> Service:
-    """A service whose errors are results, as its type has them."""
+    """Return a service that reports errors as results, as its type defines."""
 
     async def answer(values: Values) -> Values:
         try:
@@ -171,7 +171,7 @@ def _service(name: str, call: Call) -> Service:
 
 
 def _inside(values: Values, name: str) -> Values:
-    """A field that is an object; none where it is not."""
+    """Return an object field; empty if it is not an object."""
     found = values.get(name)
     return dict(found) if isinstance(found, dict) else {}
 
@@ -190,7 +190,7 @@ def _world(scenario: str) -> Values:
 
 
 def _entity_state(session: LiveSession) -> Values:
-    """Pose and twist by odometry, in the frame ``odom``; accelerations are not known."""
+    """Return pose and twist by odometry in the frame ``odom``; accelerations are unknown."""
     x, y, yaw = session.pose
     v, w, vy = session.twist
     z, turn = half_turn(yaw)

@@ -1,7 +1,7 @@
-"""Types of simulation_interfaces 2.1.0 that the services of a live run consist of.
+"""Types of simulation_interfaces 2.1.0 for the services of a live run.
 
-Source: https://github.com/ros-simulation/simulation_interfaces. Names and order of fields make the
-wire format and the type hashes; constants are left out, since they make neither.
+Source: https://github.com/ros-simulation/simulation_interfaces. Names and order of fields define
+the wire format and the type hashes; constants affect neither and are left out.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ MESSAGES = {
 _RESULT = {"result": f"{PACKAGE}/Result"}
 _STATE = {"state": f"{PACKAGE}/SimulationState"}
 _WORLD = {"world": f"{PACKAGE}/WorldResource"}
-#: Service -> fields of its request and of its response.
+#: Service -> fields of its request and response.
 SERVICES: dict[str, tuple[dict[str, str], dict[str, str]]] = {
     "ResetSimulation": ({"scope": "uint8"}, _RESULT),
     "StepSimulation": ({"steps": "uint64"}, _RESULT),

@@ -38,13 +38,13 @@ _NODE = "crowdbot"
 
 @dataclass(frozen=True, kw_only=True)
 class Network:
-    """Where ROS 2 is.
+    """The ROS 2 network.
 
     Attributes:
-        endpoint: of the router, ``tcp/HOST:PORT``.
-        router: whether to be the router there, instead of connecting to one.
+        endpoint: address of the router, ``tcp/HOST:PORT``.
+        router: True to be the router instead of connecting to one.
         domain: as in ``ROS_DOMAIN_ID``.
-        distro: whose type hashes keys have.
+        distro: distribution of the type hashes in keys.
     """
 
     endpoint: str = "tcp/127.0.0.1:7447"
@@ -54,7 +54,7 @@ class Network:
 
 
 class _Publisher:
-    """One topic that we publish."""
+    """One published topic."""
 
     def __init__(self, topic: Ros2Topic, publisher: Any, token: Any, gid: bytes) -> None:
         self.topic, self.publisher, self.token = topic, publisher, token
@@ -73,7 +73,7 @@ class _Publisher:
 
 
 class ZenohDoor:
-    """A door that speaks what ROS 2 nodes with rmw_zenoh speak."""
+    """A live connection with the protocol of ROS 2 nodes with rmw_zenoh."""
 
     def __init__(
         self,
@@ -87,7 +87,7 @@ class ZenohDoor:
         """Connect.
 
         Raises:
-            InputError: there is no router at the endpoint, or it cannot be one.
+            InputError: there is no router at the endpoint, or it cannot be started.
         """
         self._session, self._network = session, network
         self._resend, self._external_clock = resend, external_clock
@@ -112,7 +112,7 @@ class ZenohDoor:
 
     # ---------------------------------------------------------------- the simulation's thread
     def open(self, offers: Sequence[Offer]) -> None:
-        """A run begins that offers these topics."""
+        """Start a run that offers these topics."""
         names = {o.topic for o in offers}
         for name in [n for n in self._publishers if n not in names]:
             self._publishers.pop(name).undeclare()
@@ -123,12 +123,12 @@ class ZenohDoor:
                 self._publishers[offer.topic] = self._declare(offer)
 
     def wants(self, topic: str) -> bool:
-        """Whether somebody listens to a topic."""
+        """Return True if a client listens to a topic."""
         found = self._publishers.get(topic)
         return found is not None and found.wanted
 
     def publish(self, messages: Sequence[LiveMessage]) -> None:
-        """Tell those who listen."""
+        """Send messages to the listeners."""
         for message in messages:
             found = self._publishers.get(message.topic)
             if found is not None:
@@ -137,7 +137,7 @@ class ZenohDoor:
                     found.put(message, self._network.distro)
 
     def close(self) -> None:
-        """Leave."""
+        """Disconnect."""
         self._servers.close()
         if not self._zenoh.is_closed():
             self._zenoh.close()
@@ -183,7 +183,7 @@ class ZenohDoor:
         self._session.listened()
 
     def _on_driver(self, sample: Any) -> None:
-        """Somebody who publishes commands came, or left."""
+        """Handle a command publisher that came or left."""
         import zenoh
 
         key = str(sample.key_expr)
@@ -217,10 +217,10 @@ class ZenohDoor:
 
 
 def _read(sample: Any, msgtype: str) -> Any | None:
-    """The message; None of bytes that are not one."""
+    """Return the message; None for invalid bytes."""
     try:
         return ros.from_cdr(sample.payload.to_bytes(), msgtype)
-    except Exception:  # generated code, fed with anything
+    except Exception:  # generated code with untrusted input
         return None
 
 
@@ -234,6 +234,6 @@ def _opened(network: Network) -> Any:
     try:
         config.insert_json5(where, f'["{network.endpoint}"]')
         return zenoh.open(config)
-    except Exception as error:  # of one kind only, zenoh.ZError, whose text is for programmers
+    except Exception as error:  # always zenoh.ZError, with a technical text
         doing = "be a router at" if network.router else "find a router of ROS 2 at"
         raise InputError(f"{network.endpoint}: cannot {doing} that endpoint") from error

@@ -1,4 +1,4 @@
-"""Services of ROS 2 on zenoh: a query is a request, its reply the response (rmw_zenoh)."""
+"""ROS 2 services on zenoh: a query is a request, its reply the response (rmw_zenoh)."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from crowdbot.core.live.service_types import ServiceType, service_type
 from crowdbot.core.live.services import Service, Values
 from crowdbot.errors import InputError
 
-#: Calls that may be going on; steps wait until they are taken.
+#: Largest number of parallel calls; step calls wait until the steps are taken.
 _MOST_CALLS = 8
 
 
 class ZenohServices:
-    """Answers queries in threads of its own."""
+    """Replies to queries in separate threads."""
 
     def __init__(self, session: Any) -> None:
-        """``session``: zenoh's."""
+        """Prepare the services. ``session``: a zenoh session."""
         self._session = session
         self._threads = ThreadPoolExecutor(_MOST_CALLS, thread_name_prefix="zenoh-service")
         self._kept: list[Any] = []
@@ -36,20 +36,20 @@ class ZenohServices:
         """Offer one service.
 
         Returns:
-            It, as ROS 2 names it.
+            Its ROS 2 name.
         """
         types = service_type(service)
         topic = Ros2Topic(name, service.kind, service_hash_in(types.hash, distro))
 
         def asked(query: Any) -> None:
-            with suppress(RuntimeError):  # closed already
+            with suppress(RuntimeError):  # already closed
                 self._threads.submit(self._answer, query, service, types)
 
         self._kept.append(self._session.declare_queryable(topic.key(domain), asked, complete=True))
         return topic
 
     def close(self) -> None:
-        """Answer nobody any more."""
+        """Stop replying."""
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _answer(self, query: Any, service: Service, types: ServiceType) -> None:

@@ -1,1 +1,1 @@
-"""Planners: their contract, where they come from, and the host that calls them."""
+"""Planners: their interface, how they are found, and the host that calls them."""

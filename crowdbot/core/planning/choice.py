@@ -1,4 +1,4 @@
-"""A planner that was chosen, and where it is to run."""
+"""A chosen planner, and where it runs."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ MEMORY = 4 << 30
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannerPlace:
-    """Where a planner is to run.
+    """The process in which a planner runs.
 
     Attributes:
-        in_process: inside the simulator, or in a process of its own; None: crowdbot's own inside,
-            all others in a process of their own.
-        memory: largest address space of a process of its own, bytes; None sets no limit.
-        lenient: whether one that cannot be loaded in its process is a planner all the same, which
-            fails in every run: a campaign goes on with the others.
+        in_process: True: in the simulator's process; False: in a separate process; None: built-in
+            planners inside, all others separate.
+        memory: largest address space of a separate process, bytes; None: unlimited.
+        lenient: True to accept a planner that cannot be loaded in its process; it fails in every
+            run, and a campaign continues with the others.
     """
 
     in_process: bool | None = None
@@ -37,7 +37,7 @@ class PlannerPlace:
     lenient: bool = False
 
     def own_memory(self, in_process: bool) -> int | None:
-        """The limit, where there is a process that has it."""
+        """Return the memory limit, if there is a separate process."""
         return None if in_process else self.memory
 
 
@@ -49,23 +49,23 @@ class PlannerChoice:
     """A planner that can be built any number of times.
 
     Attributes:
-        name: its kind, or the class' name.
+        name: its kind or class name.
         spec_dump: everything that defines it, as JSON values.
-        build: makes a new one; raises `PlannerError` or `PluginError`.
-        pinned: whether it comes from an installed distribution.
-        needs: sensors it reads, by name or category; None asks for all.
+        build: builds a new one; raises `PlannerError` or `PluginError`.
+        pinned: True if it comes from an installed distribution.
+        needs: sensors it reads, by name or category; None: all.
         label: ``name``, with ``+`` and four hex digits when parameters are not the defaults, and
-            with ``+privileged`` where that holds: scores carry it.
-        privileged: whether it may read what no sensor of a real robot could tell.
-        role: what it is there for: floor, baseline, ceiling or candidate. One with other
-            parameters than its defaults is a candidate.
-        origin: the distribution, or the file, that it comes from.
-        in_process: whether it runs inside the simulator, where nothing contains it.
-        memory: limit of its own process, bytes; None: none.
-        repeatable: whether the same choice makes the same run; False for an object that was made
-            already, whose runs are never reused.
-        patience: s after which a step in this process counts as hung; None: the usual time.
-        fleet: the planner of each of several robots, where they have not all the same.
+            ``+privileged`` if privileged; used in scores.
+        privileged: True if it may read data that no real sensor measures.
+        role: floor, baseline, ceiling or candidate. A planner with changed parameters is a
+            candidate.
+        origin: its distribution or file.
+        in_process: True if it runs in the simulator's process, without isolation.
+        memory: limit of its separate process, bytes; None: unlimited.
+        repeatable: True if the same choice gives the same run; False for an existing object, whose
+            runs are never reused.
+        patience: s after which a step in this process counts as hung; None: default.
+        fleet: the planner of each robot, if they differ.
     """
 
     name: str
@@ -84,15 +84,15 @@ class PlannerChoice:
     fleet: Mapping[str, PlannerChoice] = field(default_factory=dict)
 
     def of(self, robot: str) -> PlannerChoice:
-        """The planner of one robot."""
+        """Return the planner of one robot."""
         return self.fleet.get(robot, self)
 
     @property
     def died(self) -> str:
-        """How its process, or one of its fleet's, died while it was loaded; empty: it did not.
+        """Return how its process, or one of its fleet's, died on loading; empty if it did not.
 
-        Such a choice fails in every run, and nothing is known of what the planner says of itself;
-        chosen again, it may well be loaded.
+        Such a choice fails in every run, and the planner's description is unknown; a new attempt
+        may succeed.
         """
         found = (getattr(choice.build, "died", "") for choice in (self, *self.fleet.values()))
         return next(filter(None, found), "")
@@ -104,16 +104,16 @@ class PlannerChoice:
 
 
 def label_of(name: str, parameters: Mapping[str, Any], privileged: bool) -> str:
-    """Name of a planner's folder.
+    """Return the name of a planner's folder.
 
     Args:
-        parameters: all that make it another planner than that of the name alone.
+        parameters: parameters that differ from the defaults.
     """
     label = f"{name}+{_digest(parameters)}" if parameters else name
     return f"{label}+privileged" if privileged else label
 
 
 def _digest(parameters: Mapping[str, Any]) -> str:
-    """Four hex digits."""
+    """Return four hex digits."""
     text = json.dumps(dict(parameters), sort_keys=True, separators=(",", ":"), default=repr)
     return hashlib.sha256(text.encode()).hexdigest()[:4]

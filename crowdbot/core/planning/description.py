@@ -1,4 +1,4 @@
-"""What a planner class, or its spec, says of itself."""
+"""A planner's description by its class or spec."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from crowdbot.errors import InputError, did_you_mean, nearest
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannerDescription:
-    """What must be known of a planner before it runs.
+    """Facts about a planner that must be known before it runs.
 
     Attributes:
-        needs: sensors it reads, by name or category; None asks for all.
-        privileged: whether it may read what no sensor of a real robot could tell.
-        role: what it is there for.
-        runtime: what it runs in, where that is not crowdbot's own Python.
-        data: names or patterns of files beside it that it reads.
+        needs: sensors it reads, by name or category; None: all.
+        privileged: True if it may read data that no real sensor measures.
+        role: its role in a benchmark.
+        runtime: its runtime, if it is not crowdbot's Python.
+        data: names or patterns of files that it reads, beside it.
     """
 
     needs: tuple[str, ...] | None = None
@@ -32,11 +32,11 @@ class PlannerDescription:
 
 
 def described(holder: type, call: PluginCall) -> PlannerDescription:
-    """What a class says.
+    """Return the description given by a class.
 
     Raises:
         InputError: there is no such role.
-        PluginError: it raises when it is asked; of the class that ``call`` raises.
+        PluginError: reading it raises; the class is the one that ``call`` raises.
     """
     with call("what it says of itself"):
         needs = getattr(holder, "needs", None)
@@ -49,10 +49,10 @@ def described(holder: type, call: PluginCall) -> PlannerDescription:
 
 
 def read_description(said: Mapping[str, Any], who: str) -> PlannerDescription:
-    """What a planner process said; anything may be wrong in it.
+    """Check the description sent by a planner process, which may be malformed.
 
     Raises:
-        InputError: it is not what a planner says of itself.
+        InputError: it is not a valid description.
     """
     needs, runtime = said.get("needs"), said.get("runtime", "")
     if needs is not None and not (isinstance(needs, list) and all(map(_is_name, needs))):
@@ -72,7 +72,7 @@ def read_description(said: Mapping[str, Any], who: str) -> PlannerDescription:
 
 
 def role_of(holder: type) -> PlannerRole:
-    """What a planner class, or a spec, says that it is there for.
+    """Return the role that a planner class or spec declares.
 
     Raises:
         InputError: there is no such role.

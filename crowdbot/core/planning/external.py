@@ -1,4 +1,4 @@
-"""Planners of another Python, or of another language: documents with ``python`` or ``command``."""
+"""Planners in another Python or language: documents with ``python`` or ``command``."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
 
 
 def is_external(document: Mapping[str, Any]) -> bool:
-    """Whether a planner's document names a program rather than a kind."""
+    """Return True if a planner's document names a program rather than a kind."""
     return "kind" not in document and any(name in document for name in ("command", "python"))
 
 
 def external_choice(
     path: Path, document: Mapping[str, Any], settings: Mapping[str, Any], place: PlannerPlace
 ) -> PlannerChoice:
-    """The planner of a document that names a program.
+    """Return the planner of a document that names a program.
 
     Args:
-        path: of the document; names of files are relative to its folder.
-        document: what it says.
-        settings: parameters that come after those of the document.
-        place: where it is to run, which cannot be inside the simulator.
+        path: path of the document; file names are relative to its folder.
+        document: the document's contents.
+        settings: parameters that override those of the document.
+        place: where it runs; it cannot be the simulator's process.
 
     Raises:
         InputError: the document is wrong.
-        PlannerError: the program does not start, or does not answer.
+        PlannerError: the program does not start or does not reply.
     """
     if place.in_process:
         raise InputError(f"{path}: another program cannot run in the simulator's process")
@@ -76,12 +76,12 @@ def external_choice(
 
 
 class _Program:
-    """What a document says, checked.
+    """The contents of a document, checked.
 
     Attributes:
-        name: of the planner.
-        command: words that start it; the first is the absolute path of a program.
-        sha256: of the document's words and of every file that they name.
+        name: name of the planner.
+        command: command line; the first word is a program's absolute path.
+        sha256: hash of the command line and of every file in it.
     """
 
     def __init__(self, path: Path, document: Mapping[str, Any]) -> None:
@@ -125,7 +125,7 @@ class _Program:
         return list(words)
 
     def _python(self) -> tuple[list[str], Path, str]:
-        """The interpreter, the file and the class."""
+        """Return the interpreter, the file and the class."""
         python, planner = self._document["python"], self._document.get("planner")
         if not isinstance(python, str) or not isinstance(planner, str):
             self._fail("'python' is the path of an interpreter, and 'planner' is FILE.py:CLASS")
@@ -138,7 +138,7 @@ class _Program:
         return [self._found(python)], found, name
 
     def _found(self, program: str) -> str:
-        """A program in the folder, or on the search path."""
+        """Return a program in the folder or on the search path."""
         here = self._folder / Path(program).expanduser()
         if ("/" in program) and here.is_file():
             return str(here)
@@ -162,14 +162,14 @@ class _Program:
 
 
 def _digest(words: Sequence[str], files: Mapping[str, Path]) -> str:
-    """SHA-256 of words and files, whose places do not count."""
+    """Return the SHA-256 of words and files, independent of the files' location."""
     named = {name: _file_digest(path) for name, path in sorted(files.items())}
     text = json.dumps({"command": list(words), "files": named}, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _data(folder: Path, names: Sequence[str]) -> str:
-    """SHA-256 of the files that a planner says it reads."""
+    """Return the SHA-256 of the files that a planner declares as data."""
     return digest_of_files(data_files(folder, names))
 
 

@@ -14,7 +14,7 @@ _NEXT = re.compile(r",(?=[A-Za-z_]\w*=)")
 
 
 def planners_by_robot(text: str) -> dict[str, str]:
-    """Robot -> planner, of a text that names robots; empty of one that names a planner only.
+    """Return robot -> planner from a text that names robots; empty if it names only a planner.
 
     Raises:
         InputError: a robot is named twice, or has no planner.
@@ -37,16 +37,16 @@ def fleet_choice(
     settings: Sequence[str],
     choose: Callable[[str, Sequence[str]], PlannerChoice],
 ) -> PlannerChoice | None:
-    """The planners of several robots as one choice; None of a text that names no robot.
+    """Return the planners of several robots as one choice; None if the text names no robot.
 
     Args:
         text: ``a=PLANNER,b=PLANNER``.
         settings: ``a.key=value``.
-        choose: finds one planner.
+        choose: function that finds one planner.
 
     Raises:
-        InputError: a setting does not say of which robot it is, or as `planners_by_robot`.
-        UnknownNameError: a setting is of a robot that has no planner.
+        InputError: a setting does not name a robot, or as `planners_by_robot`.
+        UnknownNameError: a setting names a robot without a planner.
     """
     by_robot = planners_by_robot(text)
     if not by_robot:
@@ -64,7 +64,7 @@ def fleet_choice(
 
 
 def together(fleet: Mapping[str, PlannerChoice]) -> PlannerChoice:
-    """Several planners as one choice; `PlannerChoice.of` gives them back."""
+    """Combine several planners into one choice; `PlannerChoice.of` returns them."""
     choices = list(fleet.values())
     roles = {choice.role for choice in choices}
 
@@ -94,11 +94,11 @@ def together(fleet: Mapping[str, PlannerChoice]) -> PlannerChoice:
 
 
 def check_robots(choice: PlannerChoice, robots: Sequence[str]) -> None:
-    """Refuse planners that are not for the robots there are.
+    """Refuse planners that do not match the robots.
 
     Raises:
-        UnknownNameError: one is for a robot that is not there.
-        InputError: a robot has none.
+        UnknownNameError: a planner is for an unknown robot.
+        InputError: a robot has no planner.
     """
     for robot in choice.fleet:
         if robot not in robots:

@@ -1,4 +1,4 @@
-"""Planners handed over in Python: a class, an object, a function, or the spec of a kind."""
+"""Planners given in Python: a class, an object, a function, or the spec of a kind."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from crowdbot.dsl.spec.component_specs import PlannerSpec
 from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.errors import InputError, kind_of
 
-#: What `choose_planner` takes: a name or file, a spec, a class, an object, a function.
+#: Types accepted by `choose_planner`: a name or file, a spec, a class, an object, a function.
 GivenPlanner = str | Path | PlannerSpec | type[Any] | Planner | Callable[[Observation], Any]
 
 
@@ -42,20 +42,20 @@ def choose_planner(
     settings: Sequence[str] | Mapping[str, object] = (),
     place: PlannerPlace = ANYWHERE,
 ) -> PlannerChoice:
-    """The planner that somebody means, without building it.
+    """Return the choice for a given planner, without building it.
 
     Args:
         planner: a kind, a YAML file or ``file.py:Class`` as text or path, or those of several
-            robots as ``a=KIND,b=FILE``, see `resolve_planner`; a spec such as
-            ``DwaSpec()``; a class with ``reset`` and ``step``; an object of one; or a function
-            from an observation to a command.
+            robots as ``a=KIND,b=FILE``, see `resolve_planner`; a spec such as ``DwaSpec()``; a
+            class with ``reset`` and ``step``; an instance of one; or a function from an observation
+            to a command.
         registry: the installed components.
         settings: parameters: ``key=value`` texts, or a mapping; none for an object or function.
-        place: where one with a name or file runs; what is handed over runs in this process.
+        place: where a planner with a name or file runs; Python objects run in this process.
 
     Raises:
         UnknownNameError: no planner of that kind is installed.
-        InputError: it is nothing that can plan, or a parameter is wrong.
+        InputError: it is not a planner, or a parameter is wrong.
     """
     if isinstance(planner, str | Path):
         return resolve_planner(str(planner), registry, setting_texts(settings), place)
@@ -113,7 +113,7 @@ def _of_class(kind: type[Any], parameters: Mapping[str, Any]) -> PlannerChoice:
 
 
 class _AskedFunction:
-    """A function as a planner; it remembers nothing between steps."""
+    """A function as a planner, without memory between steps."""
 
     def __init__(self, function: Callable[[Observation], Any]) -> None:
         self._function = function
@@ -121,10 +121,10 @@ class _AskedFunction:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Nothing to forget."""
+        """Do nothing."""
 
     def step(self, obs: Observation) -> Command:
-        """Whatever the function says; the host checks it."""
+        """Return the function's result, which the host checks."""
         return cast(Command, self._function(obs))
 
 
@@ -140,7 +140,7 @@ def _of_function(function: Callable[[Observation], Any]) -> PlannerChoice:
 def _made_already(
     given: object, written: Any, build: Callable[[], Planner], holder: object
 ) -> PlannerChoice:
-    """The choice of something that exists; what it holds is part of what it is."""
+    """Return the choice for an existing object; its state is part of its identity."""
     origin, digest = _written(written)
     name = str(getattr(written, "__name__", ""))
     name = name if name.isidentifier() else "function"
@@ -160,20 +160,23 @@ def _made_already(
 
 
 def _state(given: object) -> str:
-    """Digest of what an object or function holds.
+    """Return a digest of the state of an object or function.
 
-    What cannot be pickled is told by its ``repr``, which differs between processes if in doubt.
+    State that cannot be pickled is identified by its ``repr``, which may differ between processes.
     """
     try:
         return hashlib.sha256(pickle.dumps(given)).hexdigest()
-    except Exception:  # whatever it holds says so in its own way
+    except Exception:  # any exception type is possible
         cells = getattr(given, "__closure__", None) or ()
         held = [*getattr(given, "__dict__", {}).items(), *(c.cell_contents for c in cells)]
         return hashlib.sha256(repr(held).encode()).hexdigest()
 
 
 def _written(what: Any) -> tuple[str, str]:
-    """Where a class or function is written, and the digest of that; of a notebook its own text."""
+    """Return where a class or function is defined, and its source's digest.
+
+    In a notebook its text.
+    """
     name = f"{getattr(what, '__module__', '')}.{getattr(what, '__qualname__', '')}"
     try:
         file = Path(inspect.getfile(what))

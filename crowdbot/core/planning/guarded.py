@@ -1,7 +1,7 @@
-"""A planner whose exceptions and answers are made sense of, whatever they are.
+"""A guarded planner, whose exceptions and return values are checked.
 
-Both sides use it: the host for a planner in its own process, and the child process that a planner
-runs in by itself. So messages are the same.
+Used by the host for planners in the simulator's process, and by separate planner processes, so
+messages are the same.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ _SHOWN = 80
 
 
 def planner_title(name: str, origin: str) -> str:
-    """How messages call a planner."""
+    """Return the name of a planner for messages."""
     return f"planner '{name}'" + (f" ({origin})" if origin else "")
 
 
 class GuardedPlanner:
-    """Calls a planner; what comes out is a command, `NoValidCommand` or a `PlannerError`.
+    """Calls a planner; the result is a command, `NoValidCommand` or a `PlannerError`.
 
     Args:
         planner: anything with ``reset`` and ``step``.
-        who: begins every message.
-        around: entered around each call, such as a watchdog.
+        who: start of every message.
+        around: context manager around each call, such as a watchdog.
     """
 
     def __init__(
@@ -74,13 +74,13 @@ class GuardedPlanner:
 
         Raises:
             PlannerError: the planner raised, or returned something that is not a command.
-            NoValidCommand: it knows none.
+            NoValidCommand: it has no valid command.
         """
         with self._around, self._step_call("step"):
             return self._checked(self._planner.step(obs))
 
     def fail(self, what: str) -> None:
-        """Say what is wrong with a step.
+        """Report an error in a step.
 
         Raises:
             PlannerError: always.
@@ -88,7 +88,7 @@ class GuardedPlanner:
         self._step_call.fail(what)
 
     def _sources(self) -> frozenset[str]:
-        """Files in which the planner's class and its bases are written."""
+        """Return the files that define the planner's class and its bases."""
         found = set()
         for base in type(self._planner).__mro__[:-1]:
             with contextlib.suppress(TypeError, OSError):
@@ -96,7 +96,10 @@ class GuardedPlanner:
         return frozenset(found)
 
     def _checked(self, answer: Any) -> Command:
-        """The answer as a command of finite floats; numbers of odd classes may run code here."""
+        """Return the result as a command of finite floats.
+
+        Unusual number classes may run code here.
+        """
         shaped = isinstance(answer, tuple) and len(answer) in (2, 3)
         if not shaped or not all(map(_is_number, answer)):
             self.fail(
@@ -113,7 +116,7 @@ class GuardedPlanner:
 
 
 def _is_number(value: object) -> bool:
-    # To ask for a class of numbers takes longer than all else that is asked of a command.
+    # Checking for a number class takes longer than all other checks of a command.
     return type(value) is float or (isinstance(value, Real) and not isinstance(value, bool))
 
 

@@ -1,4 +1,4 @@
-"""Planner host: calls a planner and trusts nothing that comes back."""
+"""Planner host: calls a planner and validates everything it returns."""
 
 from __future__ import annotations
 
@@ -26,15 +26,14 @@ from crowdbot.errors import PlannerHungError
 T = TypeVar("T", bound=np.generic)
 
 STOP = Command(0.0, 0.0)
-#: Seconds that ``reset`` may take under a watchdog: models are loaded there. While functions are
-#: compiled there is more time.
+#: Seconds that ``reset`` may take under a watchdog, for loading models. Compilation gets more time.
 RESET_LIMIT = 120.0
-#: Rounding beyond a limit that is not counted as clamping.
+#: Excess over a limit by rounding that does not count as clamping.
 _ROUNDING = 1e-9
 
 
 class HostedCommand(NamedTuple):
-    """A command within the limits, whether it had to be clamped, and the planner's wall time."""
+    """A command within the limits, True if it was clamped, and the planner's wall time."""
 
     command: Command
     clamped: bool
@@ -46,17 +45,17 @@ class PlannerHost:
 
     Args:
         planner: anything with ``reset`` and ``step``.
-        name: how messages call it.
+        name: name for messages.
         limits: box into which commands are clamped.
         budget: seconds of wall time that a step may take; None sets no limit.
-        watchdog: ends a step that never returns; None waits for ever.
-        origin: the distribution, or the file, that the planner comes from, for messages.
-        copies: whether it gets copies of arrays; a planner in a process of its own has them anyway.
+        watchdog: ends a step that never returns; None: wait forever.
+        origin: the planner's distribution or file, for messages.
+        copies: True to pass copies of arrays; a planner in a separate process has copies anyway.
 
     Attributes:
         steps: steps so far.
-        clamped: how many commands had to be clamped.
-        stops: how often the planner knew no command.
+        clamped: number of clamped commands.
+        stops: number of steps without a valid command.
     """
 
     def __init__(
@@ -94,10 +93,10 @@ class PlannerHost:
                 self._hung("reset")
 
     def step(self, obs: Observation) -> HostedCommand:
-        """Ask for the next command.
+        """Request the next command.
 
         Args:
-            obs: handed on with read-only copies of its arrays, where ``copies`` says so.
+            obs: the observation; its arrays are copied if ``copies``.
 
         Raises:
             PlannerError: the planner raised, returned something that is not a command, or
@@ -122,14 +121,14 @@ class PlannerHost:
         return HostedCommand(command, clamped, seconds)
 
     def _hung(self, method: str) -> NoReturn:
-        """Say who it was that the watchdog ended."""
+        """Raise the error for a planner that the watchdog ended."""
         limit = self._watchdog.limit if self._watchdog else math.nan
         raise PlannerHungError(
             f"{self._who} did not return from {method} within {limit:g} s"
         ) from None
 
     def _clamp(self, command: Command) -> tuple[Command, bool]:
-        """Into the limits; that of vy is 0 for a robot without sideways drive."""
+        """Clamp a command into the limits; vy becomes 0 for a robot without sideways drive."""
         limits, (v, w, vy) = self._limits, command
         inside = Command(
             min(max(v, limits.v_min), limits.v_max),
@@ -158,7 +157,7 @@ def _private(reading: Reading) -> Reading:
 
 
 def _protected(obs: Observation) -> Observation:
-    """Copies, since the simulation may go on changing the arrays that a planner keeps."""
+    """Return copies, since the simulation may change arrays that a planner keeps."""
     readings = {n: _private(r) for n, r in obs.readings.items()}
     return Observation(
         t=obs.t,

@@ -1,4 +1,4 @@
-"""What a planner is given, sees and returns."""
+"""Input and output of a planner."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from crowdbot.core.types.sensor import Reading, SensorInfo
 from crowdbot.core.types.task import Task
 from crowdbot.errors import hidden_character
 
-#: Most characters of the name of a signal.
+#: Largest length of a signal's name.
 _LONGEST_NAME = 200
 
 
@@ -27,15 +27,15 @@ def _ignore(name: str, value: float) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Truth:
-    """What is, in the world frame: for planners that say ``privileged = True``, and no other.
+    """Ground truth in the world frame, only for planners with ``privileged = True``.
 
     Attributes:
-        pose: of the robot's base, m, rad.
-        velocity: of the robot: x, y (m/s), yaw rate (rad/s).
-        people: (N, 2) centres of all who are present, m, in no order that means anything.
+        pose: pose of the robot's base, m, rad.
+        velocity: the robot's velocity: x, y (m/s), yaw rate (rad/s).
+        people: (N, 2) centres of all people present, m, in arbitrary order.
         people_velocity: (N, 2), m/s.
-        people_radius: (N,) radius of the disc that stands for each, m.
-        people_id: (N,) the same person has the same number in all observations of a run.
+        people_radius: (N,) radius of each person's disc, m.
+        people_id: (N,) a person's number, constant in a run.
     """
 
     pose: Pose
@@ -46,7 +46,7 @@ class Truth:
     people_id: NDArray[np.int64]
 
     def copy(self) -> Truth:
-        """The same with read-only arrays of its own."""
+        """Return a copy with its own read-only arrays."""
         arrays = {n: getattr(self, n).copy() for n in Truth.__slots__ if n.startswith("people")}
         for array in arrays.values():
             array.setflags(write=False)
@@ -55,17 +55,17 @@ class Truth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Observation:
-    """What a planner sees in one step.
+    """The planner's input in one step.
 
     Attributes:
         t: simulated time, s.
         pose: pose by wheel odometry (x, y, yaw).
         twist: forward speed (m/s) and yaw rate (rad/s) by wheel odometry.
-        vy: speed to the left (m/s) by odometry that measures it (``holonomic_odometry``).
+        vy: speed to the left (m/s), if the odometry measures it (``holonomic_odometry``).
         goal, goal_zone: in the same frame as ``pose``.
-        readings: latest reading of each sensor that was asked for.
+        readings: latest reading of each requested sensor.
         log: ``log(name, value)`` records a named signal of the run, a number.
-        truth: None, but for a planner that is privileged.
+        truth: ground truth for a privileged planner, else None.
     """
 
     t: float
@@ -80,10 +80,10 @@ class Observation:
 
 
 def named_signal(name: str, value: float) -> tuple[str, float]:
-    """A signal that can be recorded.
+    """Return a valid signal for the recording.
 
     Raises:
-        TypeError, ValueError: what the planner wants to log is not a named number.
+        TypeError, ValueError: it is not a named number.
     """
     if not isinstance(name, str) or not name:
         raise TypeError(f"log: the name of a signal is text, not {name!r}")
@@ -96,26 +96,26 @@ def named_signal(name: str, value: float) -> tuple[str, float]:
 
 
 class NoValidCommand(Exception):  # noqa: N818 - a word of the planner contract
-    """A planner may raise this when it knows no command; the robot is told to stop."""
+    """A planner may raise this if it has no valid command; the robot is stopped."""
 
 
 class Planner(Protocol):
-    """The thing under test. Made anew for each run, also for the one without people.
+    """The planner under test. A new one is built for each run, including the run without people.
 
-    Its spec class, or the class in a file, may say ``needs: ClassVar[tuple[str, ...]]``, the
-    sensors that it reads, and ``privileged: ClassVar[bool]``, whether it may read the truth.
+    Its spec class, or the class in a file, may declare ``needs: ClassVar[tuple[str, ...]]``, the
+    sensors that it reads, and ``privileged: ClassVar[bool]``, True to read the ground truth.
     """
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Called once, before the first step; the place to load models and to compile.
+        """Called once before the first step; load models and compile here.
 
         Args:
             task: start and goal in the world frame, which the odometry frame equals at t = 0.
-            limits: commands are clamped into them.
-            sensors: name -> constant description of each sensor that it gets.
-            seed: for its own random numbers; the same run has the same one.
+            limits: commands are clamped to them.
+            sensors: name -> constant description of each requested sensor.
+            seed: seed for its random numbers; the same in equal runs.
         """
         ...
 
@@ -123,6 +123,6 @@ class Planner(Protocol):
         """Called at ``rates.planner``: return the command that holds until the next call.
 
         Raises:
-            NoValidCommand: it knows none; the robot is told to stop, and the run goes on.
+            NoValidCommand: it has no valid command; the robot is stopped, and the run continues.
         """
         ...

@@ -1,4 +1,4 @@
-"""Planners in Python files: the class that ``file.py:Class`` means."""
+"""Planners in Python files, named as ``file.py:Class``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from crowdbot.errors import CrowdbotError, InputError, PlannerError, did_you_mea
 from crowdbot.old_names import shown_old_names
 
 _METHODS = ("reset", "step")
-#: Libraries that take long to import and start no threads by that, and what makes them ready.
+#: Libraries that are slow to import and start no threads, and modules that prepare them.
 _SLOW = {
     "numba": "crowdbot.core.planning.process.warm_numba",
     "scipy": "scipy",
@@ -29,16 +29,16 @@ _SLOW = {
 
 
 def planner_class(path: Path, name: str) -> type[Any]:
-    """The class of a file, which is run for it.
+    """Return the class in a file, which is executed.
 
     Raises:
         InputError: there is no such file, or no such planner in it.
-        PlannerError: the file cannot be imported, or raises when it is asked for the class.
+        PlannerError: the file cannot be imported, or raises on access to the class.
     """
     if not path.is_file():
         raise InputError(f"{path}: no such file{suggest_files(path)}")
     module = _import(path)
-    # Modules and metaclasses may run code when they are asked for a name.
+    # Modules and metaclasses may run code on attribute access.
     with call_of_class(path, name)("cannot be loaded"):
         found = getattr(module, name, None)
         classes = [n for n, v in vars(module).items() if inspect.isclass(v)]
@@ -52,7 +52,7 @@ def planner_class(path: Path, name: str) -> type[Any]:
 
 
 def call_of_class(path: Path, name: str, passes: Exceptions = CrowdbotError) -> PluginCall:
-    """The boundary to a class of a file, whose errors name its line."""
+    """Return the call boundary to a class in a file; its errors name the line."""
     return PluginCall(
         f"planner '{name}' ({path})",
         sources=lambda: {str(path.resolve())},
@@ -62,7 +62,7 @@ def call_of_class(path: Path, name: str, passes: Exceptions = CrowdbotError) -> 
 
 
 def _import(path: Path) -> ModuleType:
-    """Run a file under a name of its own, its folder importable after everything else."""
+    """Execute a file under its own module name, with its folder last on the search path."""
     file = path.resolve()
     unique = f"crowdbot_planner_{hashlib.sha256(str(file).encode()).hexdigest()[:12]}"
     spec = importlib.util.spec_from_file_location(unique, file)
@@ -91,7 +91,7 @@ def _import(path: Path) -> ModuleType:
 def build_of_class(
     kind: type[Any], parameters: Mapping[str, Any], path: Path, name: str
 ) -> Planner:
-    """A planner of a class.
+    """Build a planner from a class.
 
     Raises:
         PlannerError: it cannot be made, or lacks a method.
@@ -101,7 +101,7 @@ def build_of_class(
 
 
 def checked_planner(planner: object) -> Planner:
-    """A planner, as far as that can be seen before it is called.
+    """Return a planner, checked as far as possible before calls.
 
     Raises:
         PlannerError: it lacks a method.
@@ -114,22 +114,22 @@ def checked_planner(planner: object) -> Planner:
 
 
 def missing_methods(planner: object) -> list[str]:
-    """What a planner, or its class, lacks to be one."""
+    """Return the methods that a planner, or its class, lacks."""
     return [m for m in _METHODS if not callable(getattr(planner, m, None))]
 
 
 def check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str) -> None:
-    """Whether a class can be made with some parameters.
+    """Check that a class accepts some parameters.
 
     Raises:
         InputError: it has no such parameter, or lacks one.
-        PlannerError: it raises something else when it is asked.
+        PlannerError: the check itself raises.
     """
     call = PluginCall(where, error=PlannerError, passes=(ValueError, TypeError))
     try:
         with call("its parameters"):
             inspect.signature(kind).bind(**parameters)
-    except ValueError:  # a class without a signature tells only when it is called
+    except ValueError:  # a class without a signature fails when it is called
         return
     except TypeError as error:
         known = ", ".join(inspect.signature(kind).parameters) or "none"
@@ -137,7 +137,7 @@ def check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str)
 
 
 def guess_class(path: Path) -> str:
-    """Name of the first class in a file that has both methods, or ``Class``."""
+    """Return the name of the first class in a file with both methods, or ``Class``."""
     try:
         tree = ast.parse(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, SyntaxError):
@@ -151,9 +151,9 @@ def guess_class(path: Path) -> str:
 
 
 def preloads(path: Path) -> tuple[str, ...]:
-    """Slow libraries that a file or a module beside it imports, and that are worth importing once.
+    """Return slow libraries that a file, or a module beside it, imports, for importing them once.
 
-    A process that has them can be forked for every run.
+    A process with these imports can be forked for every run.
     """
     names = imported_names(path)
     return tuple(module for name, module in _SLOW.items() if name in names)

@@ -1,4 +1,4 @@
-"""Planners that are registered: their spec from a kind and parameters, and what it builds."""
+"""Registered planners: their spec from a kind and parameters, and building them."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from crowdbot.errors import (
 
 
 def find_kind(kind: str, registry: Registry, where: str = "") -> Component[Any]:
-    """The component of a kind.
+    """Return the component of a kind.
 
     Args:
-        where: begins the message.
+        where: start of the message.
 
     Raises:
         UnknownNameError: no planner of that kind is installed.
@@ -43,11 +43,11 @@ def find_kind(kind: str, registry: Registry, where: str = "") -> Component[Any]:
 def spec_of_kind(
     component: Component[Any], parameters: Mapping[str, Any], where: str = ""
 ) -> PlannerSpec:
-    """The spec of a planner with some parameters.
+    """Return the spec of a planner with some parameters.
 
     Raises:
         InputError: a parameter is wrong.
-        PluginError: a validator raised something else.
+        PluginError: a validator raised an unexpected error.
     """
     call = PluginCall(f"planner '{component.kind}'", passes=(CrowdbotError, ValidationError))
     try:
@@ -62,7 +62,7 @@ def spec_of_kind(
 
 
 def load_kind(kind: str, parameters: Mapping[str, Any], registry: Registry) -> PlannerSpec:
-    """The spec of a planner whose code is imported.
+    """Return the spec of a planner and import its code.
 
     Raises:
         PluginError: it cannot be imported.
@@ -74,7 +74,7 @@ def load_kind(kind: str, parameters: Mapping[str, Any], registry: Registry) -> P
 
 
 def build_of_kind(spec: PlannerSpec, registry: Registry) -> Planner:
-    """A planner of a spec.
+    """Build a planner from a spec.
 
     Raises:
         PlannerError: it cannot be made, or lacks a method.

@@ -1,4 +1,4 @@
-"""Where planners come from: a registered kind, a YAML file, or a class in a Python file."""
+"""Find planners: a registered kind, a YAML file, or a class in a Python file."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from crowdbot.dsl.spec.component_specs import PlannerRole, PlannerSpec
 from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.errors import InputError
 
-#: Of a document, bytes.
+#: Largest planner document, bytes.
 _LONGEST = 1_000_000
 
 __all__ = ["PlannerChoice", "PlannerPlace", "kinds_of_role", "resolve_planner", "select_sensors"]
@@ -52,15 +52,15 @@ def resolve_planner(
 ) -> PlannerChoice:
     """Find a planner and check its parameters, without building it.
 
-    Nothing of a planner that runs in a process of its own is imported here.
+    Code of planners in separate processes is not imported here.
 
     Args:
         text: a kind (``dwa``), a YAML file with ``kind`` and parameters, or ``file.py:Class``; for
             several robots ``a=dwa,b=file.py:Class``, or one planner for all.
         registry: the installed components.
-        settings: ``key=value``, values in YAML; they come after those of a file. Of several robots
-            with planners of their own ``a.key=value``.
-        place: where it is to run.
+        settings: ``key=value``, values in YAML; they override those of a file. For several robots
+            ``a.key=value``.
+        place: where it runs.
 
     Raises:
         UnknownNameError: no planner of that kind is installed.
@@ -90,7 +90,7 @@ def resolve_planner(
 
 
 def kinds_of_role(role: PlannerRole, registry: Registry) -> list[str]:
-    """Planners that are installed for some purpose and need no parameter, in alphabetical order."""
+    """Return installed planners with a role that need no parameters, in alphabetical order."""
     return sorted(
         kind
         for kind, component in registry.components("planner").items()
@@ -107,16 +107,16 @@ def select_sensors(
     *,
     privileged: bool = False,
 ) -> tuple[str, ...]:
-    """Names of the sensors that a planner gets, in the robot's order.
+    """Return the names of the sensors that a planner gets, in the robot's order.
 
     Args:
-        needs: names or categories; None is all that it may have.
-        sensors: what the robot has.
-        planner: for the message.
-        privileged: whether it may have privileged sensors.
+        needs: names or categories; None: all that it may have.
+        sensors: the robot's sensors.
+        planner: name for messages.
+        privileged: True if it may have privileged sensors.
 
     Raises:
-        InputError: the robot has nothing that answers to a need, or only something privileged.
+        InputError: no sensor matches a need, or only a privileged one.
     """
     if needs is None:
         return tuple(n for n, s in sensors.items() if privileged or not s.privileged)
@@ -144,7 +144,7 @@ def _from_kind(
     owner = registry.owner(component)
     as_given = _is_default(component, spec)
     in_process = place.in_process
-    if in_process is None:  # ours are known; of a registry made by hand, no process knows
+    if in_process is None:  # ours are known; separate processes do not know a manual registry
         in_process = owner.name == BUILTIN or registry.source is None
     if not in_process and registry.source is None:
         raise InputError(
@@ -155,7 +155,7 @@ def _from_kind(
     dump = spec.model_dump(mode="json")
     build: Callable[[], Planner]
     if in_process or registry.source is None:
-        # Imported at once, so that one that cannot be is refused before a run begins.
+        # Import it now, so that an import error is reported before a run begins.
         load_build(component, registry.plugin_call(spec))
         build = partial(build_of_kind, spec, registry)
     else:
@@ -189,7 +189,7 @@ def _from_kind(
 def _is_default(component: Component[Any], spec: PlannerSpec) -> bool:
     try:
         return bool(component.spec.model_validate({"kind": component.kind}) == spec)
-    except ValidationError:  # some parameter has no default
+    except ValidationError:  # a parameter has no default
         return False
 
 
@@ -198,13 +198,13 @@ def _has_defaults(component: Component[Any]) -> bool:
 
 
 def _is_privileged(holder: object) -> bool:
-    """Whether a planner class, or a spec, in a class variable or a field, says so."""
+    """Return True if a planner class or spec is privileged, by class variable or field."""
     return getattr(holder, "privileged", False) is True
 
 
 # ------------------------------------------------------------------------ documents
 def setting_values(settings: Sequence[str] | Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters by name.
+    """Return parameters by name.
 
     Args:
         settings: ``key=value`` texts, values in YAML; or the mapping itself.

@@ -1,11 +1,11 @@
-"""A watchdog over planner steps: one thread for all steps, two cheap stores for each.
+"""A watchdog over planner steps: one thread for all steps, two cheap stores per step.
 
 A step that runs too long is first interrupted: in the main thread by a private signal, whose
 handler raises `PlannerHungError` there and also ends a sleep; in another thread by an asynchronous
-exception, which acts on Python code only. If the step swallows that and goes on, ``on_hang`` is
-called from the watchdog's thread; it is expected to end the process. Compiled code that keeps the
-interpreter lock keeps it from the watchdog, too, and cannot be ended from within the process.
-A step of the main thread in which somebody looks around with pdb may take as long as it likes.
+exception, which acts on Python code only. If the step catches that and continues, ``on_hang`` is
+called from the watchdog's thread; it is expected to end the process. Compiled code that holds the
+interpreter lock also blocks the watchdog and cannot be ended from within the process. A step of the
+main thread under pdb has no limit.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from typing import Any
 
 from crowdbot.errors import PlannerHungError
 
-#: Looks at the deadline so often, s.
+#: Interval of deadline checks, s.
 POLL = 0.1
-#: After so many seconds a step has hung.
+#: Seconds after which a step counts as hung.
 STEP_LIMIT = 10.0
 _SIGNAL: int | None = getattr(signal, "SIGUSR2", None)
 
@@ -36,8 +36,8 @@ class Watchdog:
     Args:
         limit: seconds that a step may take.
         grace: seconds after the interruption until ``on_hang`` is called.
-        on_hang: called once, from the watchdog's thread. While a step runs in a planner host,
-            ``sys.stdout`` is redirected; ``sys.__stdout__`` is the real one.
+        on_hang: callback, called once from the watchdog's thread. While a step runs in a planner
+            host, ``sys.stdout`` is redirected; ``sys.__stdout__`` is the real one.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class Watchdog:
         self._lock = threading.Lock()
 
     def start(self) -> None:
-        """Start the thread; the first step does it otherwise. Again after `close` is fine."""
+        """Start the thread, else the first step starts it. Restarting after `close` is allowed."""
         if self._thread is not None:
             return
         self._closed.clear()
@@ -71,7 +71,7 @@ class Watchdog:
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread and give the signal back."""
+        """End the thread and restore the signal."""
         if self._thread is None:
             return
         self._closed.set()
@@ -99,7 +99,7 @@ class Watchdog:
         trace: TracebackType | None,
     ) -> None:
         self._deadline = None
-        # Read last: a step that swallowed the interruption and came back late has hung as well.
+        # Read last: a step that caught the interruption and returned late also counts as hung.
         if self._fired and not isinstance(error, PlannerHungError):
             raise self._error() from error
 
@@ -107,10 +107,10 @@ class Watchdog:
     def patience(
         self, limit: float, progress: Callable[[], object] | None = None
     ) -> Iterator[None]:
-        """Another limit for what runs inside, s.
+        """Use another limit in the context, s.
 
-        Where ``progress()`` has changed when the time is over, there is as much time again: what
-        compiles on a busy machine does not hang.
+        If ``progress()`` has changed when the time is over, the time starts again: slow compilation
+        is not a hang.
         """
         usual, self.limit, self._progress = self.limit, limit, progress
         try:
@@ -126,8 +126,8 @@ class Watchdog:
         return deadline is not None and time.monotonic() >= deadline + self._extra + by
 
     def _watch(self) -> None:
-        """The thread: interrupt a late step, then report it if it goes on."""
-        interrupted: float | None = None  # the deadline of the step that was interrupted
+        """Run the thread: interrupt a late step, then report it if it continues."""
+        interrupted: float | None = None  # deadline of the interrupted step
         while not self._closed.wait(min(POLL, self.limit / 2.0)):
             if not self._late() or self._goes_on():
                 interrupted = None
@@ -139,7 +139,7 @@ class Watchdog:
                 return
 
     def _goes_on(self) -> bool:
-        """Whether something was done since the time was counted, which then begins anew."""
+        """Return True if there was progress since the time started, and restart it."""
         if self._progress is None or (now := self._progress()) == self._seen:
             return False
         self._seen, self._extra = now, self._extra + self.limit
@@ -156,7 +156,7 @@ class Watchdog:
             )
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
-        """In the main thread. The step may have returned since the signal was sent."""
+        """Handle the signal in the main thread. The step may have returned since it was sent."""
         if self._late() and _debugging():
             self._deadline = None
         elif self._late():
@@ -167,5 +167,5 @@ class Watchdog:
 
 
 def _debugging() -> bool:
-    """Whether pdb, or what is made from it, traces this thread. Coverage traces, too."""
+    """Return True if pdb, or a tool based on it, traces this thread. Coverage traces, too."""
     return isinstance(getattr(sys.gettrace(), "__self__", None), bdb.Bdb)

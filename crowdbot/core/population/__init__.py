@@ -1,1 +1,1 @@
-"""People: from spawns and flows to a frozen table of agents."""
+"""Population: sample spawns and flows to a frozen table of agents."""

@@ -1,4 +1,4 @@
-"""When people arrive: Poisson, in a steady beat, or on schedule."""
+"""Arrival times: Poisson, regular, or given."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from crowdbot.dsl.scenario.stream import Arrivals
 
 
 def arrival_times(arrivals: Arrivals, rng: np.random.Generator) -> list[float]:
-    """Times at which a group, or one who is alone, arrives, in order; s.
+    """Return the arrival times of groups or single people, in order; s.
 
-    Those of a Poisson stream are drawn interval by interval, so that a later end adds some and
-    moves none.
+    Intervals of a Poisson stream are sampled one by one, so that a later end adds arrivals without
+    moving others.
     """
     if arrivals.times:
         return sorted(arrivals.times)
-    assert arrivals.until is not None  # checked with the document
+    assert arrivals.until is not None  # checked on validation
     if arrivals.every is not None:
         beat, span = arrivals.every, arrivals.until - arrivals.begin
         count = int(np.ceil(span / beat - 1e-9))

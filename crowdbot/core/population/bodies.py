@@ -1,4 +1,4 @@
-"""Bodies of people: all alike, or each drawn from the kinds that the crowd is a mixture of."""
+"""Bodies of people: all equal, or sampled from the crowd's mixture of kinds."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.core.population.draws import RngOf, draw_normal, draw_one
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.scenario.people_kinds import USUAL_BODIES, LengthChoice, MassChoice, PeopleKind
 
-#: From the floor to the hip, of the height; see `crowdbot.core.sensing.body_model`.
+#: Height of the hip, as a share of the height; see `crowdbot.core.sensing.body_model`.
 HIP = 0.53
 
 
@@ -23,9 +23,9 @@ class Bodies:
 
     Attributes:
         radius, mass: (N,) m and kg.
-        pace: (N,) preferred speed as a multiple of what the crowd draws.
-        speed: (N,) preferred speed where a kind has its own, m/s; else 0.
-        seen: columns of the table for what sensors see; none where all are alike.
+        pace: (N,) preferred speed as a multiple of the crowd's sample.
+        speed: (N,) preferred speed of kinds with their own, m/s; else 0.
+        seen: table columns of the appearance for sensors; empty if all are equal.
     """
 
     radius: Array
@@ -35,12 +35,12 @@ class Bodies:
     seen: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
     def walk_at(self, speeds: Array) -> Array:
-        """Preferred speeds (N,) of people who would draw ``speeds`` if they were adults, m/s."""
+        """Return preferred speeds (N,) of people, from the ``speeds`` sampled for adults, m/s."""
         own: Array = np.where(self.speed > 0.0, self.speed, speeds * self.pace)
         return own
 
     def row(self, i: int) -> dict[str, Any]:
-        """What of the table one person has from here."""
+        """Return one person's entries for the table."""
         seen = {name: column[i] for name, column in self.seen.items()}
         return {"radius": float(self.radius[i]), "mass": float(self.mass[i]), **seen}
 
@@ -53,14 +53,14 @@ def draw_bodies(
     *,
     fixed: tuple[bool, bool] = (False, False),
 ) -> Bodies:
-    """Draw the bodies of some people, each from random numbers of its own.
+    """Sample the bodies of some people, each with its own random numbers.
 
     Args:
-        kinds: those of the crowd, by name; without any all are as ``usual``.
-        names: those that these people are made of; all if empty.
+        kinds: the crowd's kinds, by name; if empty, all are as ``usual``.
+        names: kinds of these people; all if empty.
         usual: (N,) radii and masses of people without a kind, m and kg.
-        rng: purpose and person to a generator.
-        fixed: whether radius and mass are as ``usual`` whatever the kind is.
+        rng: function from purpose and person to a generator.
+        fixed: True to use the ``usual`` radius and mass for every kind.
     """
     radius, mass = usual[0].copy(), usual[1].copy()
     count = len(radius)
@@ -98,7 +98,7 @@ def _one(
     given: LengthChoice | MassChoice | None,
     usual: float | tuple[float, float],
 ) -> float:
-    """As given, else as usual: a number, or mean and standard deviation."""
+    """Return the given number, else the default: a number, or mean and standard deviation."""
     if given is not None:
         return draw_one(rng(purpose, i), given)
     return usual if isinstance(usual, float) else draw_normal(rng(purpose, i), *usual)

@@ -1,4 +1,4 @@
-"""Draws that flows, streams and spawns have in common, each from a named random stream."""
+"""Sampling shared by flows, streams and spawns, from named random streams."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.dsl.spec.areas import Area, Place
 from crowdbot.dsl.spec.parameters import Sample, SpeedDistribution
 from crowdbot.dsl.spec.spec import Rectangle
 
-#: Purpose and unit, such as a person, to the generator of that unit.
+#: Function from purpose and unit, such as a person, to a generator.
 RngOf = Callable[[str, int], np.random.Generator]
 
 
@@ -28,33 +28,36 @@ class Streams:
     key: str
 
     def seed(self, name: str) -> int:
-        """Seed of a stream."""
+        """Return the seed of a stream."""
         return stream_seed(self.root, self.key, name)
 
     def rng(self, name: str, unit: int | None = None) -> np.random.Generator:
-        """A stream, or the one of a unit of it, such as a group."""
+        """Return a stream, or that of one of its units, such as a group."""
         seed = self.seed(name)
         return np.random.default_rng(seed if unit is None else (seed, unit))
 
 
 def area_of(place: Place, zones: Mapping[str, Rectangle]) -> Area:
-    """A zone's name or an area, as an area."""
+    """Return an area from a zone's name or an area."""
     return Area.of(zones[place]) if isinstance(place, str) else place
 
 
 def heading_to(x: float, y: float, goal: Point) -> float:
-    """Direction from a point to another, rad; 0 if they are the same."""
+    """Return the direction from one point to another, rad; 0 if they are equal."""
     return math.atan2(goal[1] - y, goal[0] - x)
 
 
 def stream_heading(portals: tuple[str, str], boxes: Mapping[str, Rectangle]) -> float:
-    """Direction from the middle of one portal to that of the other, rad."""
+    """Return the direction from the centre of one portal to that of the other, rad."""
     start, end = (Area.of(boxes[name]).centre for name in portals)
     return heading_to(*start, end)
 
 
 def draw_speeds(rng: np.random.Generator, count: int, speed: SpeedDistribution) -> Array:
-    """Normal, truncated at three standard deviations and at 5 % of the mean; (count,) m/s."""
+    """Sample speeds (count,), m/s.
+
+    Normal, truncated at three standard deviations and at 5 % of the mean.
+    """
     mean, std = speed.mean, speed.std
     low, high = max(mean - 3.0 * std, 0.05 * mean), mean + 3.0 * std
     speeds = np.empty(count)
@@ -67,7 +70,7 @@ def draw_speeds(rng: np.random.Generator, count: int, speed: SpeedDistribution) 
 
 
 def draw_attention(streams: Streams, name: str, unit: int) -> float:
-    """How attentive one person of a stream is, whoever else is there."""
+    """Return the attention of one person of a stream, independent of other people."""
     return float(streams.rng(name, unit).random())
 
 
@@ -75,7 +78,7 @@ def draw_one(
     rng: np.random.Generator,
     spread: Sample | SpeedDistribution | LengthDistribution | MassDistribution,
 ) -> float:
-    """One number of a distribution, in its unit."""
+    """Return one sample of a distribution, in its unit."""
     if isinstance(spread, SpeedDistribution):
         return float(draw_speeds(rng, 1, spread)[0])
     if isinstance(spread, Sample):
@@ -91,7 +94,7 @@ def draw_numbers(rng: np.random.Generator, count: int, spread: Sample | SpeedDis
 
 
 def draw_normal(rng: np.random.Generator, mean: float, std: float) -> float:
-    """Normal, truncated at `WIDEST` standard deviations and at 5 % of the mean."""
+    """Sample from a normal distribution, truncated at `WIDEST` deviations and 5 % of the mean."""
     low, high = max(mean - WIDEST * std, 0.05 * mean), mean + WIDEST * std
     while not low <= (draw := float(rng.normal(mean, std))) <= high:
         pass
@@ -101,12 +104,12 @@ def draw_normal(rng: np.random.Generator, mean: float, std: float) -> float:
 def draw_groups(
     sizes: Sequence[GroupSize], rng: np.random.Generator, count: int | None, groups: int | None
 ) -> list[range]:
-    """Members of each group, numbered from 0.
+    """Return the members of each group, numbered from 0.
 
     Args:
-        sizes: how often groups of each size are; without any everybody is alone.
-        count: how many people; the last group is cut short when they run out.
-        groups: how many groups; this or ``count``.
+        sizes: frequency of each group size; if empty, everyone is alone.
+        count: number of people; the last group may be smaller.
+        groups: number of groups; this or ``count``.
     """
     edges = np.cumsum([g.frequency for g in sizes])
     found: list[range] = []

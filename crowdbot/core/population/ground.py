@@ -1,4 +1,4 @@
-"""Ground: where people may be put, and which places they can reach from there."""
+"""The floor where people can be placed, and places they can reach."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.errors import InputError
 if TYPE_CHECKING:
     from crowdbot.core.crowd.routing.free_space import FreeSpace
 
-#: Who is nearer to a wall by no more than this touches it by rounding, m.
+#: Tolerance for touching a wall, m.
 _SLACK = 1e-6
 
 
@@ -24,8 +24,8 @@ class Ground:
     """The floor among walls, pillars and solids.
 
     Args:
-        parts: the environment; None for a floor of which nothing is known.
-        crowd: how tall people are, and whether they find their way.
+        parts: the environment; None if unknown.
+        crowd: crowd with people's height and path finding.
     """
 
     def __init__(self, parts: EnvironmentParts | None = None, crowd: Crowd | None = None) -> None:
@@ -38,7 +38,7 @@ class Ground:
         self._space = cache(self._free_space)
 
     def is_free(self, x: float, y: float, radius: float) -> bool:
-        """Whether a body can be here without touching anything that stands."""
+        """Return True if a body fits here without touching an obstacle."""
         ax, ay, bx, by = self._walls.T
         ex, ey = bx - ax, by - ay
         share = ((x - ax) * ex + (y - ay) * ey) / np.maximum(ex * ex + ey * ey, 1e-300)
@@ -52,17 +52,20 @@ class Ground:
         return not any(_inside(outline, x, y) for outline in self._solids)
 
     def reaches(self, start: Point, goal: Point, radius: float) -> bool:
-        """Whether somebody who finds ways gets from one place to another; others always do."""
+        """Return True if a person with path finding gets from one place to another.
+
+        Others always do.
+        """
         if not self.finds_way:
             return True
         parts = self._space(radius).part_of(np.array([start, goal]))
         return bool(parts[0] == parts[1] >= 0)
 
     def check_route(self, who: str, start: Point, route: Sequence[Point], radius: float) -> None:
-        """Refuse a route on which no way leads from one point to the next.
+        """Refuse a route without a path from one point to the next.
 
         Raises:
-            InputError: so it is; with the places.
+            InputError: there is no path; with the positions.
         """
         for goal in route:
             if goal != start and not self.reaches(start, goal, radius):
@@ -73,18 +76,18 @@ class Ground:
             start = goal
 
     def _free_space(self, radius: float) -> FreeSpace:
-        from crowdbot.core.crowd.routing.free_space import FreeSpace  # with the engine
+        from crowdbot.core.crowd.routing.free_space import FreeSpace  # imports the engine
 
         everything = np.concatenate([self._walls.reshape(-1, 2), self._pillars[:, :2]])
         far = np.zeros((0, 2))
         if len(everything):
             low, high = everything.min(axis=0), everything.max(axis=0)
-            size = high - low + 1e3  # whoever is outside is on the floor around it
+            size = high - low + 1e3  # outside the walls is floor
             far = np.array([low - size, high + size])
         return FreeSpace.of(self._walls, self._pillars, radius, far)
 
 
 def _inside(outline: Array, x: float, y: float) -> bool:
-    """Whether a point is inside of a convex, counter-clockwise outline."""
+    """Return True if a point is inside a convex, counter-clockwise outline."""
     (ax, ay), (bx, by) = outline.T, np.roll(outline, -1, axis=0).T
     return bool(np.all((bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0))

@@ -1,4 +1,4 @@
-"""Which ground is taken while a crowd is drawn: the discs of all who stand there so far."""
+"""Occupied floor while a crowd is sampled: the discs of all people placed so far."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.dsl.scenario.spawning import CLEAR_OF_ROBOT
 
 
 class Occupancy:
-    """Discs that never overlap, on free ground; the last ones can be taken back."""
+    """Discs on free floor without overlap; the last ones can be removed."""
 
     def __init__(self, robots: Sequence[tuple[float, float]], ground: Ground | None = None) -> None:
         self.ground = ground or Ground()
@@ -20,7 +20,7 @@ class Occupancy:
         self.count = 0
 
     def add(self, x: float, y: float, radius: float) -> None:
-        """Put a disc down, whether its place is free or not."""
+        """Add a disc, regardless of overlaps."""
         if self.count == len(self._discs):
             self._discs = np.concatenate([self._discs, np.empty_like(self._discs)])
         self._discs[self.count] = x, y, radius
@@ -29,12 +29,12 @@ class Occupancy:
     def is_free(
         self, x: float, y: float, radius: float, spacing: float = 0.0, since: int = 0
     ) -> bool:
-        """Whether a disc fits.
+        """Return True if a disc fits.
 
         Args:
             x, y, radius: the disc, m.
-            spacing: least distance from the centres of those put down last, m.
-            since: the first one that counts as one of those.
+            spacing: smallest distance from the centres of the last discs, m.
+            since: index of the first of the last discs.
         """
         robots = (self._robots[:, 0] - x) ** 2 + (self._robots[:, 1] - y) ** 2
         if np.any(robots < CLEAR_OF_ROBOT**2):

@@ -1,4 +1,4 @@
-"""Columns of an agents' table that only some crowds need; others' tables do not have them."""
+"""Optional columns of an agents' table, which only some crowds need."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class OptionalColumn:
-    """One optional column: what those have who lack it, and how it is written and read."""
+    """One optional column: its default, and how it is written and read."""
 
     missing: Any
     write: Callable[[Any], str]
@@ -71,13 +71,11 @@ def _write_measure(value: float) -> str:
 
 _MEASURE = OptionalColumn(0.0, _write_measure, _number)
 
-#: In the order of the alphabet, in which they stand after the others. ``goal_areas``: sizes
-#: along own x and y and rotation of the area around each goal, m and rad; 0 0 0: a point.
-#: ``height``, ``leg_length``, ``look``, ``phase``: the body that sensors see, m and rad; 0 is as
-#: usual.
-#: ``origin``: centre, size and rotation of where the agent comes in; ``pauses``: how long it
-#: stays at each goal, s; ``queue``: number of the queue in which it stands behind the agent
-#: before it.
+#: In alphabetical order, after the other columns. ``goal_areas``: size along own x and y and
+#: rotation of the area around each goal, m and rad; 0 0 0: a point. ``height``, ``leg_length``,
+#: ``look``, ``phase``: the body seen by sensors, m and rad; 0: default. ``origin``: centre, size
+#: and rotation of the entrance; ``pauses``: time at each goal, s; ``queue``: number of the queue in
+#: which it stands behind the previous agent.
 OPTIONAL: Mapping[str, OptionalColumn] = MappingProxyType(
     {
         "goal_areas": OptionalColumn((), _write_rows, _read_areas),

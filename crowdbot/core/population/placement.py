@@ -1,4 +1,4 @@
-"""Finds places for the people of one spawn, group by group."""
+"""Find places for the people of one spawn, group by group."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.dsl.spec.areas import Area
 
-#: Attempts to place one person, or one group, before the area counts as full.
+#: Attempts to place one person or group before the area counts as full.
 ATTEMPTS = 1000
-#: Attempts to place a further member around the first; in the first half the disc still grows.
+#: Attempts to place another member around the first; the disc grows in the first half.
 _MEMBER_ATTEMPTS = 64
 
 
 def group_reach(size: int, spacing: float) -> float:
-    """Largest distance of a member from the first of its group, m.
+    """Return the largest distance of a member from the first of its group, m.
 
-    Discs ``spacing`` apart cover at most a quarter of a disc of this radius, little enough for
-    random places to be found.
+    Discs ``spacing`` apart cover at most a quarter of a disc of this radius, few enough for random
+    places to be found.
     """
     return spacing * (1.0 + math.sqrt(size))
 
 
 class Placer:
-    """People of one spawn, placed on free floor; bodies lie inside the area.
+    """People of one spawn, placed on free floor with their bodies inside the area.
 
     Attributes:
-        places: (N, 2) where they stand, m; of those who are placed.
+        places: (N, 2) positions of placed people, m.
     """
 
     def __init__(self, area: Area, radius: Array, spacing: float, occupancy: Occupancy) -> None:
@@ -39,11 +39,11 @@ class Placer:
 
     @property
     def placed(self) -> int:
-        """How many stand there."""
+        """Return the number of placed people."""
         return self._occupancy.count - self._since
 
     def put_group(self, members: range, rng: np.random.Generator) -> bool:
-        """Put the first anywhere, the others around; False if no place was found for them."""
+        """Place the first anywhere and the others around; return False if that fails."""
         before = self._occupancy.count
         spacing = max(self._spacing, 2.0 * float(np.max(self._radius[members])))
         for _ in range(ATTEMPTS):
@@ -57,7 +57,7 @@ class Placer:
         return False
 
     def _anywhere(self, i: int, rng: np.random.Generator) -> Point:
-        """A random point of the area, a radius inside."""
+        """Return a random point of the area, one radius inside."""
         (width, height), radius = self._area.size, float(self._radius[i])
         u = (2.0 * rng.random() - 1.0) * (0.5 * width - radius)
         v = (2.0 * rng.random() - 1.0) * (0.5 * height - radius)
@@ -66,7 +66,7 @@ class Placer:
     def _put_near(
         self, i: int, first: Point, spacing: float, reach: float, rng: np.random.Generator
     ) -> bool:
-        """Put a member at an even random point of a disc around the first that grows to reach."""
+        """Place a member uniformly in a disc around the first, which grows to ``reach``."""
         for attempt in range(_MEMBER_ATTEMPTS):
             grown = min(1.0, 2.0 * (attempt + 1) / _MEMBER_ATTEMPTS)
             distance = (spacing + grown * (reach - spacing)) * math.sqrt(rng.random())
@@ -77,7 +77,7 @@ class Placer:
         return False
 
     def _put(self, i: int, point: Point) -> bool:
-        """Put a person down if the body lies inside the area and the place is free."""
+        """Place a person if the body lies inside the area and the place is free."""
         (width, height), radius = self._area.size, float(self._radius[i])
         u, v = self._area.own(*point)
         inside = max(abs(u) - 0.5 * width, abs(v) - 0.5 * height) <= 1e-9 - radius

@@ -1,4 +1,4 @@
-"""Realisation: the table of agents that a scenario's crowd was drawn to. Frozen by a lock."""
+"""Realisation: the sampled table of a scenario's agents, which a lock freezes."""
 
 from __future__ import annotations
 
@@ -28,27 +28,27 @@ COLUMNS = ("id", *_NUMBERS, "group", "policy", "at_goal", "portals", "goals", "g
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Realisation:
-    """One row an agent; world frame, SI.
+    """One row per agent; world frame, SI.
 
     Attributes:
         id: (N,).
         x, y, heading: (N,) start, m and rad.
         speed: (N,) preferred speed, m/s.
-        radius, mass: (N,) disc, m and kg.
+        radius, mass: (N,) contact disc and mass, m and kg.
         max_speed, max_acceleration: (N,) m/s and m/s^2.
-        start_time: (N,) when the agent enters, s.
-        attention: (N,) how attentive the agent is compared with others, 0 to 1. The least
-            attentive ignore robots, the next notice them late; ``crowd.robot_response`` says how
-            many do.
-        group: (N,) agents with equal numbers belong together; -1: alone.
+        start_time: (N,) time of entry, s.
+        attention: (N,) rank of attention among people, 0 to 1. The least attentive ignore robots,
+            the next notice them late; ``crowd.robot_response`` sets the fractions.
+        group: (N,) number of the agent's group; -1: alone.
         policy: (N,) name in ``crowd.policies``; empty: the crowd's own policy.
-        at_goal: (N,) what happens at the end of the route: ``portal``, ``stop``, ``remove``,
-            ``loop``, ``return``, ``onward``.
+        at_goal: (N,) behaviour at the end of the route: ``portal``, ``stop``, ``remove``, ``loop``,
+            ``return``, ``onward``.
         portals: (N,) names of entrance and exit for ``portal``, else two empty texts.
-        goals: (N,) points of the route, m; empty for ``portal``, whose goals are drawn on the way.
+        goals: (N,) points of the route, m; empty for ``portal``, whose goals are sampled on the
+            way.
         goal_key: key of the counter-based draws on the way.
         goal_areas, origin, pauses, queue, height, leg_length, phase, look: (N,) each, see
-            `crowdbot.core.population.optional_columns`; what nobody has is not in the table.
+            `crowdbot.core.population.optional_columns`; columns without values are omitted.
     """
 
     id: NDArray[np.int64]
@@ -78,11 +78,11 @@ class Realisation:
     look: tuple[str, ...]
 
     def __len__(self) -> int:
-        """How many agents."""
+        """Return the number of agents."""
         return len(self.id)
 
     def to_csv(self) -> str:
-        """The table as text, decimals that read back exactly."""
+        """Return the table as text, with exact decimals."""
         text = io.StringIO()
         more = {
             name: [column.write(value) for value in getattr(self, name)]
@@ -111,20 +111,20 @@ class Realisation:
 
     @property
     def hash(self) -> str:
-        """Content hash of the table."""
+        """Return the content hash of the table."""
         return f"cb1-sha256:{hashlib.sha256(self.to_csv().encode()).hexdigest()}"
 
     @classmethod
     def nobody(cls) -> Realisation:
-        """The table of a scenario without a crowd."""
+        """Return the table of a scenario without a crowd."""
         return cls.from_rows([])
 
     @classmethod
     def from_csv(cls, text: str) -> Realisation:
-        """The table that `to_csv` wrote.
+        """Read a table written by `to_csv`.
 
         Raises:
-            InputError: the text is not a table of agents; with its line.
+            InputError: the text is not a table of agents (the message names the line).
         """
         rows = csv.reader(io.StringIO(text))
         header = next(rows, [])
@@ -140,7 +140,7 @@ class Realisation:
 
     @classmethod
     def from_rows(cls, rows: Sequence[dict[str, Any]]) -> Realisation:
-        """The table of rows whose keys are `COLUMNS`, and of `OPTIONAL` what they have."""
+        """Build a table from rows with the keys `COLUMNS` and any of `OPTIONAL`."""
         keys = {row["goal_key"] for row in rows}
         if len(keys) > 1:
             raise InputError("an agents table has one goal_key")
@@ -161,10 +161,10 @@ class Realisation:
 
 
 def _checked(row: Sequence[str], line: int, header: Sequence[str]) -> dict[str, Any]:
-    """One row as values.
+    """Return one row as values.
 
     Raises:
-        InputError: it is not one; with its line.
+        InputError: it is not one (the message names the line).
     """
     try:
         cells = dict(zip(header, row, strict=True))

@@ -1,6 +1,6 @@
-"""Draws a scenario's crowd: who starts where, how fast, with which goals.
+"""Sample a scenario's crowd: starts, speeds and goals.
 
-First explicit agents, then the flow, then streams and spawns by name: each keeps clear of those
+Explicit agents come first, then the flow, then streams and spawns by name: each avoids those
 before.
 """
 
@@ -37,12 +37,12 @@ Row = dict[str, Any]
 
 
 def realise(scenario: Scenario, parts: EnvironmentParts | None = None) -> Realisation:
-    """Draw the crowd from its named streams; an empty table when there is no crowd.
+    """Sample the crowd from its named streams; return an empty table without a crowd.
 
     Args:
-        scenario: who is drawn.
-        parts: its environment: nobody is put into a wall, or sent where no way leads; None where
-            walls do not matter.
+        scenario: the scenario.
+        parts: its environment: people are not placed in walls or sent to unreachable goals; None
+            ignores walls.
 
     Raises:
         InputError: the people do not fit into their zone, or a goal cannot be reached.
@@ -77,14 +77,14 @@ def realise(scenario: Scenario, parts: EnvironmentParts | None = None) -> Realis
 
 
 def _table(rows: Iterable[Row], streams: Streams) -> Realisation:
-    """The table of rows that lack nothing but the key of goals, in the order of ids."""
+    """Return the table of complete rows without the key of goals, in the order of ids."""
     key = {"goal_key": streams.seed("crowd.goal")}
     return Realisation.from_rows(sorted((row | key for row in rows), key=lambda row: row["id"]))
 
 
 def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
-    """The people of a record: each enters where and when it begins and goes where it ends."""
-    from crowdbot.core.crowd.recorded import read_record  # with the engine, which takes its time
+    """Yield the people of a record: each enters at its recorded start and goes to its end."""
+    from crowdbot.core.crowd.recorded import read_record  # slow import of the engine
 
     people = read_record(record.file).agents()
     for i, who in enumerate(people.id.tolist()):
@@ -108,7 +108,7 @@ def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
 
 
 def _numbered(rows: Sequence[Row], taken: set[int]) -> Iterator[Row]:
-    """Rows with the smallest numbers that no explicit agent has, in order."""
+    """Yield rows with the smallest ids that no explicit agent has, in order."""
     free = (n for n in itertools.count() if n not in taken)
     return (row | {"id": n} for row, n in zip(rows, free, strict=False))
 
@@ -116,7 +116,7 @@ def _numbered(rows: Sequence[Row], taken: set[int]) -> Iterator[Row]:
 def _flow_rows(
     flow: Flow, scenario: Scenario, crowd: Crowd, streams: Streams, occupancy: Occupancy
 ) -> list[Row]:
-    """The people of the flow, spread over its zone."""
+    """Return the people of the flow, spread over its zone."""
     zone = scenario.environment.zones[flow.area]
     people = round(flow.density * zone.area)
     rng, body = streams.rng("crowd.spawn"), crowd.body
@@ -133,7 +133,7 @@ def _flow_rows(
             raise InputError(f"only {i} of {people} people fit into the crowd's zone")
         occupancy.add(x, y, radius)
         points.append((x, y))
-    assert crowd.speed is not None  # checked with the document
+    assert crowd.speed is not None  # checked on validation
     speeds = bodies.walk_at(draw_speeds(streams.rng("crowd.speed"), people, crowd.speed))
     common: Row = {
         "max_speed": body.max_speed,
@@ -163,9 +163,9 @@ def _flow_bodies(crowd: Crowd, people: int, streams: Streams) -> Bodies:
 
 
 def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
-    """Portals and heading of those who take turns in a flow; places are drawn whoever goes where.
+    """Return portals and heading of people who alternate in a flow, independent of places.
 
-    Equal seeds therefore put people at the same places in all directions of a flow.
+    So equal seeds place people at the same positions for all directions of a flow.
     """
     there, back = flow.portals, flow.portals[::-1]
     taken = {"in": [there], "counter": [back], "both": [there, back]}[flow.direction]
@@ -174,7 +174,7 @@ def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
 
 
 def _look_of(agent: Agent) -> Row:
-    """The usual body of an explicit agent's look, where it has no number of its own."""
+    """Return the default body of an explicit agent's look, for missing numbers."""
     assert agent.look is not None
     look = USUAL_BODIES[agent.look]
     usual = {"radius": look.radius, "mass": look.mass[0] if look.mass else None}
@@ -183,7 +183,7 @@ def _look_of(agent: Agent) -> Row:
 
 
 def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams) -> Row:
-    """An explicit agent, the crowd's values where it has none of its own."""
+    """Return an explicit agent, with the crowd's values for missing ones."""
     row = agent.model_dump()
     if agent.look is not None:
         row |= _look_of(agent)
@@ -191,7 +191,7 @@ def _agent_row(agent: Agent, scenario: Scenario, crowd: Crowd, streams: Streams)
         if row[name] is None:
             row[name] = getattr(crowd.body, name)
     if agent.speed is None:
-        assert crowd.speed is not None  # checked with the document
+        assert crowd.speed is not None  # checked on validation
         rng = streams.rng("crowd.agents.speed", agent.id)
         row["speed"] = draw_speeds(rng, 1, crowd.speed)[0]
     if agent.attention is None:

@@ -1,7 +1,7 @@
-"""Draws one spawn: groups, places, routes and the parameters of each person.
+"""Sample one spawn: groups, places, routes and the parameters of each person.
 
-Each purpose has its own stream, named after the spawn; places and goals have one for each group
-beside that, so that a place that is taken moves one group and nobody else.
+Each purpose has its own stream, named after the spawn; places and goals have an additional one per
+group, so that an occupied place moves only one group.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from crowdbot.dsl.spec.areas import GoalArea
 from crowdbot.dsl.spec.parameters import Sample
 from crowdbot.errors import InputError
 
-#: Neighbours on the circle of a group's goals are so many diameters apart.
+#: Spacing on the circle of a group's goals, in diameters.
 _APART = 1.25
 
 
 def linked_walk(
     areas: Mapping[str, GoalArea], begin: tuple[str, ...], length: int, rng: np.random.Generator
 ) -> list[str]:
-    """Names of a random walk on the areas' links; straight back only where nothing else follows."""
+    """Return a random walk on the areas' links, which turns back only at dead ends."""
     walk = [begin[rng.integers(len(begin))]]
     while len(walk) < length:
         links = areas[walk[-1]].next
@@ -48,7 +48,7 @@ def linked_walk(
 
 
 class SpawnSampler:
-    """Samples one spawn; `rows` makes its part of the agents' table."""
+    """Samples one spawn; `rows` returns its part of the agents' table."""
 
     def __init__(
         self, name: str, spawn: Spawn, scenario: Scenario, crowd: Crowd, streams: Streams
@@ -70,14 +70,14 @@ class SpawnSampler:
         self._radius = self._bodies.radius
 
     def rows(self, occupancy: Occupancy, next_group: int) -> list[dict[str, Any]]:
-        """One row a person without ``id`` and ``goal_key``; they are added to the occupancy.
+        """Return one row per person without ``id`` and ``goal_key``, and add them to the occupancy.
 
         Args:
-            occupancy: the discs of those who are there already.
+            occupancy: the discs of people placed before.
             next_group: number of the first group of several people.
 
         Raises:
-            InputError: not all of them fit into the area.
+            InputError: not all people fit into the area.
         """
         groups = self._groups()
         places = self._places(groups, occupancy)
@@ -108,7 +108,7 @@ class SpawnSampler:
         return sample.value + sample.spread * even
 
     def _parameters(self) -> dict[str, Any]:
-        """Columns of the table that do not depend on anybody's place."""
+        """Return the columns of the table that do not depend on places."""
         spawn, body, count = self._spawn, self._crowd.body, self._count
         return {
             "radius": self._radius,
@@ -128,7 +128,7 @@ class SpawnSampler:
 
     def _speeds(self) -> Array:
         speed = self._spawn.speed or self._crowd.speed
-        assert speed is not None  # checked with the document
+        assert speed is not None  # checked on validation
         return draw_numbers(self._rng("speed"), self._count, speed)
 
     def _policies(self) -> list[str]:
@@ -149,11 +149,11 @@ class SpawnSampler:
 
     # ---------------------------------------------------------------------- groups
     def _groups(self) -> list[range]:
-        """Members of each group; the last one is cut short when the people run out."""
+        """Return the members of each group; the last one may be smaller."""
         return draw_groups(self._spawn.groups, self._rng("groups"), self._count, None)
 
     def _places(self, groups: list[range], occupancy: Occupancy) -> Array:
-        """Where everybody starts (N, 2), m; larger groups choose first."""
+        """Return everyone's start (N, 2), m; larger groups choose first."""
         placer = Placer(self._area, self._radius, self._spawn.spacing or 0.0, occupancy)
         for unit in sorted(range(len(groups)), key=lambda g: -len(groups[g])):
             if not placer.put_group(groups[unit], self._rng("place", unit)):
@@ -167,7 +167,7 @@ class SpawnSampler:
     def _routes(
         self, unit: int, members: range, start: Array, ground: Ground
     ) -> list[tuple[Point, ...]]:
-        """The routes of a group's members, side by side, from where its first stands."""
+        """Return the routes of a group's members, side by side, from the start of its first."""
         goals = self._spawn.goals
         if goals is None:
             return [()] * len(members)
@@ -193,7 +193,7 @@ class SpawnSampler:
     def _beside(
         self, name: str, point: Point, k: int, members: range, turn: float, ground: Ground
     ) -> Point:
-        """The goal of the k-th of a group: on a circle around that of the group, if it is free."""
+        """Return the k-th member's goal: on a circle around the group's goal, if that is free."""
         radius = float(self._radius[members].max())
         reach = radius * _APART / math.sin(math.pi / len(members))
         angle = turn + 2.0 * math.pi * k / len(members)
@@ -214,7 +214,7 @@ class SpawnSampler:
         return linked_walk(self._crowd.goal_areas, names, length, rng)
 
     def _goal(self, name: str, start: Point, ground: Ground, rng: np.random.Generator) -> Point:
-        """A point of a goal area where a body has room, and to which a way leads from another."""
+        """Return a point of a goal area with room for a body, reachable from another point."""
         area = area_of(self._crowd.goal_areas[name].area, self._environment.zones)
         radius = float(np.max(self._radius, initial=0.0))
         for _ in range(ATTEMPTS):

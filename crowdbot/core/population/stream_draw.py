@@ -99,7 +99,7 @@ class StreamDraw:
         radius = float(np.max(self.radius, initial=0.0))
         if not any(occupancy.ground.is_free(*at, radius) for at in places_in(area, radius)):
             raise InputError(
-                f"nobody can come in at the origin of stream '{self.name}': walls leave no room "
+                f"people cannot come in at the origin of stream '{self.name}': walls leave no room "
                 f"for a body of radius {radius:g} m around "
                 f"({area.centre[0]:g}, {area.centre[1]:g})"
             )

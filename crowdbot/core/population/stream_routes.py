@@ -25,11 +25,11 @@ class Route:
     """The route of one person.
 
     Attributes:
-        goals: points, or the middles of areas, m.
-        sizes: of the area around each goal: own x and y, rotation; zeros: a point.
-        at_goal: what comes after the last.
-        pauses: how long it stays at each, s; none if nowhere.
-        origin: where it comes in, if it has a choice.
+        goals: points, or centres of areas, m.
+        sizes: size of the area around each goal: own x and y, rotation; zeros: a point.
+        at_goal: behaviour after the last.
+        pauses: time at each, s; empty if none.
+        origin: area of entry, if there is a choice.
     """
 
     goals: tuple[Point, ...]
@@ -39,7 +39,7 @@ class Route:
     origin: Area | None = None
 
     def columns(self) -> dict[str, Any]:
-        """Its part of a row of the table."""
+        """Return its part of a row of the table."""
         area = self.origin
         some = any(size != _POINT for size in self.sizes)
         return {
@@ -61,7 +61,7 @@ def route_through(
     """Return a route through areas, any point of each.
 
     Args:
-        before: points that come first, and how long the person stays at each, s.
+        before: first points, and the time at each, s.
     """
     return Route(
         goals=(*(point for point, _ in before), *(area.centre for area in areas)),
@@ -73,7 +73,7 @@ def route_through(
 
 
 def lane_of(area: Area, lanes: Lanes | None, lane: int) -> Area:
-    """The part of an area that is one lane; all of it without lanes."""
+    """Return one lane of an area; the whole area without lanes."""
     if lanes is None:
         return area
     width = area.size[1] / lanes.of
@@ -82,7 +82,7 @@ def lane_of(area: Area, lanes: Lanes | None, lane: int) -> Area:
 
 
 def straight_on(start: Point, angle: float, trip: float) -> Route:
-    """For ever in one direction, one trip of so many metres after the other."""
+    """Return an endless path in one direction, in trips of this many metres."""
     goal = (start[0] + trip * math.cos(angle), start[1] + trip * math.sin(angle))
     return Route((start, goal), (_POINT, _POINT), "onward")
 
@@ -93,8 +93,8 @@ def border_to_border(
     """Straight to the border of an area, there in a new direction to another place of it, and on.
 
     Args:
-        angles: directions to draw from, rad; any without.
-        radius: of the person, m.
+        angles: directions to sample from, rad; if empty, any.
+        radius: radius of the person, m.
     """
     half = [max(0.5 * side - 2.0 * radius, 0.0) for side in area.size]
     least = _SHORTEST * 2.0 * min(half)
@@ -108,7 +108,7 @@ def border_to_border(
             reach = _to_border(u, v, angle - area.rotation, half)
             if reach >= (least if turn else 0.0):
                 break
-        else:  # a corner that the given directions do not leave: back through the middle
+        else:  # a corner that the given directions cannot leave: back through the centre
             angle, reach = math.atan2(-v, -u) + area.rotation, 2.0 * math.hypot(u, v)
         own = angle - area.rotation
         u, v = u + reach * math.cos(own), v + reach * math.sin(own)
@@ -118,7 +118,7 @@ def border_to_border(
 
 
 def _to_border(u: float, v: float, angle: float, half: Sequence[float]) -> float:
-    """How far it is from (u, v) to the sides of a box around 0 in a direction, m."""
+    """Return the distance from (u, v) to the sides of a box around 0 in a direction, m."""
     found = math.inf
     for at, step, side in ((u, math.cos(angle), half[0]), (v, math.sin(angle), half[1])):
         if abs(step) > 1e-9:
@@ -129,7 +129,7 @@ def _to_border(u: float, v: float, angle: float, half: Sequence[float]) -> float
 def stroll(
     areas: Mapping[str, GoalArea], begin: Sequence[str], visits: int, rng: np.random.Generator
 ) -> list[str]:
-    """Names of the areas of a stroll: what is linked next, else any but the same again."""
+    """Return the areas of a stroll: the next linked one, else any other."""
     names = [begin[int(rng.integers(len(begin)))]]
     while len(names) < visits:
         here = names[-1]

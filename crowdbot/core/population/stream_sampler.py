@@ -14,7 +14,7 @@ from crowdbot.dsl.scenario.streams import StreamChoice
 
 
 class StreamSampler:
-    """Samples one stream; `rows` makes its part of the agents' table."""
+    """Samples one stream; `rows` returns its part of the agents' table."""
 
     def __init__(
         self, name: str, stream: StreamChoice, scenario: Scenario, crowd: Crowd, streams: Streams
@@ -30,7 +30,7 @@ class StreamSampler:
             next_group: number of the first group of several people; numbers of queues follow it.
 
         Raises:
-            InputError: not all of them fit where they start.
+            InputError: not all people fit at their start.
         """
         draw = self._draw
         begun: dict[int, Start] = dict(starts(self._stream, draw, occupancy))
@@ -62,7 +62,7 @@ class StreamSampler:
 
     def _speeds(self) -> Array:
         speed = self._stream.speed or self._crowd.speed
-        assert speed is not None  # checked with the document
+        assert speed is not None  # checked on validation
         speeds = draw_numbers(self._draw.rng("speeds"), self._draw.people, speed)
         return self._draw.bodies.walk_at(speeds)
 

@@ -1,4 +1,4 @@
-"""Densities and bins of the comparison: docs/reference/realism.md says why these."""
+"""Densities and bins of the comparison; docs/reference/realism.md explains the choice."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from crowdbot.core.types.arrays import Array
 
 #: Samples per second of tracks, Hz, and the time between them, s.
 RATE, DT = 4.0, 0.25
-#: Length of the window in which density is counted, m.
+#: Length of the window in which density is measured, m.
 WINDOW = 4.0
-#: Borders of the density cells, 1/m^2, and what the cells are called.
+#: Borders of the density cells, 1/m^2, and the cells' names.
 DENSITY_EDGES = np.array([0.3, 0.65, 1.15, 1.7, 2.4])
 CELLS = ("0.45", "0.9", "1.4", "2.0")
-#: Both flows: everybody one way, and half of the people each way.
+#: Both flows: everyone in one direction, and half of the people in each direction.
 FLOWS = ("uni", "counter")
 #: The five features, in the order of the columns of `features`.
 FEATURES = ("speed", "acceleration", "turning", "nearest", "time_to_collision")
-#: Others are seen within this distance, m: farther ones were not in view of the cameras.
+#: Others are visible within this distance, m; the cameras did not see farther ones.
 REACH = 3.9
-#: Diameter of the discs of which times to collision are told, m.
+#: Diameter of the discs used for times to collision, m.
 DISC = 0.4
 #: Times to collision beyond the last bin, s.
 NEVER = 9.0
-#: Least number of samples of the reference for a cell to count.
+#: Minimum number of reference samples for a cell to count.
 LEAST_SAMPLES = 150
 _BEYOND = 9e9
 
@@ -49,6 +49,6 @@ PAIR_EDGES = np.linspace(0.0, 2.4, 25)
 
 
 def cell_of(density: float) -> int:
-    """Number of the density cell, -1 outside all."""
+    """Return the index of the density cell, -1 outside all."""
     found = int(np.searchsorted(DENSITY_EDGES, density, side="right")) - 1
     return found if 0 <= found < len(CELLS) else -1

@@ -1,8 +1,8 @@
-"""Fits the numbers of a crowd to recorded people, by CMA-ES.
+"""Fit the parameters of a crowd to recorded people with CMA-ES.
 
-Source: Hansen, "The CMA evolution strategy: a tutorial", 2016, by the library cmaes. A fit keeps a
-log of all points and losses: the strategy is repeatable, so that one that was interrupted is
-repeated from its log and goes on.
+Source: Hansen, "The CMA evolution strategy: a tutorial", 2016, with the library cmaes. A fit keeps
+a log of all points and losses: the strategy is deterministic, so an interrupted fit is replayed
+from its log and continues.
 """
 
 from __future__ import annotations
@@ -37,23 +37,23 @@ from crowdbot.errors import CrowdbotError, InputError
 _SPREAD = 0.15
 #: Loss of a crowd that cannot be simulated.
 _WORST = 1.0
-#: Errors below these cost nothing, and what those above cost.
+#: Errors below these limits cost nothing; cost of errors above.
 _FREE_ERROR, _ERROR_WEIGHT = 0.03, 0.4
 _FREE_OVERLAP, _OVERLAP_WEIGHT = 0.006, 2.0
-#: Draws of which generations take one after the other, and those of the last word.
+#: Seeds that generations use in turn, and seeds for the final result.
 _DRAWS, HELD_OUT_DRAWS = 7, (101, 102, 103)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FitTask:
-    """What a fit is about; plain values, so that workers can have it.
+    """The definition of a fit, in plain values that can be sent to workers.
 
     Attributes:
         crowd: name or path, as `open_crowd` takes it.
-        overrides: ``key=value`` texts, laid over the crowd.
+        overrides: ``key=value`` texts that override the crowd's parameters.
         plugins, allowed: as `discover` takes them.
-        files: recordings of the user; empty is what crowdbot ships.
-        warm_up, duration: of each corridor, s.
+        files: the user's recordings; empty: those shipped with crowdbot.
+        warm_up, duration: times for each corridor, s.
     """
 
     crowd: str
@@ -66,19 +66,19 @@ class FitTask:
 
     @property
     def reference(self) -> RealismReference:
-        """Recorded people: the first half is fitted to, the second held out."""
+        """Return the recorded people: the first half for the fit, the second held out."""
         return _reference(self.files)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """How a fit ended.
+    """The result of a fit.
 
     Attributes:
         values, spread: key -> value and standard deviation, SI units.
-        training, held_out: scores beside both halves of the recordings.
-        ceiling: score of one half of the recordings beside the other.
-        evaluations: how many crowds were simulated.
+        training, held_out: scores against both halves of the recordings.
+        ceiling: score of one half of the recordings against the other.
+        evaluations: number of simulated crowds.
     """
 
     values: dict[str, float]
@@ -91,7 +91,7 @@ class Fit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Generation:
-    """One step of a fit, for who watches: number, losses, and whether the log had it."""
+    """One step of a fit for an observer: number, losses, and True if it came from the log."""
 
     number: int
     losses: Sequence[float]
@@ -109,16 +109,16 @@ def fit(
     jobs: int = 1,
     watch: Callable[[Generation], None] = lambda _generation: None,
 ) -> Fit:
-    """Fit, going on from the log if there is one.
+    """Run a fit, continuing from the log if there is one.
 
     Args:
-        log: a line for each generation.
-        population: crowds in each generation; 0 is 4 + 3 ln(parameters).
-        seed: of the strategy; equal seeds give equal fits, whatever ``jobs`` is.
-        jobs: processes.
+        log: file with one line per generation.
+        population: crowds per generation; 0 means 4 + 3 ln(parameters).
+        seed: seed of the strategy; equal seeds give equal fits for any ``jobs``.
+        jobs: number of processes.
 
     Raises:
-        InputError: the log is of another fit.
+        InputError: the log belongs to another fit.
     """
     size = population or 4 + math.floor(3.0 * math.log(len(parameters)))
     strategy = CMA(
@@ -145,7 +145,7 @@ def fit(
 
 
 def loss(task: FitTask, overrides: Sequence[str], seed: int) -> float:
-    """1 - score beside the first half, and what errors of speed, lanes and overlap cost."""
+    """Return 1 - score against the first half, plus costs of speed, lane and overlap errors."""
     try:
         own = _walk(task, overrides, (seed,), task.warm_up, task.duration)
     except CrowdbotError:
@@ -175,7 +175,7 @@ def _walk(
 
 
 def _result(task: FitTask, parameters: Sequence[Parameter], strategy: CMA, generations: int) -> Fit:
-    """The middle of the last generation: one best draw is luck."""
+    """Return the mean of the last generation, since a single best draw is luck."""
     mean = np.clip(np.asarray(strategy.mean, np.float64), 0.0, 1.0)
     deviation = strategy._sigma * np.sqrt(np.diag(strategy._C))
     own = _walk(task, overrides_of(parameters, mean), HELD_OUT_DRAWS, 6.0, 10.0)
@@ -194,7 +194,7 @@ def _result(task: FitTask, parameters: Sequence[Parameter], strategy: CMA, gener
 
 
 def _head(task: FitTask, parameters: Sequence[Parameter], seed: int, size: int) -> str:
-    """What a log has to begin with to be of this fit."""
+    """Return the first line that a log of this fit must have."""
     what = [
         task.crowd, task.overrides, [_digest(Path(f)) for f in task.files], seed, size,
         [(p.key, p.start, p.low, p.high) for p in parameters],
@@ -207,7 +207,7 @@ def _digest(path: Path) -> str:
 
 
 def _read_log(log: Path, head: str) -> list[list[float]]:
-    """Losses of the generations that are done; a line that was cut off is not."""
+    """Return the losses of complete generations; a truncated line is dropped."""
     if not log.exists():
         return []
     lines: list[Any] = []
@@ -231,7 +231,7 @@ _Asked = Sequence[tuple[Sequence[str], int]]
 
 @contextmanager
 def _losses(task: FitTask, jobs: int) -> Iterator[Callable[[_Asked], list[float]]]:
-    """What computes the losses of a generation: here, or in some processes."""
+    """Yield a function for the losses of a generation: in this process or in several."""
     if jobs <= 1:
         yield lambda asked: [loss(task, overrides, seed) for overrides, seed in asked]
         return

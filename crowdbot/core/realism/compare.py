@@ -1,4 +1,4 @@
-"""How near one crowd's statistics are to another's: scores from 0 to 1 and what is beside them."""
+"""Similarity of two crowds' statistics: scores from 0 to 1, and further errors."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from crowdbot.core.realism.bins import CELLS, FEATURES, FLOWS, LEAST_SAMPLES
 from crowdbot.core.realism.statistics import Cell, Statistics, histograms_of
 from crowdbot.core.types.arrays import Array
 
-#: Samples on both sides: the divergence of few samples is larger than that of many.
+#: Sample size on both sides, since the divergence of few samples is larger than that of many.
 SAMPLES = 2000
-#: Added to each bin, so that an empty one is not impossible.
+#: Added to each bin, so that an empty bin is not impossible.
 _PRIOR = 0.1
-#: Fewer samples of the crowd than this match nothing.
+#: With fewer samples the crowd scores 0 in that cell.
 _FEWEST = 30
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealismScore:
-    """One crowd beside another.
+    """The comparison of one crowd with another.
 
     Attributes:
         score: mean of all parts of all cells.
@@ -36,7 +36,7 @@ class RealismScore:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Beside:
-    """What is told beside the score.
+    """Errors reported in addition to the score.
 
     Attributes:
         diagram_error: mean relative error of speed over the recorded curve.
@@ -54,15 +54,15 @@ class Beside:
 
 
 def compared_cells(reference: Statistics) -> list[Cell]:
-    """Cells for which there are enough recorded samples."""
+    """Return the cells with enough recorded samples."""
     cells = [(flow, density) for flow in FLOWS for density in CELLS]
     return [c for c in cells if reference.count(c) >= LEAST_SAMPLES]
 
 
 def similarity(p: Array, q: Array) -> float:
-    """1 - sqrt of the Jensen-Shannon divergence (base 2) of two histograms of equal bins.
+    """Return 1 - sqrt of the Jensen-Shannon divergence (base 2) of two histograms with equal bins.
 
-    Both count as so many samples, `SAMPLES`, however many they are.
+    Both are scaled to `SAMPLES` samples.
     """
     a, b = (SAMPLES * h / max(float(np.sum(h)), 1e-12) + _PRIOR for h in (p, q))
     a, b = a / a.sum(), b / b.sum()
@@ -72,12 +72,12 @@ def similarity(p: Array, q: Array) -> float:
 
 
 def score(crowd: Statistics, reference: Statistics, seed: int = 0) -> RealismScore:
-    """How near a crowd is to the reference: mean of 1 - sqrt(JSD) over cells and features.
+    """Score a crowd against the reference: mean of 1 - sqrt(JSD) over cells and features.
 
     Args:
-        crowd: with rows, of which `SAMPLES` are drawn in each cell; without rows, as it is.
+        crowd: statistics; if they have rows, `SAMPLES` of them are drawn in each cell.
         reference: decides which cells count.
-        seed: of the draw.
+        seed: seed of the draw.
     """
     rng = np.random.default_rng([seed, 0x5EA1])
     found: dict[tuple[Cell, str], float] = {}
@@ -107,7 +107,7 @@ def _sample(crowd: Statistics, cell: Cell, rng: np.random.Generator) -> Mapping[
 
 
 def beside(crowd: Statistics, reference: Statistics) -> Beside:
-    """What is told beside the score; NaN where neither has anything to compare."""
+    """Return the additional errors; NaN if there is nothing to compare."""
     cells = [c for c in compared_cells(reference) if crowd.count(c) >= _FEWEST]
     counter = [c for c in cells if c[0] == "counter"]
     return Beside(
@@ -125,7 +125,7 @@ def beside(crowd: Statistics, reference: Statistics) -> Beside:
 
 
 def diagram_errors(crowd: Statistics, reference: Statistics, flow: str) -> Array:
-    """Relative errors of speed at the crowd's densities, beside the recorded curve."""
+    """Return relative speed errors at the crowd's densities, against the recorded curve."""
     curve, own = reference.diagram.get(flow), crowd.diagram.get(flow)
     if curve is None or own is None or len(curve) < 2 or not len(own):
         return np.zeros(0)

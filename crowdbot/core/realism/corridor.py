@@ -1,4 +1,4 @@
-"""A crowd in a corridor without ends, at the densities at which people were recorded."""
+"""Simulate a crowd in an endless corridor, at the densities of the recordings."""
 
 from __future__ import annotations
 
@@ -17,29 +17,29 @@ from crowdbot.core.realism.tracks import Tracks
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 
-#: Width of the corridor, m: those of most of the recordings.
+#: Width of the corridor, m, as in most of the recordings.
 WIDTH = {"uni": 3.0, "counter": 3.6}
-#: Densities, 1/m^2: one below the recorded cells, then theirs.
+#: Densities, 1/m^2: one below the recorded cells, then those of the cells.
 DENSITIES = (0.2, *(float(c) for c in CELLS))
-#: Time in which the crowd sorts itself, and after which it is compared, s.
+#: Time for the crowd to settle, and time during which it is compared, s.
 WARM_UP, DURATION = 6.0, 10.0
-#: Samples per second of which quarters of a second are means, Hz.
+#: Sample rate before averaging over quarters of a second, Hz.
 _FINE = 16
 _FAR = 1e5
-#: Preferred speeds are between these shares of their mean.
+#: Preferred speeds lie between these multiples of their mean.
 _SLOWEST, _FASTEST = 0.4, 1.6
 _TRIES = 4000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Corridor:
-    """One corridor full of people.
+    """One corridor with people.
 
     Attributes:
         flow: ``uni`` or ``counter``.
-        density: people for each square metre, 1/m^2.
-        seed: of places and speeds.
-        warm_up, duration: before and while people are compared, s.
+        density: people per square metre, 1/m^2.
+        seed: seed of positions and speeds.
+        warm_up, duration: time before, and time of, the comparison, s.
     """
 
     flow: str
@@ -50,7 +50,7 @@ class Corridor:
 
     @property
     def length(self) -> float:
-        """Period along x, m: shorter where there are more people."""
+        """Return the period along x, m; shorter with more people."""
         for density, length in ((0.7, 40.0), (1.2, 26.0), (1.7, 18.0)):
             if self.density < density:
                 return length
@@ -58,7 +58,7 @@ class Corridor:
 
 
 def corridors(seed: int, *, warm_up: float = WARM_UP, duration: float = DURATION) -> list[Corridor]:
-    """Both flows at all densities."""
+    """Return both flows at all densities."""
     return [
         Corridor(flow=f, density=d, seed=seed, warm_up=warm_up, duration=duration)
         for f in FLOWS
@@ -67,7 +67,7 @@ def corridors(seed: int, *, warm_up: float = WARM_UP, duration: float = DURATION
 
 
 def simulate(model: CrowdModel, corridor: Corridor) -> Tracks:
-    """Walk a crowd through a corridor.
+    """Simulate a crowd walking through a corridor.
 
     Raises:
         PluginError: the policy fails.
@@ -85,7 +85,7 @@ def simulate(model: CrowdModel, corridor: Corridor) -> Tracks:
 
 
 def _speeds(model: CrowdModel, count: int, rng: np.random.Generator) -> Array:
-    """Preferred speeds, one from each slice of the distribution: nobody is an outlier."""
+    """Return preferred speeds, one from each slice of the distribution, so without outliers."""
     normal = NormalDist(model.speed, max(model.speed_deviation, 1e-9))
     slices = (rng.permutation(count) + rng.uniform(0.001, 0.999, count)) / count
     drawn = np.array([normal.inv_cdf(u) for u in slices])
@@ -113,13 +113,13 @@ def _engine(
 
 
 def _walk(engine: CrowdEngine, corridor: Corridor) -> Array:
-    """Ways walked (S, N, 2) at 16 Hz, without jumps at the border, m."""
+    """Return walked paths (S, N, 2) at 16 Hz, without jumps at the border, m."""
     flat = engine.initial_state()
     _, rows = s.view(flat)
     steps = round((corridor.warm_up + corridor.duration) * _FINE)
     found = np.empty((steps, len(rows), 2))
     pause = TICKS_PER_SECOND // _FINE
-    # In a crowd nobody starts at full speed.
+    # In a crowd no one starts at full speed.
     slow = min(1.0, (1.2 if corridor.density < 1.0 else 0.7) / max(0.1, _mean_speed(rows)))
     rows[:, s.VX : s.VY + 1] *= slow
     for k in range(steps):
@@ -136,7 +136,7 @@ def _mean_speed(rows: Array) -> float:
 
 
 def _tracks(way: Array, corridor: Corridor, radius: float) -> Tracks:
-    """Means over quarters of a second."""
+    """Return tracks as means over quarters of a second."""
     per = round(_FINE / RATE)
     mean = way.reshape(-1, per, *way.shape[1:]).mean(axis=1)
     at = mean.copy()
@@ -157,7 +157,7 @@ def _tracks(way: Array, corridor: Corridor, radius: float) -> Tracks:
 def _places(
     count: int, length: float, width: float, radius: float, rng: np.random.Generator
 ) -> Array:
-    """(N, 2) random places apart from each other, m; closer ones where nothing else is left."""
+    """Return (N, 2) random positions with gaps, m; with smaller gaps if there is no other space."""
     room = width - 2.0 * radius - 0.04
     apart = min(2.0 * radius + 0.06, 0.72 / np.sqrt(max(count / (length * width), 0.3)))
     at, n, tries = np.empty((count, 2)), 0, 0

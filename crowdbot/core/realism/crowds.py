@@ -1,4 +1,4 @@
-"""Which crowds a suite has, and what is known of crowds without simulating them."""
+"""The crowds of a suite, and what is known of them without a simulation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ KNOWN = "known_crowds.json"
 
 
 def different_crowds(scenarios: Sequence[Scenario]) -> dict[str, Crowd]:
-    """The crowds of some scenarios that are not alike, by the id of the first that has each."""
+    """Return the different crowds of some scenarios, each by the id of its first scenario."""
     found: dict[str, tuple[str, Crowd]] = {}
     for scenario in scenarios:
         if scenario.crowd is not None:
@@ -25,28 +25,28 @@ def different_crowds(scenarios: Sequence[Scenario]) -> dict[str, Crowd]:
 
 @cache
 def known() -> Mapping[str, Mapping[str, Any]]:
-    """Fingerprint -> name, score, index, ceiling and floor of crowds that were measured."""
+    """Return fingerprint -> name, score, index, ceiling and floor of measured crowds."""
     text = resources.files(__package__).joinpath(KNOWN).read_text(encoding="utf-8")
     found: Mapping[str, Mapping[str, Any]] = json.loads(text)
     return found
 
 
 def by_name(name: str) -> Mapping[str, Any] | None:
-    """What is known of a crowd that comes with crowdbot."""
+    """Return what is known of a crowd that comes with crowdbot."""
     return next((row for row in known().values() if row["name"] == name), None)
 
 
 def realism_by_name(name: str) -> float | None:
-    """Index of a crowd that comes with crowdbot; None for others."""
+    """Return the realism index of a crowd that comes with crowdbot; None for others."""
     row = by_name(name)
     return None if row is None else float(row["index"])
 
 
 def lines_of(crowds: Iterable[tuple[str, str]]) -> list[str]:
-    """What a report's head says: a line for each different crowd of its runs.
+    """Return a line per different crowd for a report's head.
 
     Args:
-        crowds: name, where the campaign gave one, and fingerprint of the crowd of each run.
+        crowds: name (if the campaign gave one) and fingerprint of each run's crowd.
     """
     rows: dict[str, Mapping[str, Any] | None] = {}
     for name, like in crowds:

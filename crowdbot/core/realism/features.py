@@ -1,4 +1,4 @@
-"""What is compared: one row for each person in a window in each frame, one for each window."""
+"""Features to compare: one row per person in a window and frame, and one per window."""
 
 from __future__ import annotations
 
@@ -11,24 +11,27 @@ from crowdbot.core.realism.tracks import Tracks
 from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Columns of rows of people: cell of the density, then the features.
+#: Columns of people's rows: cell of the density, then the features.
 CELL, SPEED, ACCELERATION, TURNING, NEAREST, COLLISION = range(6)
 PERSON_COLUMNS = 6
-#: Columns of rows of windows: cell, density, mean speed, lane order.
+#: Columns of windows' rows: cell, density, mean speed, lane order.
 DENSITY, PACE, LANES = range(1, 4)
 WINDOW_COLUMNS = 4
-#: Faster steps are jumps of the tracking, m/s.
+#: Faster steps are tracking jumps, m/s.
 _FASTEST = 4.0
-#: Weights of the smoothing at 4 Hz: heads sway by some 3 cm at 1 Hz.
+#: Weights for smoothing at 4 Hz: heads sway by about 3 cm at 1 Hz.
 _SMOOTH = np.array([1.0, 2.0, 2.0, 2.0, 1.0]) / 8.0
-#: Others whose y is nearer than this walk in the same lane, m.
+#: People whose y differs by less than this walk in the same lane, m.
 _LANE = 0.375
 #: Frames at both ends without acceleration: smoothing takes 2, each difference 1.
 _ENDS = 4
 
 
 def motion(way: Array) -> tuple[Array, Array]:
-    """Velocities and accelerations (T, N, 2) of smoothed ways, m/s, m/s^2; NaN at the ends."""
+    """Return velocities and accelerations (T, N, 2) of smoothed paths, m/s, m/s^2.
+
+    NaN at the ends.
+    """
     smooth = np.full_like(way, np.nan)
     frames = len(way)
     if frames > _ENDS:
@@ -42,7 +45,7 @@ def motion(way: Array) -> tuple[Array, Array]:
 
 
 def features(tracks: Tracks) -> tuple[Array, Array]:
-    """Rows of people (R, `PERSON_COLUMNS`) and of windows (F, `WINDOW_COLUMNS`)."""
+    """Return people's rows (R, `PERSON_COLUMNS`) and windows' rows (F, `WINDOW_COLUMNS`)."""
     velocity, acceleration = motion(tracks.way)
     first, last = max(tracks.first, _ENDS), min(tracks.last, len(tracks.way) - _ENDS)
     count, windows = tracks.way.shape[1], len(tracks.windows)
@@ -111,7 +114,7 @@ def _features(
 
 @kernel
 def _lane(position: Array, direction: Array, inside: Indices, count: int, i: int) -> float:
-    """How one-way the lane of person i is: ((with - against)/all)^2; -1 with nobody in it."""
+    """Return how one-way person i's lane is: ((with - against)/all)^2; -1 if it is empty."""
     same, other = 0, 0
     for a in range(count):
         j = inside[a]
@@ -130,7 +133,7 @@ def _person(
     position: Array, velocity: Array, acceleration: Array, here: Indices, present: int,
     k: int, i: int, period: float, row: Array,
 ) -> None:  # fmt: skip
-    """The features of person i in frame k."""
+    """Write the features of person i in frame k."""
     row[SPEED] = math.hypot(velocity[k, i, 0], velocity[k, i, 1])
     row[ACCELERATION] = math.hypot(acceleration[i, 0], acceleration[i, 1])
     turn = math.atan2(velocity[k + 1, i, 1], velocity[k + 1, i, 0])
@@ -160,7 +163,7 @@ def _person(
 
 @kernel
 def _touch(dx: float, dy: float, ux: float, uy: float) -> float:
-    """Time until two discs touch, s; 0 where they do, inf if they never will."""
+    """Return the time until two discs touch, s; 0 if they touch now, inf if never."""
     gap2 = dx * dx + dy * dy - DISC * DISC
     if gap2 <= 0.0:
         return 0.0

@@ -1,4 +1,4 @@
-"""How human a crowd is: simulated, or from its runs, beside recorded people."""
+"""Measure the realism of a crowd, simulated or from its runs, against recorded people."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from crowdbot.core.realism.reference import RealismReference
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.realism.tracks import Tracks
 
-#: Draws of the corridors: the index of one deviates by 0.022, the mean of sixteen by 0.006.
+#: Seeds of the corridors: the index varies by 0.022 for one, by 0.006 for the mean of sixteen.
 SEEDS = tuple(range(1, 17))
-#: What is told beside the five features, as parts from 0 to 1.
+#: Additional parts besides the five features, from 0 to 1.
 DIAGRAM, LANES, PAIRS = "fundamental_diagram", "lanes", "pair_correlation"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Realism:
-    """How near a crowd is to recorded people.
+    """Similarity of a crowd to recorded people.
 
     Attributes:
-        name: of the crowd.
+        name: name of the crowd.
         score, low, high: mean over draws, smallest and largest.
         index: (score - floor)/(ceiling - floor).
-        ceiling, floor: scores of recorded people and of those who avoid nobody.
+        ceiling, floor: scores of recorded people and of people without avoidance.
         parts: the five features, then fundamental diagram, lanes and pair correlation; 1 is equal.
         cells: (flow, density) -> mean of the five features.
         beside: errors in their own units.
-        statistics: of the crowd in all draws.
-        reference: what it was compared with.
+        statistics: statistics of the crowd in all draws.
+        reference: the reference of the comparison.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Realism:
 
     @property
     def line(self) -> str:
-        """One line for the head of a report."""
+        """Return one line for the head of a report."""
         return (
             f"{self.name}, realism {self.score:.2f} "
             f"(real {self.ceiling:.2f}, ghosts {self.floor:.2f})"
@@ -107,14 +107,14 @@ def measure(
     seeds: Sequence[int] = SEEDS,
     walk: Callable[[CrowdModel, Sequence[int]], Sequence[Sequence[Tracks]]] | None = None,
 ) -> Realism:
-    """Simulate a crowd where people were recorded, and compare.
+    """Simulate a crowd under the recorded conditions, and compare.
 
     Args:
-        name: of the crowd.
-        model: what it is like.
+        name: name of the crowd.
+        model: model of the crowd.
         reference: recorded people.
-        seeds: draws of places and speeds.
-        walk: simulates a model for each seed, elsewhere; by default here, one after the other.
+        seeds: seeds of positions and speeds.
+        walk: function that simulates a model for each seed; default: in this process, one by one.
 
     Raises:
         PluginError: the policy fails.
@@ -124,14 +124,14 @@ def measure(
 
 
 def walk_here(model: CrowdModel, seeds: Sequence[int]) -> list[list[Tracks]]:
-    """All corridors of each seed, simulated in this process."""
+    """Simulate all corridors of each seed in this process."""
     return [[simulate(model, c) for c in corridors(seed)] for seed in seeds]
 
 
 def measure_tracks(
     name: str, draws: Sequence[Sequence[Tracks]], reference: RealismReference
 ) -> Realism:
-    """Compare tracks, draw by draw."""
+    """Compare tracks with the reference, draw by draw."""
     each = [reference.score(statistics_of(tracks), k) for k, tracks in enumerate(draws)]
     whole = statistics_of([t for tracks in draws for t in tracks])
     near = beside(whole, reference.whole)

@@ -1,4 +1,4 @@
-"""CrowdModel: how people of a crowd decide and what they are like, without a place."""
+"""CrowdModel: a crowd's decisions and bodies, independent of a place."""
 
 from __future__ import annotations
 
@@ -17,20 +17,21 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.scenario.scenario import Crowd
 from crowdbot.dsl.scenario.steering import SteeringSpec
 
-#: Preferred speeds where a crowd names none, m/s: those of the recorded people.
+#: Default preferred speeds, m/s: those of the recorded people.
 SPEED, SPEED_DEVIATION = 1.5, 0.2
-#: Radius where a crowd names none, m: what the recorded people leave each other.
+#: Default radius, m: from the gaps between the recorded people.
 RADIUS = 0.2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdModel:
-    """What a crowd is like wherever it walks; SI units.
+    """A crowd's properties, independent of the place; SI units.
 
     Attributes:
-        policy: makes the policy.
-        speed, speed_deviation: of the normal distribution of preferred speeds, m/s.
-        radius, avoided_radius: of what touches and of what is kept clear of, m.
+        policy: function that builds the policy.
+        speed, speed_deviation: mean and deviation of the normal distribution of preferred speeds,
+            m/s.
+        radius, avoided_radius: radius for contact and radius kept clear, m.
         decision_rate: Hz.
     """
 
@@ -48,12 +49,12 @@ class CrowdModel:
 def model_of(
     crowd: Crowd, registry: Registry, *, named: Sequence[str] = (), rate: float = 16.0
 ) -> CrowdModel:
-    """The model of a scenario's crowd: its own policy, steering, speeds and bodies.
+    """Return the model of a scenario's crowd: its policy, steering, speeds and bodies.
 
     Args:
-        crowd: validated; who walks where in it does not matter.
-        named: fields of ``body`` that the crowd names; `RADIUS` takes the place of a radius that
-            is not among them. By default those that the document names.
+        crowd: the validated crowd; its people's paths are ignored.
+        named: fields of ``body`` that the crowd sets; `RADIUS` replaces a radius that is not set.
+            Default: those that the document sets.
         rate: decisions, Hz.
     """
     costs = [build_cost(registry, cost) for cost in crowd.costs.values()]
@@ -78,12 +79,12 @@ def model_of(
 
 
 class AvoidNobody:
-    """People who walk to their goals as if they were alone; they still push each other."""
+    """People who walk to their goals without avoidance; they still push each other."""
 
     relaxation_time = 0.5
 
     def accelerations(self, view: CrowdView) -> Array:
-        """Towards the preferred velocity, m/s^2."""
+        """Return accelerations towards the preferred velocity, m/s^2."""
         way = view.goal - view.position
         away = np.hypot(way[:, :1], way[:, 1:])
         wanted = view.agents.preferred_speed[:, np.newaxis] * way / (away + 1e-9)
@@ -91,18 +92,18 @@ class AvoidNobody:
 
 
 class Ghosts(AvoidNobody):
-    """The same without pushes: straight lines through each other."""
+    """People without avoidance or pushes: straight lines through each other."""
 
     contact_stiffness = 0.0
 
 
 def avoid_nobody(agents: Agents) -> CrowdPolicy:
-    """The policy `AvoidNobody` for some agents."""
+    """Build the policy `AvoidNobody` for some agents."""
     del agents
     return AvoidNobody()
 
 
 def ghosts(agents: Agents) -> CrowdPolicy:
-    """The policy `Ghosts` for some agents."""
+    """Build the policy `Ghosts` for some agents."""
     del agents
     return Ghosts()

@@ -1,4 +1,4 @@
-"""The page about crowds: numbers and curves beside those of recorded people, in one file."""
+"""The page about crowds: numbers and curves against those of recorded people, in one file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ONE_WAY = {"uni": "one direction", "counter": "counterflow"}
 
 
 def render(title: str, crowds: Sequence[Realism]) -> str:
-    """The page as text; equal input gives equal text."""
+    """Return the page as text; equal input gives equal text."""
     sources = list(dict.fromkeys(s for c in crowds for s in c.reference.sources))
     return render_page(
         __package__, title=title, crowds=[_section(c) for c in crowds], sources=sources
@@ -100,7 +100,7 @@ def _diagram(found: Realism, flow: str) -> dict[str, str]:
 
 
 def _steps(shares: Array, top: float) -> str:
-    """A path that goes along the tops of bins of equal width."""
+    """Return a path along the tops of bins of equal width."""
     width = _WIDTH / len(shares)
     parts = []
     for k, share in enumerate(shares):

@@ -1,7 +1,7 @@
-"""Pair correlation: how often two people are at some distance, over how often by chance.
+"""Pair correlation: frequency of distances between two people, over the frequency by chance.
 
-Chance is the same people at other times: who is in a window now, and who is in view in a frame
-some seconds away. So walls and the shape of the window do not matter.
+Chance pairs are the same people at different times: a person in a window now, and a person in view
+some seconds apart. So walls and the window's shape cancel out.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from crowdbot.core.realism.tracks import Tracks
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
-#: Shifts in time that stand for chance, as shares of the compared frames.
+#: Time shifts for chance pairs, as shares of the compared frames.
 _SHIFTS = (0.31, 0.5, 0.69)
 
 
 def pair_correlation(tracks: Sequence[Tracks]) -> Array:
-    """(cells, B) by `PAIR_EDGES` for each density; NaN where chance has no pair."""
+    """Return (cells, B) by `PAIR_EDGES` per density; NaN without chance pairs."""
     now = np.zeros((len(CELLS), len(PAIR_EDGES) - 1))
     chance = np.zeros_like(now)
     for t in tracks:
@@ -32,7 +32,7 @@ def pair_correlation(tracks: Sequence[Tracks]) -> Array:
         _count(*args, 0, now)
         for share in _SHIFTS:
             _count(*args, max(1, round(share * (t.last - t.first))), chance)
-    # Chance has the same number of windows' people; each shift counts its own pairs.
+    # Chance pairs have the same number of people in windows; each shift counts its own pairs.
     with np.errstate(invalid="ignore", divide="ignore"):
         found = np.where(chance > 0.0, now / (chance / len(_SHIFTS)), np.nan)
         found /= (now.sum(1) / (chance.sum(1) / len(_SHIFTS)))[:, np.newaxis]
@@ -44,7 +44,7 @@ def _count(
     position: Array, width: float, windows: Array, period: float, edges: Array, bin_width: float,
     first: int, last: int, shift: int, counts: Array,
 ) -> None:  # fmt: skip
-    """Count pairs of who is in a window in frame k and who is anywhere in frame k + shift."""
+    """Count pairs of a person in a window in frame k and any person in frame k + shift."""
     for k in range(first, last):
         other = first + (k - first + shift) % (last - first)
         for w in range(windows.shape[0]):

@@ -1,4 +1,4 @@
-"""Which numbers of a crowd are fitted, and between which bounds."""
+"""Parameters of a crowd to fit, and their bounds."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.scenario.scenario import Crowd
 from crowdbot.errors import InputError, UnknownNameError
 
-#: What a fit leaves alone: limits of bodies, how far people look, how contacts push.
+#: Parameters that are not fitted: limits of bodies, view distances, contact forces.
 _FIXED = (
     "mass", "max_speed", "max_acceleration", "height", "range", "angle", "contact_stiffness",
 )  # fmt: skip
@@ -22,7 +22,7 @@ _PLACES = ("policy", "costs", "steering", "speed", "body")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """One number that is fitted.
+    """One fitted parameter.
 
     Attributes:
         key: path in the scenario, such as ``crowd.costs.way.d_max``.
@@ -35,29 +35,32 @@ class Parameter:
     high: float
 
     def value(self, share: float) -> float:
-        """The value at a share of the way from low to high, by ratio where both are above 0."""
+        """Return the value at a share of the way from low to high.
+
+        Geometric if both are above 0.
+        """
         share = min(1.0, max(0.0, share))
         if self.low > 0.0:
             return float(self.low * (self.high / self.low) ** share)
         return self.low + share * (self.high - self.low)
 
     def share(self, value: float) -> float:
-        """The other way round."""
+        """Return the share for a value, the inverse of `value`."""
         if self.low > 0.0:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
 
 
 def parameters_of(crowd: Crowd, chosen: Sequence[str] = ()) -> list[Parameter]:
-    """What is fitted: the chosen numbers, or all positive ones from half to twice.
+    """Return the chosen parameters, or all positive ones from half to twice their value.
 
     Args:
-        crowd: whose numbers they are.
-        chosen: ``key=low..high`` texts; ``crowd.`` may be left out; without bounds, half to twice.
+        crowd: the crowd with the parameters.
+        chosen: ``key=low..high`` texts; ``crowd.`` is optional; default bounds: half to twice.
 
     Raises:
-        UnknownNameError: the crowd has no such number.
-        InputError: bounds make no sense.
+        UnknownNameError: the crowd has no such parameter.
+        InputError: the bounds are invalid.
     """
     known = dict(numbers(crowd))
     if not chosen:
@@ -67,7 +70,7 @@ def parameters_of(crowd: Crowd, chosen: Sequence[str] = ()) -> list[Parameter]:
 
 
 def numbers(crowd: Crowd) -> Iterator[tuple[str, float]]:
-    """Key and value of every number of what a crowd is like."""
+    """Yield key and value of every number that describes a crowd."""
     content = crowd.model_dump(mode="json", include=set(_PLACES))
     for place in _PLACES:
         if isinstance(content.get(place), Mapping):
@@ -75,14 +78,14 @@ def numbers(crowd: Crowd) -> Iterator[tuple[str, float]]:
 
 
 def overrides_of(parameters: Sequence[Parameter], shares: Array) -> list[str]:
-    """``key=value`` texts of a point, as `--set` takes them."""
+    """Return ``key=value`` texts for a point, in the format of `--set`."""
     return [
         f"{p.key}={p.value(float(share))!r}" for p, share in zip(parameters, shares, strict=True)
     ]
 
 
 def shares_of(parameters: Sequence[Parameter]) -> Array:
-    """Where the start lies."""
+    """Return the shares of the start values."""
     return np.array([p.share(p.start) for p in parameters])
 
 

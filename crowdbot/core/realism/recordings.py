@@ -11,10 +11,11 @@ from crowdbot.core.trajectories.bag_tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 
-#: Between a bag and a topic in it.
+#: Separator between a bag and a topic in it.
 _TOPIC = ":/"
 _BAGS = (".bag", ".db3")
-#: Before the first text of a container (mcap.dev/spec): magic, opcode and length; and its begin.
+#: Bytes before the first text of a container (mcap.dev/spec): magic, opcode and length; and its
+#: start.
 _HEAD, _LONGEST = 8 + 1 + 8, 1000
 _FORMATS = (
     "a recording (.mcap), a table t,id,x,y (.csv, .tsv), a bag of ROS (.bag, .db3, .mcap, or a "
@@ -23,10 +24,10 @@ _FORMATS = (
 
 
 def read_tracks(path: Path) -> Tracks:
-    """Tracks from a recording, a table of people, a bag of ROS, or a file of a data set.
+    """Read tracks from a recording, a table of people, a ROS bag, or a data set's file.
 
     Args:
-        path: of a bag with several topics of people, ``BAG:/TOPIC``.
+        path: the file; for a bag with several topics of people, ``BAG:/TOPIC``.
 
     Raises:
         InputError: it cannot be read, or is of another format.
@@ -48,7 +49,7 @@ def read_tracks(path: Path) -> Tracks:
 
 
 def read_runs(files: Sequence[Path]) -> tuple[list[Tracks], list[str]]:
-    """Tracks of finished runs, and why others are left out: nobody is there, or for too short.
+    """Return tracks of finished runs, and why others are left out: no people, or too short.
 
     Raises:
         InputError: a recording cannot be read, or all are left out.
@@ -66,7 +67,7 @@ def read_runs(files: Sequence[Path]) -> tuple[list[Tracks], list[str]]:
 
 
 def _bag(path: Path, topic: str | None = None) -> Trajectories:
-    """People of a bag: of the topic that has some, if none is named."""
+    """Return the people of a bag: from the named topic, or from the only one with people."""
     if topic is None:
         topics = people_topics(path)
         if len(topics) != 1:
@@ -77,7 +78,7 @@ def _bag(path: Path, topic: str | None = None) -> Trajectories:
 
 
 def _recording(path: Path) -> Trajectories:
-    """A recording of crowdbot's, or a bag of ROS in the same container."""
+    """Read a crowdbot recording, or a ROS bag in the same container."""
     profile, library = _origin(path)
     if profile.startswith("ros") and library != "crowdbot":
         return _bag(path)
@@ -85,14 +86,17 @@ def _recording(path: Path) -> Trajectories:
 
 
 def _run(path: Path) -> Trajectories:
-    """A recording of crowdbot's; of several robots' the run of the last to end: all meet people."""
+    """Read a crowdbot recording.
+
+    For several robots, the run of the last to end, which meets all people.
+    """
     with Recording(path) as recording:
         runs = [recording.trajectories(name) for name in recording.robots or (None,)]
     return max(runs, key=lambda run: float(run.t[-1]))
 
 
 def _origin(path: Path) -> tuple[str, str]:
-    """Profile and library that a container names in its first record; empty where it does not."""
+    """Return profile and library from a container's first record; empty if missing."""
     with path.open("rb") as file:
         head = file.read(_LONGEST)
     at, found = _HEAD, []

@@ -1,4 +1,4 @@
-"""The recorded people that crowds are compared with: as shipped, or from files of the user."""
+"""The recorded people that crowds are compared with, as shipped or from the user's files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crowdbot.core.realism.tracks import Tracks
 from crowdbot.errors import InputError
 
 SHIPPED = "recorded_corridors.json"
-#: People who avoid nobody, and straight lines through each other.
+#: Names of the floors: people without avoidance, and straight lines through each other.
 FLOORS: Mapping[str, CrowdModel] = {
     "avoid nobody": CrowdModel(policy=avoid_nobody),
     "straight lines": CrowdModel(policy=ghosts),
@@ -28,13 +28,13 @@ FLOORS: Mapping[str, CrowdModel] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealismReference:
-    """Recorded people, in two halves that are compared with each other, too.
+    """Recorded people in two halves, which are also compared with each other.
 
     Attributes:
-        halves: statistics of every second recording; a crowd is compared with both.
-        whole: of all.
-        floors: name -> statistics of people who avoid nobody.
-        sources: where the recordings come from.
+        halves: statistics of alternating recordings; a crowd is compared with both.
+        whole: statistics of all recordings.
+        floors: name -> statistics of people without avoidance.
+        sources: sources of the recordings.
     """
 
     halves: tuple[Statistics, Statistics]
@@ -43,27 +43,27 @@ class RealismReference:
     sources: tuple[str, ...]
 
     def score(self, crowd: Statistics, seed: int = 0) -> RealismScore:
-        """Mean of the scores beside both halves."""
+        """Return the mean of the scores against both halves."""
         return _mean([score(crowd, half, seed) for half in self.halves])
 
     @property
     def ceiling(self) -> RealismScore:
-        """One half beside the other: what recorded people reach."""
+        """Return one half's score against the other: the level of recorded people."""
         a, b = self.halves
         return _mean([score(a, b), score(b, a)])
 
     @property
     def floor(self) -> RealismScore:
-        """The better of those who avoid nobody."""
+        """Return the better score of the floors."""
         return max((self.score(f) for f in self.floors.values()), key=lambda s: s.score)
 
     def index(self, value: float) -> float:
-        """(score - floor)/(ceiling - floor): 0 is ghosts, 1 is as near as people."""
+        """Return (score - floor)/(ceiling - floor): 0 for ghosts, 1 for recorded people."""
         low, high = self.floor.score, self.ceiling.score
         return (value - low) / (high - low) if high > low else float("nan")
 
     def as_json(self) -> dict[str, Any]:
-        """What `from_json` reads."""
+        """Return data that `from_json` reads."""
         return {
             "sources": list(self.sources),
             "halves": [half.as_json() for half in self.halves],
@@ -73,7 +73,7 @@ class RealismReference:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> RealismReference:
-        """What `as_json` wrote."""
+        """Read data from `as_json`."""
         first, second = (Statistics.from_json(half) for half in data["halves"])
         return cls(
             halves=(first, second),
@@ -85,7 +85,7 @@ class RealismReference:
 
 @cache
 def shipped() -> RealismReference:
-    """The recorded corridors that come with crowdbot, as derived numbers."""
+    """Return the recorded corridors shipped with crowdbot, as derived numbers."""
     text = resources.files(__package__).joinpath(SHIPPED).read_text(encoding="utf-8")
     return RealismReference.from_json(json.loads(text))
 
@@ -95,12 +95,12 @@ def reference_of(
     sources: Sequence[str],
     floors: Mapping[str, Statistics] | None = None,
 ) -> RealismReference:
-    """A reference from tracks: every second one is of the other half.
+    """Build a reference from tracks; alternating tracks go to the two halves.
 
     One recording alone is halved in time.
 
     Raises:
-        InputError: there is nothing in it that can be compared.
+        InputError: there is nothing to compare.
     """
     if not tracks:
         raise InputError("a reference needs one recording at least")
@@ -113,13 +113,13 @@ def reference_of(
     )
     if not any(compared_cells(half) for half in found.halves):
         raise InputError(
-            f"{', '.join(sources)}: nobody walks among 0.3 to 2.4 people per m² in windows of 4 m"
+            f"{', '.join(sources)}: no one walks among 0.3 to 2.4 people per m² in windows of 4 m"
         )
     return found
 
 
 def read_reference(files: Sequence[Path]) -> RealismReference:
-    """A reference from files of the user, in the formats of `read_tracks`.
+    """Read a reference from the user's files, in the formats of `read_tracks`.
 
     Raises:
         InputError: a file cannot be read, or there is nothing to compare in it.
@@ -128,7 +128,7 @@ def read_reference(files: Sequence[Path]) -> RealismReference:
 
 
 def floors_of(seeds: Sequence[int]) -> dict[str, Statistics]:
-    """Statistics of those who avoid nobody, simulated."""
+    """Simulate people without avoidance and return their statistics."""
     return {
         name: statistics_of([simulate(model, c) for seed in seeds for c in corridors(seed)])
         for name, model in FLOORS.items()
@@ -136,7 +136,7 @@ def floors_of(seeds: Sequence[int]) -> dict[str, Statistics]:
 
 
 def _alternate(tracks: Sequence[Tracks]) -> tuple[Sequence[Tracks], Sequence[Tracks]]:
-    """Every second one, flow by flow."""
+    """Return alternating tracks in two halves, flow by flow."""
     first: list[Tracks] = []
     second: list[Tracks] = []
     for flow in ("uni", "counter"):

@@ -1,4 +1,4 @@
-"""Statistics of a crowd: all that is kept of recordings, and all that crowds are compared by."""
+"""Statistics of a crowd: the only data kept of recordings, and the basis of comparisons."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ from crowdbot.core.types.arrays import Array
 #: Name of a cell: flow and density.
 Cell = tuple[str, str]
 _LARGEST = 9e8
-#: Samples are of so few windows that a curve would be chance below this.
+#: With samples from fewer windows, a curve would be chance.
 _LEAST_WINDOWS = 8
-#: Percentiles of the nearest distance that are told.
+#: Reported percentiles of the nearest distance.
 PERCENTILES = (1.0, 5.0, 50.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Statistics:
-    """What a crowd does, by flow and density.
+    """Statistics of a crowd's behaviour, by flow and density.
 
     Attributes:
         histograms: cell -> feature -> (B,) numbers of samples by `EDGES`.
@@ -49,9 +49,9 @@ class Statistics:
         lanes: cell -> lane order, 0 to 1.
         nearest: cell -> percentiles 1, 5, 50 of the nearest distance, m.
         pairs: cell -> (B,) pair correlation by `PAIR_EDGES`; 1 is chance.
-        overlap: share of person-time in which bodies overlap; NaN where sizes are not known.
-        people: rows of people by cell, from which samples are drawn; empty where only the
-            histograms are left.
+        overlap: share of person-time in which bodies overlap; NaN if sizes are unknown.
+        people: people's rows by cell, from which samples are drawn; empty if only histograms were
+            kept.
     """
 
     histograms: Mapping[Cell, Mapping[str, Array]]
@@ -68,7 +68,7 @@ class Statistics:
         return 0 if found is None else int(np.sum(found["speed"]))
 
     def as_json(self) -> dict[str, Any]:
-        """Numbers that `from_json` reads, rounded; histograms as shares of 10 000."""
+        """Return rounded numbers that `from_json` reads; histograms as shares of 10 000."""
         return {
             "cells": {
                 "/".join(cell): {
@@ -88,7 +88,7 @@ class Statistics:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Statistics:
-        """What `as_json` wrote; without rows."""
+        """Read data from `as_json`; the result has no rows."""
         histograms, lanes, nearest, pairs = {}, {}, {}, {}
         for name, found in data["cells"].items():
             flow, _, density = name.partition("/")
@@ -107,7 +107,7 @@ class Statistics:
 
 
 def statistics_of(tracks: Sequence[Tracks]) -> Statistics:
-    """Statistics of all people in some tracks, flow by flow."""
+    """Return the statistics of all people in some tracks, flow by flow."""
     by_flow = {flow: [t for t in tracks if t.flow == flow] for flow in FLOWS}
     histograms: dict[Cell, dict[str, Array]] = {}
     lanes, nearest, pairs, people = {}, {}, {}, {}
@@ -140,7 +140,7 @@ def statistics_of(tracks: Sequence[Tracks]) -> Statistics:
 
 
 def histograms_of(rows: Array) -> dict[str, Array]:
-    """Feature -> (B,) numbers of finite samples among rows of people."""
+    """Return feature -> (B,) numbers of finite samples in people's rows."""
     found = {}
     for column, name in enumerate(FEATURES, SPEED):
         values = rows[:, column]
@@ -150,7 +150,7 @@ def histograms_of(rows: Array) -> dict[str, Array]:
 
 
 def _diagram(windows: Array) -> Array:
-    """(K, 2) mean density and mean speed of windows of about the same density."""
+    """Return (K, 2): mean density and mean speed of windows with similar density."""
     rows = []
     for low, high in pairwise(DIAGRAM_EDGES):
         here = windows[(windows[:, DENSITY] >= low) & (windows[:, DENSITY] < high)]

@@ -1,4 +1,4 @@
-"""The numbers of crowds beside those of recorded people, as rows of text."""
+"""The numbers of crowds and of recorded people, as rows of text."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NAMES = {
 
 
 def rows(found: Realism) -> list[list[str]]:
-    """Part, this crowd, recorded people, people who avoid nobody."""
+    """Return rows: part, this crowd, recorded people, people without avoidance."""
     reference = found.reference
     real, none = reference.ceiling, reference.floor
     out = [["score", _two(found.score), _two(found.ceiling), _two(found.floor)]]
@@ -41,12 +41,12 @@ def rows(found: Realism) -> list[list[str]]:
 
 
 def real_beside(reference: RealismReference) -> Beside:
-    """Errors of one half of the recordings beside the other."""
+    """Return the errors of one half of the recordings against the other."""
     return beside(*reference.halves)
 
 
 def ghosts_beside(reference: RealismReference) -> Beside:
-    """Errors of those who avoid nobody."""
+    """Return the errors of people without avoidance."""
     return beside(reference.floors["avoid nobody"], reference.whole)
 
 

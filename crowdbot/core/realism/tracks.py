@@ -1,4 +1,4 @@
-"""Tracks: where people are, four times a second, in a corridor along x."""
+"""Tracks: positions of people, four times a second, in a corridor along x."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
-#: Share of a recording that is left out at its begin and at its end: people come and go.
+#: Share of a recording dropped at its start and its end, when people come and go.
 _MARGIN = 0.15
-#: Share of the people who walk the other way from which on a flow is a counterflow.
+#: From this share of people in the opposite direction, a flow is a counterflow.
 _MINORITY = 0.1
-#: What the outermost centres keep from the walls, m.
+#: Distance that the outermost centres keep from the walls, m.
 _BODY = 0.2
-#: Outermost positions that do not count as the corridor's.
+#: Outermost share of positions that is ignored for the corridor's width.
 _TAIL = 0.005
-#: Longer recordings are of corridors without ends in view, m.
+#: Longer recordings show corridors without visible ends, m.
 _LONG = 20.0
 
 
 class NothingToCompareError(InputError):
-    """Nobody walks in a recording, or not for long enough."""
+    """A recording has no walking people, or is too short."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,11 +35,11 @@ class Tracks:
     Attributes:
         position: (T, N, 2) m, within the period; NaN where absent.
         way: (T, N, 2) m, as walked: without jumps at the period's border.
-        width: of the corridor, m.
+        width: width of the corridor, m.
         period: length of a corridor without ends, m; 0 for one with ends.
-        windows: (W, 2) from and to along x in which people are compared, m.
-        first, last: frames that are compared: from the first to before the last.
-        radius: of the bodies, m, where it is known, else 0.
+        windows: (W, 2) start and end along x in which people are compared, m.
+        first, last: compared frames: from the first to before the last.
+        radius: radius of the bodies, m; 0 if unknown.
     """
 
     position: Array
@@ -53,14 +53,14 @@ class Tracks:
 
     @property
     def direction(self) -> Array:
-        """(N,) 1 for people who walk along x, -1 for the others, 0 for who does not move."""
+        """Return (N,) 1 for people who walk along x, -1 against it, 0 if they do not move."""
         step = np.diff(self.way[..., 0], axis=0)
         known = np.isfinite(step)
         return np.asarray(np.sign(np.where(known, step, 0.0).sum(axis=0)))
 
     @property
     def flow(self) -> str:
-        """``counter`` where at least a tenth walks the other way, else ``uni``."""
+        """Return ``counter`` if at least a tenth walks in the other direction, else ``uni``."""
         way = self.direction[self.direction != 0.0]
         minority = min(np.mean(way > 0), np.mean(way < 0)) if len(way) else 0.0
         return "counter" if minority >= _MINORITY else "uni"
@@ -69,19 +69,19 @@ class Tracks:
 def tracks_of(
     run: Trajectories, name: str, *, width: float | None = None, centre: bool = False
 ) -> Tracks:
-    """Tracks from trajectories in any direction, at any rate.
+    """Convert trajectories of any direction and rate to tracks.
 
-    The corridor lies along the axis on which people walk. Its width is where they were, if none
-    is given.
+    The corridor lies along the axis on which people walk. By default its width is that of their
+    positions.
 
     Args:
-        run: with people.
-        name: of the file, for messages.
-        width: of the corridor, m.
-        centre: compare only one window, about x = 0 (recordings whose cameras see no more).
+        run: trajectories with people.
+        name: file name for messages.
+        width: width of the corridor, m.
+        centre: compare only one window around x = 0, for recordings with a small camera view.
 
     Raises:
-        NothingToCompareError: nobody walks, or the run is too short.
+        NothingToCompareError: no one walks, or the run is too short.
     """
     if run.agents is None or not np.any(np.isfinite(run.agents.x)):
         raise NothingToCompareError(f"{name}: there are no people in it")
@@ -107,7 +107,7 @@ def tracks_of(
 
 
 def _at_rate(t: Array, x: Array, y: Array, jump: NDArray[np.bool_] | None) -> Array:
-    """(T, N, 2) at 4 Hz: means over a quarter of a second, or points on the lines between."""
+    """Return (T, N, 2) at 4 Hz: means over a quarter of a second, or interpolated points."""
     at = np.stack([x, y], axis=-1)
     if len(t) < 2:
         return at
@@ -129,7 +129,7 @@ def _at_rate(t: Array, x: Array, y: Array, jump: NDArray[np.bool_] | None) -> Ar
 
 
 def _between(t: Array, at: Array) -> Array:
-    """Points on the straight lines between samples; NaN where a sample beside is missing."""
+    """Interpolate linearly between samples; NaN if a neighbouring sample is missing."""
     when = np.arange(t[0], t[-1] + 1e-9, DT)
     after = np.clip(np.searchsorted(t, when, side="left"), 1, len(t) - 1)
     share = ((when - t[after - 1]) / (t[after] - t[after - 1]))[:, np.newaxis, np.newaxis]
@@ -138,24 +138,24 @@ def _between(t: Array, at: Array) -> Array:
 
 
 def _along_x(at: Array) -> Array:
-    """Turned so that people walk along x, whichever way."""
+    """Rotate the positions so that people walk along x, in either direction."""
     step = np.diff(at, axis=0)
     step = step[np.isfinite(step).all(axis=-1)]
     size = np.hypot(step[:, 0], step[:, 1])
     step = step[size < 4.0 * DT]  # jumps
     twice = np.sum((step[:, 0] + 1j * step[:, 1]) ** 2)
     angle = 0.5 * float(np.angle(twice))
-    if abs(angle) < 0.02:  # a corridor that lies along x already
+    if abs(angle) < 0.02:  # the corridor already lies along x
         return at
     c, s = np.cos(angle), np.sin(angle)
     return np.asarray(at @ np.array([[c, -s], [s, c]]))
 
 
 def _windows(x: Array) -> Array:
-    """Windows of 4 m: side by side over a long corridor, one in the middle of a short one.
+    """Return windows of 4 m: side by side in a long corridor, one in the middle of a short one.
 
-    Cameras see those in the middle with everybody around them. What lies beyond is often no
-    corridor: the middle is at 0 where that is among the people, as in most experiments.
+    Cameras see people in the middle with all their neighbours, and the corridor often ends beyond.
+    The middle is at 0 if people walk there, as in most experiments.
     """
     known = x[np.isfinite(x)]
     low, high = np.quantile(known, [_TAIL, 1.0 - _TAIL])
@@ -168,7 +168,7 @@ def _windows(x: Array) -> Array:
 
 
 def _width(at: Array, windows: Array) -> float:
-    """Where people were in the windows, and what the outermost keep from walls, m."""
+    """Return the width of people's positions in the windows, plus their distance from walls, m."""
     x, y = at[..., 0], at[..., 1]
     inside = (x >= windows[0, 0]) & (x < windows[-1, 1])
     if not np.any(inside):

@@ -1,4 +1,4 @@
-"""Messages of a camera: depth in millimetres, colour, and how the camera is made."""
+"""Messages of a camera: depth in millimetres, colour, and camera info."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from crowdbot.core.types.sensor import CameraFrame, Pinhole, SensorInfo
 
 
 class ImageMessage(NamedTuple):
-    """One serialised message, in pieces that are good until the next message is asked for."""
+    """One serialised message, in pieces that are valid until the next message is requested."""
 
     topic: str
     msgtype: str
@@ -26,15 +26,15 @@ class ImageMessage(NamedTuple):
 
 
 class CameraMessages:
-    """What images of one camera become: depth, colour if there is some, a CameraInfo each."""
+    """The messages of one camera's images: depth, colour if available, with a CameraInfo each."""
 
     def __init__(self, name: str, info: SensorInfo, width: int | None = None) -> None:
-        """Prepare.
+        """Prepare the messages.
 
         Args:
-            name: of the sensor: the root of its topics.
-            info: of a sensor with a ``camera``.
-            width: leave out rows and columns so that at most so many columns remain.
+            name: name of the sensor, root of its topics.
+            info: info of a sensor with a ``camera``.
+            width: drop rows and columns so that at most this many columns remain.
         """
         assert info.camera is not None
         self._width = width = width or info.camera.width
@@ -47,7 +47,7 @@ class CameraMessages:
         self._pixels = rows * columns
 
     def __call__(self, frame: CameraFrame) -> Iterator[ImageMessage]:
-        """The messages of one image."""
+        """Yield the messages of one image."""
         stamp = template.stamp(ros.nanoseconds(frame.stamp))
         yield from self._pair("depth", "16UC1", stamp, thinned(frame.depth_mm, self._width))
         if frame.colour is not None:
@@ -66,7 +66,7 @@ class CameraMessages:
 
 
 def _image(head: Any, encoding: str, shape: tuple[int, int, int]) -> Template:
-    """Places: stamp; bytes of the pixels, rows by columns by bytes."""
+    """Return a template. Places: stamp; bytes of the pixels, rows by columns by bytes."""
     rows, columns, depth = shape
     data = np.full(rows * columns * depth, 0x5A, np.uint8)
     message = ros.new(
@@ -83,7 +83,7 @@ def _image(head: Any, encoding: str, shape: tuple[int, int, int]) -> Template:
 
 
 def _camera_info(head: Any, camera: Pinhole, size: tuple[int, int], grid: Grid) -> Any:
-    """Of images (rows, columns) that have the pixels of a grid."""
+    """Return the CameraInfo of images (rows, columns) with the pixels of a grid."""
     f, (column, row) = camera.focal / grid.every, camera.centre
     cx, cy = (column - grid.column) / grid.every, (row - grid.row) / grid.every
     return ros.new(

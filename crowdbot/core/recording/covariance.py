@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from struct import Struct
 
-#: m^2, rad^2, (m/s)^2: where nothing is known to be worse. A matrix of zeros means "not known".
+#: m^2, rad^2, (m/s)^2: default covariances. A matrix of zeros would mean "unknown".
 LEAST = 1e-6
 _MATRIX = Struct("<36d")
 #: Bits of the numbers: a covariance needs no more, and short ones take less room.
@@ -18,20 +18,20 @@ _BITS = 12
 
 
 class OdometryCovariance:
-    """Of one odometry, reading by reading."""
+    """Covariances of one odometry, reading by reading."""
 
     def __init__(self, deviations: Sequence[float]) -> None:
-        """``deviations``: as `SensorInfo.deviations` has them for odometry."""
+        """Build the covariances. ``deviations``: `SensorInfo.deviations` for odometry."""
         self._along, self._turn, self._drift = deviations
         self._last: tuple[int, float, float, float] | None = None
         self._period = 0.0
         self._xx = self._xy = self._yy = self._xa = self._ya = self._aa = 0.0
 
     def __call__(self, ns: int, values: Sequence[float]) -> tuple[bytes, bytes]:
-        """Covariances of pose and twist as 36 float64 each, rows by columns.
+        """Return covariances of pose and twist as 36 float64 each, rows by columns.
 
         Args:
-            ns: time of the reading, never before the last one.
+            ns: time of the reading, never decreasing.
             values: x, y, yaw, v, w, and perhaps vy; m, rad, s.
         """
         x, y, yaw, v, _, *aside = values
@@ -54,7 +54,7 @@ class OdometryCovariance:
         return _matrix(pose), _matrix(twist)
 
     def _grow(self, dt: float, dx: float, dy: float) -> None:
-        """Go on by a motion, m, in ``dt`` s."""
+        """Propagate the covariance by a motion, m, in ``dt`` s."""
         self._period = dt
         xa, ya, aa = self._xa, self._ya, self._aa
         self._xx += -2.0 * dy * xa + dy * dy * aa
@@ -62,7 +62,7 @@ class OdometryCovariance:
         self._yy += 2.0 * dx * ya + dx * dx * aa
         self._xa -= dy * aa
         self._ya += dx * aa
-        part = self._along**2  # of the distance squared, along the motion
+        part = self._along**2  # squared distance, along the motion
         self._xx += part * dx * dx
         self._xy += part * dx * dy
         self._yy += part * dy * dy

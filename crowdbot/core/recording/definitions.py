@@ -1,8 +1,8 @@
-"""Definitions of crowdbot's own messages, in the language of ROS."""
+"""Definitions of crowdbot's own messages, in the ROS interface language."""
 
 from __future__ import annotations
 
-#: Definitions of the messages that no ROS distribution has. Arrays of tables are row by row.
+#: Definitions of messages that no ROS distribution contains. Tables are stored row by row.
 DEFINITIONS = {
     "Table": "uint32[] shape\nfloat64[] data",
     "Sensor": (
@@ -44,7 +44,7 @@ DEFINITIONS = {
         "float32[] vy\nfloat32[] heading\nfloat32[] radius"
     ),
 }
-#: Messages of live connections, which no recording holds.
+#: Messages of live connections, which recordings do not contain.
 LIVE_DEFINITIONS = {
     "Reading": "string sensor\nfloat64 stamp\ncrowdbot_msgs/Table values",
     "Observation": (

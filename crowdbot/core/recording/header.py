@@ -1,4 +1,4 @@
-"""RecordingHeader: what does not change during a run; the first message of a recording."""
+"""RecordingHeader: the constants of a run; the first message of a recording."""
 
 from __future__ import annotations
 
@@ -58,11 +58,11 @@ class RecordingHeader:
 
     Attributes:
         hashes: name -> hash, e.g. ``spec`` and ``realisation``.
-        robot, agents: None in a run without.
+        robot, agents: None if the run has none.
         walls: (S, 4) segments x0, y0, x1, y1, m.
         goal_zone: (K, 2) polygon, m.
-        namespace: before topics and frames of one robot of several. It is not written: the topic
-            of the header says it.
+        namespace: prefix of topics and frames of one robot of several. It is not written, since the
+            header's topic contains it.
     """
 
     scenario: str
@@ -75,7 +75,7 @@ class RecordingHeader:
     namespace: str = ""
 
     def to_message(self) -> Any:
-        """As ``crowdbot_msgs/msg/RunHeader``."""
+        """Return the header as ``crowdbot_msgs/msg/RunHeader``."""
         return ros.new(
             "crowdbot_msgs/RunHeader",
             version=VERSION,
@@ -93,7 +93,7 @@ class RecordingHeader:
 
     @classmethod
     def from_message(cls, message: Any) -> RecordingHeader:
-        """Inverse of `to_message`.
+        """Read the header from its message.
 
         Raises:
             InputError: the message has a format that is not read, or contradicts itself.
@@ -140,9 +140,9 @@ def check_format(path: Path, data: bytes) -> None:
 
 
 def tilts_message(sensors: Mapping[str, SensorInfo]) -> Any | None:
-    """Roll and pitch of sensors as ``crowdbot_msgs/SensorTilts``; None where all are level.
+    """Return roll and pitch of sensors as ``crowdbot_msgs/SensorTilts``; None if all are level.
 
-    They came after the header, whose bytes stay those of runs without.
+    They are separate so that the header's bytes stay the same without tilts.
     """
     tilted = {name: info.tilt for name, info in sensors.items() if any(info.tilt)}
     if not tilted:
@@ -156,10 +156,10 @@ def tilts_message(sensors: Mapping[str, SensorInfo]) -> Any | None:
 
 
 def with_tilts(sensors: Mapping[str, SensorInfo], message: Any) -> dict[str, SensorInfo]:
-    """The sensors of a header with what a `tilts_message` says; it may name others.
+    """Return the sensors of a header with the tilts of a message, which may name others.
 
     Raises:
-        InputError: its lists are of unequal length.
+        InputError: its lists have different lengths.
     """
     if not len(message.sensor) == len(message.roll) == len(message.pitch):
         raise InputError("the recording lists tilts of sensors of unequal number")
@@ -169,7 +169,7 @@ def with_tilts(sensors: Mapping[str, SensorInfo], message: Any) -> dict[str, Sen
 
 
 def with_frames(header: RecordingHeader) -> RecordingHeader:
-    """The header with the frames of its sensors in its namespace, if it has one."""
+    """Return the header with the frames of its sensors in its namespace, if it has one."""
     if not header.namespace:
         return header
     return replace(
@@ -196,7 +196,7 @@ def _robot_message(robot: RobotHeader) -> Any:
 
 
 def limit_numbers(limits: RobotLimits) -> list[float]:
-    """The last one, of a robot that goes sideways, came later and is left out where it is 0."""
+    """Return the limits as numbers; the last one, for sideways motion, is omitted if 0."""
     numbers = [getattr(limits, name) for name in _LIMITS]
     return numbers if limits.vy_max else numbers[:-1]
 
@@ -234,7 +234,7 @@ def _agents(message: Any) -> AgentsHeader:
 
 
 def sensor_message(name: str, info: SensorInfo) -> Any:
-    """What a sensor says of itself, as ``crowdbot_msgs/Sensor``."""
+    """Return a sensor's description as ``crowdbot_msgs/Sensor``."""
     return ros.new(
         "crowdbot_msgs/Sensor",
         name=name,

@@ -1,4 +1,4 @@
-"""Polygons and markers, which 3-D viewers draw."""
+"""Polygons and markers for 3-D viewers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.core.types.motion import Pose
 
 
 def polygon(ns: int, corners: Array) -> Any:
-    """A polygon on the floor; (K, 2), m."""
+    """Return a polygon on the floor; (K, 2), m."""
     points = [ros.new("geometry_msgs/Point32", x=x, y=y, z=0.0) for x, y in corners.tolist()]
     return ros.new(
         "geometry_msgs/PolygonStamped",
@@ -30,7 +30,7 @@ def marker(
     rgba: tuple[float, float, float, float],
     points: Array,
 ) -> Any:
-    """A list marker in the map frame; ``points`` (K, 3), m; ``kind`` as in Marker.msg."""
+    """Return a list marker in the map frame; ``points`` (K, 3), m; ``kind`` as in Marker.msg."""
     cls = ros.message_class("visualization_msgs/Marker")
     return cls(
         header=ros.header(ns, "map"),
@@ -61,12 +61,12 @@ def marker(
 
 
 def marker_array(markers: Iterable[Any]) -> Any:
-    """Several markers in one message."""
+    """Return several markers in one message."""
     return ros.new("visualization_msgs/MarkerArray", markers=list(markers))
 
 
 def delete_all_markers(ns: int = 0) -> Any:
-    """A marker that takes away those before it."""
+    """Return a marker that deletes earlier ones."""
     gone = marker(ns, "", "CUBE", (1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 0.0), np.zeros((0, 3)))
     gone.action = gone.DELETEALL
     return gone

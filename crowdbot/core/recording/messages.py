@@ -1,4 +1,4 @@
-"""ROS 2 messages of a recording, made of numbers: times, poses, readings, tables."""
+"""ROS 2 messages of a recording, from numbers: times, poses, readings, tables."""
 
 from __future__ import annotations
 
@@ -31,27 +31,27 @@ _NO_COVARIANCE = np.zeros(36)
 
 
 def nanoseconds(t: float) -> int:
-    """Simulated seconds (>= 0) as MCAP and ROS count them."""
+    """Convert simulated seconds (>= 0) to nanoseconds, as in MCAP and ROS."""
     return round(t * 1e9)
 
 
 def clock(ns: int) -> Any:
-    """Simulated time."""
+    """Return simulated time as a message."""
     return new("rosgraph_msgs/Clock", clock=_time(ns))
 
 
 def header(ns: int, frame: str) -> Any:
-    """Stamp and frame."""
+    """Return stamp and frame."""
     return new("std_msgs/Header", stamp=_time(ns), frame_id=frame)
 
 
 def twist(v: float, vy: float, w: float) -> Any:
-    """Body velocity, m/s and rad/s."""
+    """Return body velocity, m/s and rad/s."""
     return new("geometry_msgs/Twist", linear=vector(v, vy, 0.0), angular=vector(0.0, 0.0, w))
 
 
 def pose_stamped(ns: int, frame: str, pose: Pose) -> Any:
-    """A pose in the plane."""
+    """Return a pose in the plane."""
     return new("geometry_msgs/PoseStamped", header=header(ns, frame), pose=_pose(*pose))
 
 
@@ -63,7 +63,7 @@ def transform(
     yaw: float,
     tilt: tuple[float, float] = (0.0, 0.0),
 ) -> Any:
-    """Pose of ``child`` in ``parent``; ``tilt`` is its roll and pitch, rad."""
+    """Return the pose of ``child`` in ``parent``; ``tilt`` is its roll and pitch, rad."""
     turned = _quaternion(yaw)
     if any(tilt):
         x, y, z, w = quaternion(*tilt, yaw)
@@ -78,7 +78,7 @@ def transform(
 
 
 def transforms(items: Iterable[Any]) -> Any:
-    """Several transforms in one message."""
+    """Return several transforms in one message."""
     return new("tf2_msgs/TFMessage", transforms=list(items))
 
 
@@ -89,10 +89,11 @@ def odometry(
     covariances: tuple[Array, Array] | None = None,
     frame: str = "odom",
 ) -> Any:
-    """What the robot believes: x, y, yaw, v, w, and perhaps vy, in its frame ``odom``.
+    """Return the robot's estimate: x, y, yaw, v, w, and perhaps vy, in its frame ``odom``.
 
     Args:
-        covariances: of pose and twist, (36,) each, as in ``nav_msgs/Odometry``; None: not known.
+        covariances: covariances of pose and twist, (36,) each, as in ``nav_msgs/Odometry``; None:
+            unknown.
     """
     x, y, yaw, v, w, *aside = values.tolist()
     vy = aside[0] if aside else 0.0
@@ -109,7 +110,7 @@ def odometry(
 
 
 def laser_scan(ns: int, info: SensorInfo, angles: Array, ranges: Array) -> Any:
-    """A scan of evenly spaced ``angles`` (R,), rad; ``ranges`` (R,) m, inf where nothing is."""
+    """Return a scan of evenly spaced ``angles`` (R,), rad; ``ranges`` (R,) m, inf for no hit."""
     step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
     return new(
         "sensor_msgs/LaserScan",
@@ -127,7 +128,7 @@ def laser_scan(ns: int, info: SensorInfo, angles: Array, ranges: Array) -> Any:
 
 
 def range_reading(ns: int, info: SensorInfo, distance: float) -> Any:
-    """The reading of a sonar or an infrared sensor; ``distance`` m, inf where nothing is."""
+    """Return the reading of an ultrasonic or infrared sensor; ``distance`` m, inf for no hit."""
     edges = np.zeros(2) if info.angles is None else info.angles
     cls = message_class("sensor_msgs/Range")
     return cls(
@@ -141,7 +142,7 @@ def range_reading(ns: int, info: SensorInfo, distance: float) -> Any:
 
 
 def point_cloud(ns: int, info: SensorInfo, points: NDArray[np.float32]) -> Any:
-    """An organised cloud; ``points`` (L, C, 3) in the sensor frame, m, NaN where nothing is."""
+    """Return an organised cloud; ``points`` (L, C, 3) in the sensor frame, m, NaN for no hit."""
     rows, columns, _ = points.shape
     field, number = message_class("sensor_msgs/PointField"), points.itemsize
     fields = [
@@ -163,10 +164,10 @@ def point_cloud(ns: int, info: SensorInfo, points: NDArray[np.float32]) -> Any:
 
 
 def imu(ns: int, frame: str, values: Array, deviations: Sequence[float] = (0.0, 0.0)) -> Any:
-    """Angular rate (3), rad/s, and specific force (3), m/s^2; the orientation is not measured.
+    """Return angular rate (3), rad/s, and specific force (3), m/s^2; without orientation.
 
     Args:
-        deviations: standard deviations of both; 0: not known.
+        deviations: standard deviations of both; 0: unknown.
     """
     unknown = np.zeros(9)
     rate, force = (np.diag(np.full(3, d * d)).ravel() for d in deviations)
@@ -183,14 +184,14 @@ def imu(ns: int, frame: str, values: Array, deviations: Sequence[float] = (0.0, 
 
 
 def wrench(ns: int, frame: str, values: Array) -> Any:
-    """Horizontal force x, y (N) and torque about z (N m)."""
+    """Return horizontal force x, y (N) and torque about z (N m)."""
     x, y, torque = values.tolist()
     pushed = new("geometry_msgs/Wrench", force=vector(x, y, 0.0), torque=vector(0.0, 0.0, torque))
     return new("geometry_msgs/WrenchStamped", header=header(ns, frame), wrench=pushed)
 
 
 def numbers(values: Array) -> Any:
-    """The values of a sensor of unknown category, flattened row by row."""
+    """Return the values of a sensor of unknown category, flattened row by row."""
     dims, stride = [], values.size
     for size in values.shape:
         dims.append(new("std_msgs/MultiArrayDimension", label="", size=size, stride=stride))
@@ -201,12 +202,12 @@ def numbers(values: Array) -> Any:
 
 
 def plane_pose(pose: Pose) -> Any:
-    """A pose on the floor as ``geometry_msgs/Pose``."""
+    """Return a pose on the floor as ``geometry_msgs/Pose``."""
     return _pose(*pose)
 
 
 def table(values: ArrayLike | None) -> Any:
-    """An array of any shape with at least one axis; None becomes a table without axes."""
+    """Return an array with at least one axis as a table; None gives a table without axes."""
     if values is None:
         return new("crowdbot_msgs/Table", shape=np.zeros(0, np.uint32), data=np.zeros(0))
     array = np.ascontiguousarray(values, np.float64)
@@ -215,7 +216,7 @@ def table(values: ArrayLike | None) -> Any:
 
 
 def from_table(message: Any) -> Array | None:
-    """Inverse of `table`."""
+    """Return the array of a `table` message."""
     data: NDArray[np.float64] = message.data
     return data.reshape(message.shape.tolist()) if message.shape.size else None
 
@@ -225,17 +226,17 @@ def _time(ns: int) -> Any:
 
 
 def vector(x: float, y: float, z: float) -> Any:
-    """As ``geometry_msgs/Vector3``."""
+    """Return a ``geometry_msgs/Vector3``."""
     return new("geometry_msgs/Vector3", x=x, y=y, z=z)
 
 
 def point(x: float, y: float, z: float) -> Any:
-    """As ``geometry_msgs/Point``."""
+    """Return a ``geometry_msgs/Point``."""
     return new("geometry_msgs/Point", x=x, y=y, z=z)
 
 
 def half_turn(yaw: float) -> tuple[float, float]:
-    """Last two numbers, z and w, of the quaternion of a turn about z."""
+    """Return z and w of the quaternion of a rotation about z."""
     return math.sin(0.5 * yaw), math.cos(0.5 * yaw)
 
 

@@ -1,6 +1,6 @@
-"""One recording of several robots: each has its topics below ``/NAME`` and its frames, too.
+"""Namespaces in a recording of several robots: topics below ``/NAME``, and frames too.
 
-What all share stays where it is: time, transforms, people, walls, map.
+Shared topics have no namespace: time, transforms, people, walls, map.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from crowdbot.core.recording.container.chunk import Piece
 from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.topics import Topic
 
-#: Topics that robots write to together.
+#: Topics that all robots share.
 _SHARED = frozenset({Topic.TF, Topic.TF_STATIC})
 
 
 class NamespacedFile(McapFile):
-    """A file in which one robot writes to its own topics; who owns the file closes it."""
+    """A view of a file in which one robot writes its own topics; the owner closes the file."""
 
     def __init__(self, file: McapFile, namespace: str) -> None:
         self._file, self._root = file, f"/{namespace}"
@@ -32,15 +32,15 @@ class NamespacedFile(McapFile):
         self._file.put_bytes(self._named(topic), ns, msgtype, *pieces, latched=latched)
 
     def flush(self) -> None:
-        """Nothing: who owns the file does it."""
+        """Do nothing; the owner flushes the file."""
 
     def close(self) -> None:
-        """Nothing: who owns the file does it."""
+        """Do nothing; the owner closes the file."""
 
     def _named(self, topic: str) -> str:
         return topic if topic in _SHARED else f"{self._root}{topic}"
 
 
 def in_namespace(namespace: str, frame: str) -> str:
-    """A robot's frame as others know it: ``NAME/frame``, or itself where there is no namespace."""
+    """Return a robot's frame for others: ``NAME/frame``, or unchanged without a namespace."""
     return f"{namespace}/{frame}" if namespace else frame

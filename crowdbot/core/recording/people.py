@@ -1,4 +1,4 @@
-"""People as messages: a struct of arrays for programs, one list of spheres for the eye."""
+"""People as messages: a struct of arrays for programs, a list of spheres for viewers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from crowdbot.core.types.arrays import Array
 
 PEOPLE = "crowdbot_msgs/msg/Pedestrians"
 MARKER = "visualization_msgs/msg/Marker"
-#: Slower people keep the heading they had, m/s.
+#: Slower people keep their last heading, m/s.
 HEADING_MIN_SPEED = 0.1
 #: Numbers for ROS tools are multiples of 1/1024 m, m/s, rad: short mantissas compress to a third.
 _GRID = 1024.0
@@ -23,7 +23,7 @@ _COLOUR = (0.36, 0.55, 0.78, 1.0)
 
 
 class PeopleMessages:
-    """Makes the messages of one crowd; remembers headings of people who stand."""
+    """Builds the messages of one crowd; remembers headings of standing people."""
 
     def __init__(self, agents: AgentsHeader) -> None:
         self._id = np.ascontiguousarray(agents.id, np.int64)
@@ -31,10 +31,10 @@ class PeopleMessages:
         self._heading = np.zeros(len(self._id))
         self._height = float(np.median(agents.radius)) if len(self._id) else 0.3
         self._marker = _MarkerTemplate(self._spheres(np.full((1, 3), 1.5)), 1.5)
-        self._people: dict[int, template.Template] = {}  # by how many are there
+        self._people: dict[int, template.Template] = {}  # by number of people
 
     def pedestrians(self, ns: int, state: Array) -> bytes:
-        """``crowdbot_msgs/msg/Pedestrians`` of those who are there; ``state`` is (4, M)."""
+        """Return ``crowdbot_msgs/msg/Pedestrians`` of present people; ``state`` is (4, M)."""
         _, _, vx, vy = state
         moving = np.hypot(vx, vy) > HEADING_MIN_SPEED
         np.copyto(self._heading, np.arctan2(vy, vx), where=moving)
@@ -49,7 +49,7 @@ class PeopleMessages:
         return blank.fill(template.stamp(ns), *[column.tobytes() for column in everything])
 
     def marker(self, ns: int, state: Array) -> bytes:
-        """The serialised sphere list of those who are there; ``state`` is (4, M)."""
+        """Return the serialised sphere list of present people; ``state`` is (4, M)."""
         there = _present(state)
         xy = _rounded(state[:2, there])
         points = np.full((xy.shape[1], 3), self._height)
@@ -73,15 +73,15 @@ def _present(state: Array) -> NDArray[np.bool_]:
 
 
 class _MarkerTemplate:
-    """A serialised list marker whose points are swapped for others.
+    """A serialised list marker with replaceable points.
 
-    rosbags serialises points one object at a time, which alone would cost 2 ms per simulated
-    second of 200 people. In CDR they are one block of doubles, preceded by their number; 24 bytes
-    each, so that whatever follows keeps its alignment.
+    rosbags serialises points one object at a time, which would take 2 ms per simulated second with
+    200 people. In CDR they are one block of doubles, preceded by their number; 24 bytes each, so
+    that whatever follows keeps its alignment.
     """
 
     def __init__(self, marker: Any, coordinate: float) -> None:
-        """``marker`` has one point, all of whose coordinates are ``coordinate``."""
+        """Build the template. ``marker`` has one point, with all coordinates ``coordinate``."""
         data = ros.to_cdr(marker)
         start = data.index(np.full(3, coordinate).tobytes())
         count = data.rindex(np.uint32(1).tobytes(), 0, start)
@@ -89,7 +89,7 @@ class _MarkerTemplate:
         self._head, self._after = data[:4], data[start + 24 :]
 
     def fill(self, ns: int, points: Array) -> bytes:
-        """The marker with ``points`` (K, 3), K > 0, stamped ``ns``."""
+        """Return the marker with ``points`` (K, 3), K > 0, stamped ``ns``."""
         stamp, count = template.stamp(ns), len(points).to_bytes(4, "little")
         return b"".join(
             (self._head, stamp, self._before, count, self._padding, points.tobytes(), self._after)

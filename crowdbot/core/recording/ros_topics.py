@@ -25,28 +25,28 @@ class ToolFile(Protocol):
     """Takes messages, such as a recording."""
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
-        """A message, logged at ``ns`` nanoseconds of simulated time."""
+        """Take a message, logged at ``ns`` nanoseconds of simulated time."""
 
     def put_bytes(
         self, topic: str, ns: int, msgtype: str, *pieces: Piece, latched: bool = False
     ) -> None:
-        """A message that is already serialised, in one or more pieces."""
+        """Take a serialised message, in one or more pieces."""
 
 
 class ToolTopics:
-    """Writes clock, frames, map, robot, commands, people, path and contacts into a file."""
+    """Writes clock, frames, map, robot, commands, people, path and contacts to a file."""
 
     def __init__(
         self, file: ToolFile, header: RecordingHeader, description: str, *, whole: bool = True
     ) -> None:
-        """Write what never moves.
+        """Write the static messages.
 
         Args:
-            file: that of the recording.
+            file: file of the recording.
             header: constants of the run.
-            description: the robot's URDF; empty where there is none.
-            whole: False writes of the samples only what a viewer needs: where the robot is as
-                often as scans are kept, and where people are.
+            description: the robot's URDF; may be empty.
+            whole: False limits samples to a viewer's needs: the robot's pose at the rate of scans,
+                and people's positions.
         """
         self._file, self._whole = file, whole
         agents, robot = header.agents, header.robot
@@ -65,7 +65,7 @@ class ToolTopics:
         self._scenery(header, description)
 
     def state(self, ns: int, robot: Sequence[float] | None, agents: Array | None) -> None:
-        """One sample of the log: x, y, yaw of the robot; people (4, M); either may be missing."""
+        """Write one sample: x, y, yaw of the robot; people (4, M); either may be missing."""
         if self._whole and not self._namespace:
             self._put(Topic.CLOCK, ns, self._clock, template.stamp(ns))
         if robot is not None:
@@ -97,7 +97,7 @@ class ToolTopics:
             self._file.put_bytes(Topic.PEOPLE_MARKERS, ns, ARROWS_TYPE, data)
 
     def measured(self, sensor: str, ns: int, msgtype: str, data: bytes, values: Array) -> None:
-        """A reading once more, under the name that users of ROS expect; the frame of odometry."""
+        """Write a reading again under its usual ROS name; and the frame of odometry."""
         usual = self._usual.get(sensor)
         if usual is not None:
             self._file.put_bytes(usual, ns, msgtype, data)
@@ -107,7 +107,7 @@ class ToolTopics:
             self._put(Topic.TF_ODOMETRY, ns, self._believed, *parts)
 
     def command(self, ns: int, command: Command) -> None:
-        """What the planner wants the robot to do."""
+        """Write the planner's command."""
         parts = template.two(command.v, command.vy), template.one(command.w)
         self._put(Topic.COMMAND, ns, self._twist, *parts)
 

@@ -1,6 +1,6 @@
-"""RunLog: turns states into the rows of a recording: samples, trips, contacts.
+"""RunLog: converts states to the rows of a recording: samples, trips, contacts.
 
-The recording is the run: scores, replay and hashes are all computed from what it reads back to.
+The recording defines the run: scores, replay and hashes are computed from its contents.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class RunLog:
         """Start a log.
 
         Args:
-            writer: of the recording.
+            writer: writer of the recording.
             agent_id: (N,) numbers of the people.
             sideways: whether the robot's velocity may point elsewhere than it looks.
             people: whether people and their trips are recorded, or only contacts with them: those
@@ -53,7 +53,7 @@ class RunLog:
         self._id = agent_id
         self._aim = aim
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
-        self._arrivals = np.zeros(len(agent_id))  # what is recorded already
+        self._arrivals = np.zeros(len(agent_id))  # already recorded
         self._agent_contacts = np.zeros(len(agent_id))
         self.contacts = 0
         self.trips = 0
@@ -62,7 +62,7 @@ class RunLog:
         self._step_sum = self._step_max = 0.0
 
     def sample(self, t: float, robot: RobotState | None, crowd: Array | None) -> None:
-        """One row of the log grid: the robot's state and the flat crowd state, either missing."""
+        """Record one sample: the robot's state and the flat crowd state, either may be missing."""
         agents = jump = goals = None
         if crowd is not None and self._keeps_people:
             _, people = s.view(crowd)
@@ -85,7 +85,7 @@ class RunLog:
         return trips and (self._robot is None or events.item(1 + self._robot) == self.contacts)
 
     def record_events(self, crowd: Array) -> None:
-        """Record trips and contacts that ended since the last call; to be called every tick."""
+        """Record trips and contacts that ended since the last call; call every tick."""
         if self._keeps_people and int(crowd[s.TRIPS]) != self.trips:
             self._record_trips(s.view(crowd)[1])
             self.trips = int(crowd[s.TRIPS])
@@ -99,7 +99,7 @@ class RunLog:
             self.contacts = int(felt[s.CONTACTS])
 
     def command(self, t: float, command: Command, seconds: float, clamped: bool) -> None:
-        """One step of the planner."""
+        """Record one step of the planner."""
         self.clamped += clamped
         self._steps += 1
         self._step_sum += seconds
@@ -108,12 +108,12 @@ class RunLog:
         self.writer.planner_time(t, seconds)
 
     def step_times(self) -> dict[str, float]:
-        """Mean and largest wall time of a planner step, s."""
+        """Return mean and largest wall time of a planner step, s."""
         mean = self._step_sum / self._steps if self._steps else 0.0
         return {"mean": round(mean, 6), "max": round(self._step_max, 6)}
 
     def finish(self, t: float, crowd: Array | None) -> None:
-        """Record what is still going on at the end: trips that were not finished, contacts."""
+        """Record unfinished trips and contacts at the end."""
         if crowd is None:
             return
         self.record_events(crowd)
@@ -137,7 +137,7 @@ class RunLog:
         return *row, *velocity
 
     def _record_trips(self, people: Array) -> None:
-        """At most one arrival per agent lies between two ticks."""
+        """Record trips: an agent has at most one arrival between two ticks."""
         for i in np.flatnonzero(people[:, s.ARRIVALS] != self._arrivals):
             start, end = people[i, s.LAST_START], people[i, s.ARRIVED]
             self.writer.trip(int(self._id[i]), float(start), float(end), True)
@@ -160,13 +160,13 @@ class RunLog:
 def _take_sample(
     people: Array, aim: int, jumps: Array, agents: Array, goals: Array, jump: NDArray[np.bool_]
 ) -> None:
-    """Write the columns of a sample, in one pass over the crowd.
+    """Write the columns of a sample in one pass over the crowd.
 
     Args:
         people: (M, C) rows of the crowd's state.
-        aim: column where the point begins to which people walk.
-        jumps: (M,) counted until the latest sample, and then until this one.
-        agents, goals, jump: (4, M), (2, M), (M,) results, as `RecordingWriter.state` takes them.
+        aim: first column of people's waypoints.
+        jumps: (M,) counts until the last sample, updated to this one.
+        agents, goals, jump: (4, M), (2, M), (M,) results, arguments of `RecordingWriter.state`.
     """
     for i in range(people.shape[0]):
         present = people[i, s.WAITING] == s.PRESENT

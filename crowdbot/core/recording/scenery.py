@@ -17,18 +17,18 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 
 BASE = "base_footprint"
-#: Frames that the recording defines itself; no sensor may own them.
+#: Frames defined by the recording, which no sensor may have.
 FRAMES = ("map", "odom", BASE, "base_link")
 _WALL_COLOUR = (0.3, 0.3, 0.3, 1.0)
-#: Cells of a map: size (m), rim around the walls (m), and at most so many in each direction.
+#: Map: size of a cell (m), margin around the walls (m), and largest number of cells per direction.
 CELL, _RIM, _MOST_CELLS = 0.05, 0.5, 4000
 _OCCUPIED = 100
 
 
 def static_frames(header: RecordingHeader) -> list[Any]:
-    """Transforms ``map`` to ``odom``, ``base_footprint`` to ``base_link``, and to all sensors.
+    """Return the transforms of ``map``, ``odom``, ``base_footprint``, ``base_link`` and sensors.
 
-    None without a robot, as what people of a fleet are recorded with: nobody's odometry.
+    Empty without a robot, as for a fleet's people, who have no odometry.
     """
     robot = header.robot
     if robot is None:
@@ -50,26 +50,26 @@ def static_frames(header: RecordingHeader) -> list[Any]:
 
 
 def wall_lines(walls: Array) -> Any:
-    """Walls (S, 4), m, as one list of lines."""
+    """Return walls (S, 4), m, as one list of lines."""
     ends = np.zeros((2 * len(walls), 3))
     ends[:, :2] = np.asarray(walls).reshape(-1, 2)
     return markers.marker(0, "walls", "LINE_LIST", (0.1, 0.0, 0.0), _WALL_COLOUR, ends)
 
 
 def goal_pose(ns: int, header: RecordingHeader) -> Any | None:
-    """The goal as ``geometry_msgs/PoseStamped``; None where there is none."""
+    """Return the goal as ``geometry_msgs/PoseStamped``; None without a goal."""
     if header.robot is None or header.robot.goal is None:
         return None
     return ros.pose_stamped(ns, "map", Pose(*header.robot.goal, 0.0))
 
 
 def occupancy_grid(ns: int, walls: Array, cell: float = CELL) -> Any:
-    """A map as ``nav_msgs/OccupancyGrid``: what a wall touches is occupied, all else free.
+    """Return a map as ``nav_msgs/OccupancyGrid``: cells touched by a wall are occupied.
 
     Args:
         ns: its stamp.
         walls: (S, 4) segments, m; at least one.
-        cell: side of a cell, m; larger where the map would have more than 4000 cells a side.
+        cell: side of a cell, m; larger if the map would exceed 4000 cells per side.
     """
     ends = np.asarray(walls, np.float64).reshape(-1, 2)
     low, high = ends.min(axis=0) - _RIM, ends.max(axis=0) + _RIM
@@ -96,7 +96,7 @@ def occupancy_grid(ns: int, walls: Array, cell: float = CELL) -> Any:
 def _cells(
     start: tuple[float, float], end: tuple[float, float], low: Array, cell: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Columns and rows of the cells along a segment, a quarter of a cell apart."""
+    """Return columns and rows of the cells along a segment, sampled every quarter cell."""
     length = math.dist(start, end)
     along = np.linspace(0.0, 1.0, 2 + math.ceil(4.0 * length / cell))[:, np.newaxis]
     points = np.asarray(start) + along * (np.asarray(end) - np.asarray(start))

@@ -42,7 +42,7 @@ class Topic(StrEnum):
 
 
 class SensorTopic(NamedTuple):
-    """A topic, and the function that makes its messages from (ns, values)."""
+    """A topic, and the function that builds its messages from (ns, values)."""
 
     name: str
     msgtype: str
@@ -80,7 +80,7 @@ def usual_names(sensors: Mapping[str, SensorInfo]) -> dict[str, str]:
 
 
 def scan_topic(sensor: str) -> str:
-    """Topic of a lidar's scans."""
+    """Return the topic of a lidar's scans."""
     return _topic(sensor, "scan")
 
 

@@ -1,6 +1,6 @@
-"""The types of a recording's messages: rosbags' for ROS 2 Humble, and crowdbot's own.
+"""Message types of a recording: rosbags' types for ROS 2 Humble, and crowdbot's own.
 
-Serialisation is rosbags'. Messages are plain objects of its type store; `new` makes one by name.
+rosbags serialises. Messages are plain objects of its type store; `new` builds one by name.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ def _store() -> Any:
 
 
 def ros2_store() -> Any:
-    """The types of a recording, for rosbags."""
+    """Return the types of a recording, for rosbags."""
     return _store()
 
 
 @cache
 def ros1_store() -> Any:
-    """The types of ROS 1 noetic, and crowdbot's."""
+    """Return the types of ROS 1 noetic, and crowdbot's."""
     store = get_typestore(Stores.ROS1_NOETIC)
     types: dict[str, Any] = {}
     for name, text in DEFINITIONS.items():
@@ -65,24 +65,24 @@ def declare(definitions: Mapping[str, str]) -> None:
 
 
 def new(kind: str, **fields: Any) -> Any:
-    """A message of type ``package/Name``."""
+    """Return a message of type ``package/Name``."""
     return message_class(kind)(**fields)
 
 
 @cache
 def message_class(kind: str) -> Any:
-    """The class of messages of type ``package/Name``."""
+    """Return the class of messages of type ``package/Name``."""
     package, _, name = kind.partition("/")
     return _store().types[f"{package}/msg/{name}"]
 
 
 def definition(msgtype: str) -> bytes:
-    """The text of a type and of all it consists of, as MCAP's ``ros2msg`` encoding wants it."""
+    """Return the definition of a type and its parts, for MCAP's ``ros2msg`` encoding."""
     return str(_store().generate_msgdef(msgtype, ros_version=2)[0]).encode()
 
 
 def message_type(msgtype: str) -> Any:
-    """The class of a type; both ``package/Name`` and ``package/msg/Name`` are understood.
+    """Return the class of a type, given as ``package/Name`` or ``package/msg/Name``.
 
     Raises:
         KeyError: there is no such type.
@@ -92,7 +92,10 @@ def message_type(msgtype: str) -> Any:
 
 
 def field_types(msgtype: str) -> dict[str, str] | None:
-    """Field -> type (``float32[]``, ``float64[36]``, ``std_msgs/Header``); None: no such type."""
+    """Return field -> type (``float32[]``, ``float64[36]``, ``std_msgs/Header``).
+
+    None if unknown.
+    """
     package, _, name = msgtype.replace("/msg/", "/").partition("/")
     found = _store().fielddefs.get(f"{package}/msg/{name}")
     if found is None:
@@ -110,24 +113,24 @@ def _field_type(node: Any, what: Any) -> str:
 
 
 def definition_text(msgtype: str, ros_version: int) -> str:
-    """The text of a type and of all it consists of; of ROS 1 or ROS 2."""
+    """Return the definition of a type and its parts for ROS 1 or ROS 2."""
     package, _, name = msgtype.replace("/msg/", "/").partition("/")
     full = f"{package}/msg/{name}"
     return str(_store().generate_msgdef(full, ros_version=ros_version)[0])
 
 
 def type_hash(msgtype: str) -> str:
-    """The hash by which ROS 2 tells versions of a type apart: ``RIHS01_`` and 64 hex digits."""
+    """Return the ROS 2 hash of a type's version: ``RIHS01_`` and 64 hex digits."""
     return f"RIHS01_{_store().hash_rihs01(msgtype).removeprefix('RIHS01_')}"
 
 
 def to_cdr(message: Any) -> bytes:
-    """Serialise (little-endian CDR with its four byte head)."""
+    """Serialise as little-endian CDR with its four byte header."""
     return bytes(_store().serialize_cdr(message, message.__msgtype__))
 
 
 def to_ros1(data: bytes, msgtype: str) -> bytes:
-    """CDR as ROS 1 has the same message; ``crowdbot_msgs`` too."""
+    """Convert CDR to the same message in ROS 1, also for ``crowdbot_msgs``."""
     return bytes(_store().cdr_to_ros1(data, msgtype))
 
 

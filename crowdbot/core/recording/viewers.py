@@ -19,11 +19,11 @@ from crowdbot.core.types.motion import Pose
 PATH_TYPE, ARROWS_TYPE = "nav_msgs/msg/Path", "visualization_msgs/msg/MarkerArray"
 #: People one by one are large, and a path is written again and again, Hz.
 PEOPLE_RATE, PATH_RATE = 4.0, 2.0
-#: Slower people keep the heading they had, m/s.
+#: Slower people keep their last heading, m/s.
 HEADING_MIN_SPEED = 0.1
 _PERSON, _TOUCH = (0.36, 0.55, 0.78, 1.0), (0.85, 0.2, 0.15, 0.9)
 _TOUCH_SIZE, _ARROW_HEIGHT, _SHORTEST = 0.25, 0.1, 0.1
-#: Positions and lengths lie on a grid of 1/1024 m, numbers of quaternions on one of 1/16384: short
+#: Positions and lengths are multiples of 1/1024 m, numbers of quaternions of 1/16384: short
 #: mantissas compress to a third.
 _GRID, _FINE = 1024.0, 16384.0
 _ID = Struct("<i")
@@ -31,17 +31,17 @@ _ANY_ID, _A, _B, _C, _D, _E = 0x11223344, 1.0625, 2.125, 3.1875, 4.25, 5.3125
 
 
 class PeopleArrows:
-    """An arrow for each person: its id, where it looks, as long as it is fast, as wide as it is."""
+    """An arrow per person with its id: in its heading, length by speed, width by body."""
 
     def __init__(self, ids: NDArray[np.int64], radius: Array) -> None:
-        """``ids`` (M,) of the people, ``radius`` (M,) m."""
+        """Build the arrows. ``ids`` (M,) of the people, ``radius`` (M,) m."""
         self._id = np.asarray(ids, np.int64)
         self._width = np.rint(2.0 * np.asarray(radius, np.float64) * _GRID) / _GRID
         self._heading = np.zeros(len(self._id))
-        self._blank: dict[int, Template] = {}  # by how many are there
+        self._blank: dict[int, Template] = {}  # by number of people
 
     def message(self, ns: int, state: Array) -> bytes:
-        """``visualization_msgs/MarkerArray`` of those who are there; ``state`` is (4, M)."""
+        """Return ``visualization_msgs/MarkerArray`` of present people; ``state`` is (4, M)."""
         speed = np.hypot(state[2], state[3])
         with np.errstate(invalid="ignore"):
             moving = speed > HEADING_MIN_SPEED
@@ -67,7 +67,10 @@ class PeopleArrows:
 
 
 def _arrows(count: int) -> Template:
-    """Places: stamp of what takes away those before; of each: stamp, id, x and y, turn, size."""
+    """Return a template.
+
+    Places: stamp of the deletion; then per person stamp, id, x, y, turn, size.
+    """
     gone = markers.delete_all_markers(ANY_TIME)
     arrow = markers.marker(
         ANY_TIME, "people", "ARROW", (_D, _E, _ARROW_HEIGHT), _PERSON, np.zeros((0, 3))
@@ -84,14 +87,14 @@ class RobotPath:
     """Where a robot has been: a path for viewers, and where it was at any time so far."""
 
     def __init__(self, radius: float) -> None:
-        """``radius`` of the robot's footprint, m."""
+        """Start a path. ``radius`` of the robot's footprint, m."""
         self._radius = radius
         self._rows: list[tuple[float, float, float, float]] = []
         self._path: list[tuple[float, float, float, float]] = []
         self._contacts = 0
 
     def add(self, t: float, x: float, y: float, yaw: float) -> None:
-        """Go on; s, m, rad."""
+        """Add a pose; s, m, rad."""
         self._rows.append((t, x, y, yaw))
         if not self._path or t >= self._path[-1][0] + 1.0 / PATH_RATE - 1e-9:
             self._path.append(self._rows[-1])
@@ -107,12 +110,12 @@ class RobotPath:
         return ros.new("nav_msgs/Path", header=ros.header(ns, "map"), poses=poses)
 
     def touch(self, t: float, agent: int, bearing: float) -> Any:
-        """A ball where a contact began: ``visualization_msgs/MarkerArray`` with one marker.
+        """Return a ball at a contact's start: ``visualization_msgs/MarkerArray`` with one marker.
 
         Args:
-            t: of the beginning, s.
+            t: start of the contact, s.
             agent: id of the person; -1 is a wall.
-            bearing: of the point touched first, in the robot's frame, rad; NaN: not known.
+            bearing: bearing of the first point of contact, in the robot's frame, rad; NaN: unknown.
         """
         x, y, yaw = self._at(t)
         if math.isfinite(bearing):
@@ -135,7 +138,7 @@ class RobotPath:
 
 
 def _coarse(t: float, x: float, y: float, yaw: float) -> Any:
-    """A pose of a path."""
+    """Return a pose of a path."""
     short = Pose(round(x * _GRID) / _GRID, round(y * _GRID) / _GRID, yaw)
     pose = ros.pose_stamped(ros.nanoseconds(t), "map", short)
     turn = pose.pose.orientation

@@ -1,4 +1,4 @@
-"""The contract of a watcher: something that shows a run while it goes on."""
+"""The interface of a watcher, which shows a run during the simulation."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from crowdbot.core.types.arrays import Array
 
 
 class Watcher(Protocol):
-    """Sees the truth, as a recording does; nothing that it does reaches the run."""
+    """Gets the ground truth, like a recording; it cannot affect the run."""
 
     def begin(self, header: RecordingHeader) -> None:
-        """A run begins; its header has walls, goal, robot and people."""
+        """Start a run; its header has walls, goal, robot and people."""
         ...
 
     def sample(self, t: float, robot: Sequence[float] | None, agents: Array | None) -> None:
-        """One sample of the log.
+        """Show one sample of the log.
 
         Args:
             t: time, s.
             robot: x, y, yaw, v, w; m, rad, m/s, rad/s.
-            agents: (4, M) x, y, vx, vy; NaN where somebody is absent. It must not be changed.
+            agents: (4, M) x, y, vx, vy; NaN if absent. It must not be changed.
         """
         ...

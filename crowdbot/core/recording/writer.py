@@ -1,11 +1,10 @@
-"""RecordingWriter: streams one run into an MCAP file with ROS 2 messages.
+"""RecordingWriter: streams one run to an MCAP file with ROS 2 messages.
 
-The ``/crowdbot/...`` topics and ``/contacts`` carry the float64 numbers that scores are computed
-from, bit by bit; all others are for the replay page and for ROS tools and may be left out.
+The ``/crowdbot/...`` topics and ``/contacts`` carry the exact float64 numbers for scores; all
+others are for the replay page and for ROS tools and are optional.
 
-What is handed over is kept until the next `flush` and becomes messages then, all in a row: code
-that has just run is still in the processor's caches, which between the events of a simulation it
-is not.
+Data is buffered and converted to messages at the next `flush`, all in sequence, so that the code
+stays in the processor's caches.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.sensor import CameraFrame, Reading
 
-#: So many rows, or bytes of images, become messages without a `flush`.
+#: Largest number of rows, or bytes of images, without a `flush`.
 _MOST_WAITING, _MOST_IMAGE_BYTES = 8192, 4 * 2**20
 
 _P = ParamSpec("_P")
@@ -49,7 +48,7 @@ _P = ParamSpec("_P")
 def _later(
     write: Callable[Concatenate[RecordingWriter, _P], None],
 ) -> Callable[Concatenate[RecordingWriter, _P], None]:
-    """Do it at the next flush, in the order of the calls."""
+    """Defer a call to the next flush, in order."""
 
     @wraps(write)
     def put_off(self: RecordingWriter, *given: _P.args, **named: _P.kwargs) -> None:
@@ -61,9 +60,9 @@ def _later(
 
 
 class RecordingWriter:
-    """Writes what the simulation hands over; all times are simulated seconds, >= 0.
+    """Writes the simulation's data; all times are simulated seconds, >= 0.
 
-    Arrays belong to the writer from then on, but those of readings, which it copies.
+    The writer takes ownership of arrays, except those of readings, which it copies.
     """
 
     def __init__(
@@ -79,17 +78,15 @@ class RecordingWriter:
         """Start the file with its header.
 
         Args:
-            path: file to write; the caller gives it its final name when the run is complete.
+            path: file to write; the caller renames it when the run is complete.
             header: constants of the run.
-            record: ``none`` leaves out all that scores do not need; ``used`` keeps what the
-                replay page shows, scans, cones and images as exact and as often as it does, and
-                what a viewer needs to draw the run; ``all`` has every reading and image, and all
-                messages of ROS tools.
-            choosers: people whose choices are among known candidates, which makes the file
-                smaller; nobody is in two groups.
-            description: the robot's URDF, which ``none`` leaves out.
-            beside: what writes to the same file what all robots share; the header then has a
-                namespace.
+            record: ``none`` keeps only data for scores; ``used`` adds scans, cones and images with
+                the rate and resolution of the replay page, and data for viewers; ``all`` has every
+                reading and image, and all messages for ROS tools.
+            choosers: people with known candidates, which makes the file smaller; each in at most
+                one group.
+            description: the robot's URDF, omitted with ``none``.
+            beside: writer of shared data to the same file; the header then has a namespace.
 
         Raises:
             InputError: the path cannot be written.
@@ -139,16 +136,16 @@ class RecordingWriter:
         signals: Mapping[str, float] | None = None,
         goals: Array | None = None,
     ) -> None:
-        """One sample of the log.
+        """Write one sample of the log.
 
         Args:
             t: time, s.
-            robot: x, y, theta, v, w; m, rad, m/s, rad/s; world frame. Of a robot that goes
+            robot: x, y, theta, v, w; m, rad, m/s, rad/s; world frame. For a robot that can move
                 sideways also vx, vy, m/s.
-            agents: (4, M) x, y, vx, vy; NaN where somebody is absent.
-            jump: (M,) who was teleported since the previous sample.
+            agents: (4, M) x, y, vx, vy; NaN if absent.
+            jump: (M,) people teleported since the last sample.
             signals: name -> value at this time.
-            goals: (2, M) x, y to which people went in the step before; None: not known.
+            goals: (2, M) x, y of people's goals in the last step; None: unknown.
         """
         self._samples.append(StateSample(t, robot, agents, jump, goals))
         for name, value in (signals or {}).items():
@@ -159,18 +156,18 @@ class RecordingWriter:
             self._catch_up()
 
     def reading(self, sensor: str, reading: Reading) -> None:
-        """One reading of a sensor that the header lists and that is not a camera."""
+        """Write one reading of a sensor in the header that is not a camera."""
         thinning = self._thinning.get(sensor)
         if self._whole or (thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp))):
             kept = reading.values.copy()
             self._waiting.append(partial(self._measured, sensor, reading.stamp, kept))
 
     def wants_frame(self, camera: str, stamp: float) -> bool:
-        """Whether `frame` would keep an image of this time (s)."""
+        """Return True if `frame` would keep an image of this time (s)."""
         return self._images and self._frames[camera].due(ros.nanoseconds(stamp))
 
     def frame(self, camera: str, frame: CameraFrame) -> None:
-        """One image of a camera that the header lists."""
+        """Write one image of a camera in the header."""
         if not self._images or not self._frames[camera].keeps(ros.nanoseconds(frame.stamp)):
             return
         self._waiting.append(partial(self._frame_messages, self._cameras[camera], frame))
@@ -181,21 +178,24 @@ class RecordingWriter:
 
     @_later
     def command(self, t: float, command: Command) -> None:
-        """What the planner wants the robot to do."""
+        """Write the planner's command."""
         if self._tools is not None:
             self._tools.command(ros.nanoseconds(t), command)
 
     def planner_time(self, t: float, seconds: float) -> None:
-        """Wall time of one planner step; the only number here that two equal runs disagree on."""
+        """Write the wall time of one planner step.
+
+        The only number that differs between equal runs.
+        """
         self._series[Topic.PLANNER_TIME].add("planner_step_time", t, seconds)
 
     def signal(self, t: float, name: str, value: float) -> None:
-        """One value of a named signal."""
+        """Write one value of a named signal."""
         self._series[Topic.SIGNAL].add(name, t, value)
 
     @_later
     def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:
-        """A journey that ended, or at the end of the run did not."""
+        """Write a trip, finished or not."""
         data = self._trip.fill(whole_trip(agent, t0, t1, reached))
         self._file.put_bytes(Topic.TRIP, ros.nanoseconds(t1), self._trip.msgtype, data)
 
@@ -210,9 +210,9 @@ class RecordingWriter:
         relative_speed: float,
         bearing: float = math.nan,
     ) -> None:
-        """A contact of the robot that ended at ``t1``; N s, N, m/s; agent -1 is a wall.
+        """Write a contact of the robot that ended at ``t1``; N s, N, m/s; agent -1 is a wall.
 
-        ``bearing`` is that of the point touched first, in the robot's frame (rad); NaN: unknown.
+        ``bearing`` points to the first point of contact, in the robot's frame (rad); NaN: unknown.
         """
         message = ros.new(
             "crowdbot_msgs/Contact",
@@ -230,9 +230,9 @@ class RecordingWriter:
             self._tools.contact(t0, ros.nanoseconds(t1), agent, bearing)
 
     def flush(self) -> None:
-        """Finish the open chunk, so that all so far is readable should the process be killed.
+        """Finish the open chunk, so that everything so far is readable if the process is killed.
 
-        Chunks end where this is called: to keep files comparable, call it by simulated time.
+        Chunks end at these calls: call it by simulated time to keep files comparable.
         """
         self._catch_up()
         self._say_path()
@@ -244,10 +244,10 @@ class RecordingWriter:
         """Write the end, index and footer; wait for the disk. A second call does nothing.
 
         Args:
-            goal_time: when the robot arrived, s, or None.
-            complete: False for a run that was interrupted.
+            goal_time: the robot's arrival, s, or None.
+            complete: False for an interrupted run.
             status: ``arrived``, ``timeout``, ``toppled``, ``planner_failed``, …
-            until: when it ended, s; by default at the last sample.
+            until: end of the run, s; default: the last sample.
         """
         if self._closed:
             return
@@ -266,7 +266,7 @@ class RecordingWriter:
         self._file.close()
 
     def _catch_up(self) -> None:
-        """Write all that waits, samples first."""
+        """Write all buffered data, samples first."""
         if self._samples:
             samples, self._samples = self._samples, []
             self._now = ros.nanoseconds(samples[-1].t)
@@ -291,7 +291,7 @@ class RecordingWriter:
             self._tools.measured(sensor, ns, topic.msgtype, data, values)
 
     def _say_path(self) -> None:
-        """Once in a simulated second, and at the end."""
+        """Write the path once per simulated second, and at the end."""
         if self._tools is not None and self._whole:
             self._tools.path(self._now)
 

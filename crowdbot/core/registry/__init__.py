@@ -1,1 +1,1 @@
-"""The registry: which plugins are installed, and what they provide."""
+"""The registry: installed plugins and their components."""

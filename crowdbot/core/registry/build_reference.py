@@ -20,10 +20,10 @@ def load_build(component: Component[Any], call: PluginCall | None = None) -> Cal
     """Import the build function of a component.
 
     Args:
-        call: the boundary to the plugin; by default one that names the component only.
+        call: call boundary to the plugin; default: one that names only the component.
 
     Raises:
-        PluginError: the reference does not resolve, or names something that is not a function.
+        PluginError: the reference does not resolve to a function.
     """
     call = call or PluginCall(f"{component.category} '{component.kind}'")
     module, _, name = component.build.partition(":")
@@ -56,7 +56,7 @@ def accepted(
 
 
 def _takes(build: Callable[..., object], count: int) -> bool:
-    """Return True if a function takes so many arguments by position.
+    """Return True if a function takes this many positional arguments.
 
     A last parameter with a default is an option of the plugin's own unless it is named context.
     """

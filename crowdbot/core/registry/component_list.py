@@ -15,7 +15,7 @@ Components = tuple[Component[Any], ...]
 
 
 class ComponentList(Sequence[Component[Any]]):
-    """All components in the order of their categories.
+    """All components, ordered by category.
 
     Commands that read scenarios end without planners and metrics, which are the most and which no
     scenario holds.
@@ -80,7 +80,7 @@ class ComponentList(Sequence[Component[Any]]):
 
 
 class ComponentsByKind(Mapping[str, Mapping[str, Component[Any]]]):
-    """Category -> kind -> component, sorted by kind, put together when a category is asked for."""
+    """Category -> kind -> component, sorted by kind; each category is built on demand."""
 
     def __init__(
         self, categories: Sequence[str], plugins: Sequence[Sequence[Component[Any]]]

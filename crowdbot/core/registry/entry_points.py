@@ -1,8 +1,8 @@
-"""Finding plugins: entry points of installed distributions, and paths given by hand.
+"""Find plugins: entry points of installed distributions, and given paths.
 
-Errors are data: a plugin that cannot be loaded is listed with its error and hides nobody else.
-pluggy's own loading stops at the first plugin that fails, and drops, without a word, all but one
-of those that share a name.
+Errors are data: a plugin that cannot be loaded is listed with its error and does not affect others.
+pluggy's own loading stops at the first failing plugin, and silently drops all but one of those that
+share a name.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.registry.plugin_path import GROUP, PluginEntry, entries_at, place_digest
 from crowdbot.errors import PluginError
 
-#: Environment variable with the names of the plugins that may be loaded.
+#: Environment variable with the names of allowed plugins.
 ALLOW = "CROWDBOT_PLUGINS"
 _SECTION = re.compile(rf"^\s*\[\s*{GROUP}\s*\]", re.MULTILINE)
 _OURS = "crowdbot"
@@ -32,11 +32,11 @@ _OURS = "crowdbot"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Discovery:
-    """What was found.
+    """The result of the search.
 
     Attributes:
-        plugins: all that were loaded, or failed to be.
-        excluded: installed, but not allowed; they were not imported.
+        plugins: all plugins that were loaded or failed.
+        excluded: installed but not allowed plugins; they were not imported.
         allowed: the allow-list; None allows all.
     """
 
@@ -48,10 +48,10 @@ class Discovery:
 def find_plugins(
     *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
 ) -> Discovery:
-    """Load what is installed and allowed, and what lies at some paths.
+    """Load installed and allowed plugins, and those at given paths.
 
     Args:
-        extra: paths of plugins that are not installed; they need not be allowed.
+        extra: paths of plugins that are not installed; always allowed.
         allow: only these plugin names; default: ``CROWDBOT_PLUGINS``, else all.
         entry_points: False reads no entry points except crowdbot's own.
     """
@@ -65,7 +65,7 @@ def find_plugins(
     for entry in _installed():
         ours = entry.plugin.name == BUILTIN
         if (entry.plugin.name, entry.plugin.file) in own or not (entry_points or ours):
-            continue  # the path given by hand is this very plugin
+            continue  # the given path is this plugin
         allowed = ours or names is None or entry.plugin.name in names
         (wanted if allowed else excluded).append(entry)
     with telling_interrupts():
@@ -78,7 +78,7 @@ def find_plugins(
 
 
 def _load(entries: Sequence[PluginEntry]) -> Iterator[Plugin]:
-    """Plugins that share a name are not even imported: all of them will be disabled."""
+    """Load plugins; those that share a name are not imported, since all will be disabled."""
     names = Counter(e.plugin.name for e in entries if not e.plugin.error)
     for entry in entries:
         wanted = names[entry.plugin.name] == 1 and not entry.plugin.error
@@ -86,7 +86,7 @@ def _load(entries: Sequence[PluginEntry]) -> Iterator[Plugin]:
 
 
 def _installed() -> list[PluginEntry]:
-    """The entry points of all distributions; of one that is there twice, those of the first.
+    """Return the entry points of all distributions; of duplicates, those of the first.
 
     The first on ``sys.path`` is the one that Python would import.
     """
@@ -112,7 +112,7 @@ def _entry_points(distribution: metadata.Distribution) -> str | None:
 
 
 def _title(distribution: metadata.Distribution) -> tuple[str, str]:
-    """Name and version, as far as they can be read."""
+    """Return name and version, as far as they can be read."""
     try:
         name, version = distribution.metadata["Name"], distribution.metadata["Version"]
     except Exception:
@@ -128,7 +128,7 @@ def _folder(distribution: metadata.Distribution) -> str:
 def _entries(
     distribution: metadata.Distribution, title: str, *, ours: bool
 ) -> Iterator[PluginEntry]:
-    """The entries of one distribution; one that is written twice is one."""
+    """Yield the entries of one distribution without duplicates."""
     listed = {(e.name, e.value): e for e in distribution.entry_points if e.group == GROUP}
     for (name, value), entry in listed.items():
         file = _file(distribution, value)
@@ -142,7 +142,7 @@ def _entries(
 
 
 def _is_editable(distribution: metadata.Distribution) -> bool:
-    """Whether it is installed with ``pip install -e``, so that its version says nothing."""
+    """Return True if it is installed with ``pip install -e``, so that its version means nothing."""
     try:
         document = json.loads(distribution.read_text("direct_url.json") or "{}")
         return bool(document.get("dir_info", {}).get("editable", False))
@@ -151,7 +151,7 @@ def _is_editable(distribution: metadata.Distribution) -> bool:
 
 
 def _loose(plugin: Plugin, value: str) -> Plugin:
-    """A plugin of a folder that may change: not pinned, with the hash of its files."""
+    """Return a plugin from a folder that may change: not pinned, with the hash of its files."""
     if not plugin.file:
         return replace(plugin, pinned=False)
     file = Path(plugin.file)
@@ -170,7 +170,7 @@ def _import(entry: metadata.EntryPoint) -> object:
 
 
 def _file(distribution: metadata.Distribution, value: str) -> str:
-    """The file of the module that an entry point names, without importing anything."""
+    """Return the file of an entry point's module, without importing anything."""
     names = value.partition(":")[0].strip().split(".")
     try:
         roots = [Path(str(distribution.locate_file("")))]

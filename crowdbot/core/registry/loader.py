@@ -24,15 +24,14 @@ from crowdbot.old_names import shown_old_names
 
 
 def load_plugin(plugin: Plugin, load: Callable[[], Any]) -> Plugin:
-    """Import a plugin and ask it what it has.
+    """Import a plugin and collect its components.
 
     Args:
-        plugin: what is known of it before.
-        load: imports its module.
+        plugin: the plugin before loading.
+        load: function that imports its module.
 
     Returns:
-        The plugin with its components, or with the error that it has instead. What it prints
-        meanwhile goes to stderr.
+        The plugin with its components or an error. Its output goes to stderr.
     """
     try:
         with _call(plugin), shown_old_names():
@@ -48,7 +47,7 @@ def load_plugin(plugin: Plugin, load: Callable[[], Any]) -> Plugin:
 
 
 def failed(plugin: Plugin, error: CrowdbotError) -> Plugin:
-    """The plugin with an error instead of components."""
+    """Return the plugin with an error instead of components."""
     lines = "".join(traceback.format_exception(error.__cause__ or error))
     return replace(plugin, components=(), scenario_dirs=(), error=str(error), traceback=lines)
 
@@ -74,7 +73,7 @@ def _call(plugin: Plugin) -> PluginCall:
 
 
 def _api(module: Any, distribution: str) -> int:
-    """The version of the hooks; a module that does not say was written for the first one."""
+    """Return the version of the hooks; a module without one was written for the first version."""
     version = getattr(module, "CROWDBOT_API", 1)
     oldest, newest = hookspecs.OLDEST_API, hookspecs.API_VERSION
     if type(version) is not int:

@@ -1,4 +1,4 @@
-"""A plugin as it was found: what it provides, or why it provides nothing. A value."""
+"""A discovered plugin: its components, or the error that prevents them. A value."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from crowdbot.core.registry.component_list import ComponentList
 from crowdbot.dsl.spec.component import Component
 from crowdbot.errors import CrowdbotError
 
-#: The name under which crowdbot's own components are registered.
+#: The name of crowdbot's own plugin.
 BUILTIN = "builtin"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plugin:
-    """One plugin, healthy or not.
+    """One plugin, working or not.
 
     Attributes:
-        name: of its entry point; the kinds of its components begin with it.
+        name: name of its entry point; prefix of its components' kinds.
         distribution: name and version of the package, or the path it was loaded from.
         pinned: whether it comes from an installed distribution, whose version says what it is;
             one that was installed to be edited is not.
@@ -46,7 +46,7 @@ class Plugin:
 
     @property
     def origin(self) -> str:
-        """The distribution, and the file where it is another one: for messages."""
+        """Return the distribution, and the file if different: for messages."""
         return f"{self.distribution} ({self.file})" if self.file else self.distribution
 
     @property

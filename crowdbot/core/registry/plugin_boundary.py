@@ -1,4 +1,4 @@
-"""The boundary to plugins: every call into a plugin's code is made inside a `PluginCall`."""
+"""The boundary to plugins: every call into a plugin's code runs inside a `PluginCall`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Exceptions = type[BaseException] | tuple[type[BaseException], ...]
 
 
 class PluginCall:
-    """Calls into one plugin: made once, entered for each call.
+    """Context manager for calls into one plugin: created once, entered for each call.
 
     ::
 
@@ -22,18 +22,19 @@ class PluginCall:
         with call("read", t):
             values = sensor.read(...)
 
-    What Python code inside prints goes to stderr, so that stdout keeps to what a command answers.
-    The user's interrupt passes, and so do crowdbot's own errors, with ``who`` put in front where
-    they do not say it. Whatever else is raised, ``SystemExit`` and ``KeyboardInterrupt`` included,
-    becomes an ``error`` that says who it was, what it did, and in which line of which file.
+    Python output goes to stderr, so that stdout holds only the command's result. The user's
+    interrupt passes, and so do crowdbot's own errors, prefixed with ``who`` if missing. All other
+    exceptions, including ``SystemExit`` and ``KeyboardInterrupt``, become an ``error`` that names
+    the plugin, the call, the file and the line.
 
     Args:
-        who: what is called, and the distribution that it comes from; begins every message.
-        sources: finds the plugin's files, whose lines are preferred to those of libraries.
-        error: what everything else becomes.
-        passes: exceptions that stay what they are.
+        who: the plugin and its distribution; start of every message.
+        sources: function that finds the plugin's files, whose lines are preferred to those of
+            libraries.
+        error: class of the resulting error.
+        passes: exceptions that pass unchanged.
 
-    Entering it costs 0.4 microseconds; it may be entered again while it is entered.
+    Entering it costs 0.4 microseconds; it is reentrant.
     """
 
     __slots__ = ("_doing", "_error", "_passes", "_sources", "_stdouts", "_t", "who")
@@ -53,7 +54,7 @@ class PluginCall:
         self._stdouts: list[Any] = []
 
     def __call__(self, doing: str, t: float | None = None) -> PluginCall:
-        """Say what the next call does, and at which simulated time (s), for messages."""
+        """Name the next call, and its simulated time (s), for messages."""
         self._doing, self._t = doing, t
         return self
 
@@ -75,10 +76,10 @@ class PluginCall:
             sys.stdout = self._stdouts.pop()
 
     def fail(self, what: str) -> NoReturn:
-        """Say what is wrong with that which a call returned.
+        """Report an invalid result of a call.
 
         Raises:
-            PluginError: always; of the class that was asked for.
+            PluginError: always; of the requested class.
         """
         raise self._error(printable(f"{self.who}: {what}" if self.who else what))
 
@@ -91,6 +92,6 @@ class PluginCall:
             error.args = (printable(f"{self.who}: {error}"),)
 
     def _told(self, what: str) -> str:
-        """Who, in which call, at which time: what."""
+        """Return the message: plugin, call, time, and error."""
         doing = self._doing if self._t is None else f"{self._doing} at t = {self._t:g} s"
         return printable(": ".join(part for part in (self.who, doing, what) if part))

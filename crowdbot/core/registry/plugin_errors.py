@@ -1,4 +1,4 @@
-"""What somebody else's code raised: whose it is, and where it happened."""
+"""Describe errors from plugin code: type, text, and place."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from crowdbot.errors import Interrupted, PlannerHungError
 
-#: Frames of crowdbot's machinery are not where somebody else's error is.
+#: Modules whose frames are not the cause of a plugin's error.
 _PACKAGE = str(Path(__file__).parents[2])
 #: Modules whose frames every command has.
 _NO_PLUGINS = frozenset(("crowdbot", "click", "typer"))
@@ -20,25 +20,25 @@ _MACHINERY = tuple(f"{_PACKAGE}/{part}/" for part in ("core", "dsl", "cli"))
 
 
 def describe_error(error: BaseException, sources: Collection[str] = ()) -> str:
-    """Type, text and place of an error.
+    """Return type, text and place of an error.
 
     Args:
-        error: what was raised.
-        sources: files in which the culprit is known to be written; frames in them, beside them or
-            in nobody's library are preferred.
+        error: the exception.
+        sources: the plugin's known files; frames in them, beside them, or outside libraries are
+            preferred.
     """
     return f"{error_text(error)}{_where(error, sources)}"
 
 
 def error_text(error: BaseException) -> str:
-    """Type and text of an error, also of one that has no text."""
+    """Return type and text of an error, also if its text is empty."""
     kind, text = type(error).__name__, _text(error)
     return f"{kind}{f': {text}' if text else ''}"
 
 
 @cache
 def _plugin_roots() -> frozenset[str]:
-    """First names of the modules of installed plugins; looking for them takes milliseconds."""
+    """Return the top module names of installed plugins; finding them takes milliseconds."""
     from importlib.metadata import entry_points
 
     found = entry_points(group="crowdbot")
@@ -46,7 +46,7 @@ def _plugin_roots() -> frozenset[str]:
 
 
 def culprit(error: BaseException) -> str:
-    """`` (file:line)`` of the innermost frame that is in a plugin; empty where none is."""
+    """Return `` (file:line)`` of the innermost frame in a plugin; empty if there is none."""
     found = ""
     for frame, line in traceback.walk_tb(error.__traceback__):
         root = str(frame.f_globals.get("__name__")).partition(".")[0]
@@ -57,10 +57,10 @@ def culprit(error: BaseException) -> str:
 
 
 def is_user_interrupt(error: BaseException) -> bool:
-    """Whether an error is not the plugin's: the user's Ctrl-C, or our own interruption.
+    """Return True if an error is the user's Ctrl-C or our own interruption, not the plugin's.
 
-    A plugin may raise KeyboardInterrupt, too. While Python's own handler is in place, nobody can
-    tell the two apart; commands install one that raises a subclass.
+    A plugin may also raise KeyboardInterrupt. Python's own handler makes both look alike, so
+    commands install a handler that raises a subclass.
     """
     if isinstance(error, Interrupted | PlannerHungError):
         return True
@@ -71,14 +71,14 @@ def is_user_interrupt(error: BaseException) -> bool:
 
 
 class UserInterrupt(KeyboardInterrupt):
-    """Ctrl-C, as opposed to a plugin that raises KeyboardInterrupt itself."""
+    """Ctrl-C, distinguished from a plugin that raises KeyboardInterrupt."""
 
 
 @contextmanager
 def telling_interrupts() -> Iterator[None]:
-    """Ctrl-C raises a class of its own inside, so that a plugin's own interrupt can be told.
+    """Raise `UserInterrupt` on Ctrl-C in the context, to tell it from a plugin's own interrupt.
 
-    Does nothing where somebody handles Ctrl-C already, or in another thread than the main one.
+    Does nothing if Ctrl-C already has a handler, or outside the main thread.
     """
 
     def press(number: int, frame: object) -> None:
@@ -107,7 +107,7 @@ def _text(error: BaseException) -> str:
 
 
 def _where(error: BaseException, sources: Collection[str]) -> str:
-    """`` (file:line)`` of the innermost frame of the culprit, or nothing."""
+    """Return `` (file:line)`` of the innermost frame of the plugin, or ""."""
     frames = [
         f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith("<")
     ]
@@ -123,13 +123,13 @@ def _is_ours(file: str) -> bool:
 
 
 def _is_own(file: str, sources: Collection[str]) -> bool:
-    """A planner's file, a file beside it, or any file that is not an installed library."""
+    """Return True for a planner's file, a file beside it, or a file outside installed libraries."""
     if file in sources or Path(file).parent in {Path(s).parent for s in sources}:
         return True
     return not _is_ours(file) and not _is_a_library(file)
 
 
 def _is_a_library(file: str) -> bool:
-    """Whether nobody wrote a file for crowdbot: Python's own, and what is installed."""
+    """Return True for files not written for crowdbot: Python's own, and installed packages."""
     libraries = {sysconfig.get_path(p) for p in ("stdlib", "platstdlib", "purelib", "platlib")}
     return file.startswith(("<", *(p for p in libraries if p)))

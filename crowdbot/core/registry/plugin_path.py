@@ -1,4 +1,4 @@
-"""Plugins that are not installed: a file, a package folder, or a project with a pyproject.toml."""
+"""Plugins that are not installed: a file, a package folder, or a project with pyproject.toml."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from crowdbot.core.registry.plugin import Plugin
 from crowdbot.core.support.source_digest import digest_of_files, package_files, source_digest
 from crowdbot.errors import InputError, PluginError
 
-#: Group of entry points in which a distribution says which module is its plugin.
+#: Entry point group in which a distribution names its plugin module.
 GROUP = "crowdbot"
-#: A package folder of this name is the plugin without it: ``crowdbot_acme`` is ``acme``.
+#: Prefix of package folders that is not part of the plugin's name: ``crowdbot_acme`` is ``acme``.
 _PREFIX = "crowdbot_"
-#: Folders that plugins brought to ``sys.path``; one does not stand in another's way.
+#: Folders that plugins added to ``sys.path``, kept from shadowing each other.
 _ADDED: set[str] = set()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PluginEntry:
-    """A plugin that was found and not imported yet."""
+    """A plugin that was found but not imported yet."""
 
     plugin: Plugin
     load: Callable[[], Any]
 
 
 def entries_at(path: Path) -> list[PluginEntry]:
-    """The plugins at a path; where there is none, one that says so when it is loaded."""
+    """Return the plugins at a path; if there is none, an entry that reports it when loaded."""
     try:
         project = _project(path)
         if project is None:
@@ -48,14 +48,14 @@ def entries_at(path: Path) -> list[PluginEntry]:
 
 
 def path_without_plugins() -> list[str]:
-    """``sys.path`` as it was before plugins that are not installed brought their folders."""
+    """Return ``sys.path`` without the folders of plugins that are not installed."""
     return [p for p in sys.path if p not in _ADDED]
 
 
 def load_path(path: Path) -> ModuleType:
     """Import a Python file or a package folder under its own name, without installing it.
 
-    What lies beside it can be imported, too, after everything that is installed.
+    Modules beside it can be imported too, with lower priority than installed ones.
 
     Raises:
         PluginError: there is no such file, its name is taken, or it cannot be imported.
@@ -76,7 +76,7 @@ def load_path(path: Path) -> ModuleType:
 
 
 def _is_installed(name: str, file: Path) -> bool:
-    """Whether an import of that name would find something else."""
+    """Return True if importing that name would find something else."""
     if name in sys.stdlib_module_names:
         return True
     found = PathFinder.find_spec(name, path_without_plugins())
@@ -89,7 +89,7 @@ def _import_file(name: str, file: Path, *, package: bool) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # build references name it
+    sys.modules[name] = module  # build references use this name
     beside = str(file.parent.parent if package else file.parent)
     if beside not in sys.path:
         sys.path.append(beside)
@@ -117,7 +117,7 @@ def _entry(given: Path, name: str, place: Path, value: str) -> PluginEntry:
 
 
 def _load(place: Path, value: str) -> Any:
-    """Import the module at a place, and what an entry point names in it."""
+    """Import the module at a location, and the object that an entry point names in it."""
     found: Any = load_path(place)
     module, _, attributes = value.partition(":")
     if "." in module:
@@ -137,7 +137,7 @@ def _bare_name(path: Path) -> str:
 
 
 def _project(path: Path) -> tuple[Path, Mapping[str, str]] | None:
-    """Root and entry points of the project that a folder is, or is the package of.
+    """Return root and entry points of the project of a folder or package.
 
     Raises:
         PluginError: the folder is a project that declares no plugin.
@@ -176,7 +176,7 @@ def _top(value: str) -> str:
 
 
 def _located(root: Path, value: str) -> tuple[Path, str]:
-    """The top package or module that an entry point of a project names, beside or in ``src``."""
+    """Return the top package or module of a project's entry point, beside it or in ``src``."""
     top = _top(value)
     for folder in (root, root / "src"):
         for place in (folder / top, folder / f"{top}.py"):
@@ -186,7 +186,7 @@ def _located(root: Path, value: str) -> tuple[Path, str]:
 
 
 def place_digest(place: Path) -> str:
-    """Hash of the file, or of all files of the package, and of the modules beside it that it needs.
+    """Return the hash of a file or a package's files, and of modules beside it that it needs.
 
     Raises:
         PluginError: a file cannot be read.

@@ -1,7 +1,7 @@
-"""The registry: which components are installed. A value, built by a function, never changed.
+"""The registry: an immutable value with the installed components.
 
-Discovery isolates failures: a plugin that cannot be imported, or speaks another API version, is
-listed with its error and hides nobody else. Two plugins of one name, or two components of one
+Discovery isolates failures: a plugin that cannot be imported, or has another API version, is listed
+with its error and does not affect others. Plugins with the same name, or components of the same
 kind, are all disabled, and the error names them.
 """
 
@@ -38,15 +38,15 @@ Built = TypeVar("Built")
 
 _IN_SCENARIOS = tuple(c.category for c in CATEGORIES if c not in (PlannerSpec, MetricSpec))
 
-#: Specs by category -> what `Registry.scenario_model` made of them, the latest last: pydantic
-#: takes a fifth of a second for it, and a program that looks for plugins again finds the same.
+#: Cache: specs by category -> result of `Registry.scenario_model`, latest last. Building it takes
+#: pydantic a fifth of a second, and repeated discovery finds the same specs.
 _scenario_models: dict[tuple[tuple[str, type[ComponentSpec]], ...], type[Scenario]] = {}
 _MODELS_KEPT = 8
 
 
 @dataclass(frozen=True, slots=True)
 class RegistrySource:
-    """What `discover` was asked for."""
+    """The arguments of `discover`."""
 
     extra: tuple[Path, ...]
     allow: tuple[str, ...] | None
@@ -55,13 +55,13 @@ class RegistrySource:
 
 @dataclass(frozen=True)
 class Registry:
-    """All plugins, and the healthy ones' components by category and kind.
+    """All plugins, and the components of working ones by category and kind.
 
     Attributes:
-        plugins: all that were found and may be loaded; some may have failed.
-        excluded: installed plugins that are not on the allow-list; nothing of them was imported.
+        plugins: all allowed plugins that were found; some may have failed.
+        excluded: installed plugins that are not on the allow-list; they were not imported.
         allowed: the allow-list; None allows all.
-        source: how another process discovers the same; None of one that was put together by hand.
+        source: arguments with which another process discovers the same; None if built manually.
     """
 
     plugins: tuple[Plugin, ...]
@@ -75,7 +75,7 @@ class Registry:
         return self._by_category[category]
 
     def find(self, category: str, kind: str) -> Component[Any]:
-        """The component of one kind.
+        """Return the component of one kind.
 
         Raises:
             UnknownNameError: nothing of that kind is installed.
@@ -86,10 +86,10 @@ class Registry:
         return known[kind]
 
     def why_absent(self, name: str) -> str:
-        """Why nothing of a plugin's is here; empty where there is nothing to say.
+        """Return why a plugin's components are missing; empty if unknown.
 
         Args:
-            name: a plugin, or the kind of a component or the name of a suite of one.
+            name: a plugin, or a kind or suite of a plugin.
         """
         plugin = name.replace(":", ".").partition(".")[0]
         for p in self.plugins:
@@ -107,7 +107,7 @@ class Registry:
             plugin.import_components()
 
     def unknown_allowed(self) -> list[str]:
-        """One line for each name on the allow-list that no plugin has."""
+        """Return one line for each name on the allow-list without a plugin."""
         known = {p.name for p in (*self.plugins, *self.excluded)}
         return [
             f"{ALLOW}: no plugin '{name}' is installed{did_you_mean(nearest(name, known)[:1])}"
@@ -116,7 +116,7 @@ class Registry:
         ]
 
     def owner(self, component: Component[Any]) -> Plugin:
-        """The plugin that provides a component."""
+        """Return the plugin that provides a component."""
         category = component.category
         return next(
             p
@@ -131,11 +131,11 @@ class Registry:
         error: type[PluginError] = PluginError,
         passes: Exceptions = CrowdbotError,
     ) -> PluginCall:
-        """The boundary around calls into the plugin that provides a spec's component.
+        """Return the boundary for calls into the plugin of a spec's component.
 
         Args:
-            error: what the plugin's exceptions become.
-            passes: exceptions that stay what they are.
+            error: class for the plugin's exceptions.
+            passes: exceptions that pass unchanged.
         """
         component = self.find(spec.category, spec.kind)
         plugin = self.owner(component)
@@ -153,22 +153,22 @@ class Registry:
         *args: object,
         call: PluginCall | None = None,
     ) -> Built:
-        """Build what a spec stands for, and check it.
+        """Build the object of a spec, and check it.
 
-        Whoever needs an environment, a robot and so on calls ``build_environment`` and its
-        like, which know the check of their category.
+        For environments, robots and so on, call ``build_environment`` and similar functions, which
+        include the check.
 
         Args:
-            spec: its parts, where its class has a field of parts, are built first and handed on
-                in the order of their names.
-            check: returns what was built if it keeps to the contract of its category, else
-                raises; what it raises is the plugin's failure.
+            spec: the spec; its parts, if its class has a field of parts, are built first and passed
+                in order of their names.
+            check: function that returns the object if it satisfies its category's interface, else
+                raises; its errors count as the plugin's.
             args: further arguments of the build function.
-            call: the boundary to the plugin; by default a new one.
+            call: call boundary to the plugin; default: a new one.
 
         Raises:
-            PluginError: the build function cannot be imported, or raised, or what it built fails
-                the check.
+            PluginError: the build function cannot be imported or raised, or its result fails the
+                check.
         """
         if spec.parts_field:
             parts = spec.parts()
@@ -184,7 +184,7 @@ class Registry:
 
     @cached_property
     def scenario_model(self) -> type[Scenario]:
-        """`Scenario`, narrowed to the installed components; one for all registries with these."""
+        """Return `Scenario`, narrowed to the installed components; shared by equal registries."""
         specs = tuple(
             (category, component.spec)
             for category in _IN_SCENARIOS
@@ -231,12 +231,12 @@ class Registry:
         )
 
     def spec_versions(self, scenario: Scenario) -> dict[str, int]:
-        """Kind -> spec_version of every component a scenario uses."""
+        """Return kind -> spec_version of every component in a scenario."""
         used = [spec for _, spec in components(scenario)]
         return {s.kind: self.find(s.category, s.kind).spec_version for s in used}
 
     def spec_model(self, category: str, kind: str) -> type[ComponentSpec]:
-        """The spec of one kind, narrowed to the installed components where it holds others."""
+        """Return the spec of one kind, narrowed to installed components if it contains others."""
         spec: type[ComponentSpec] = self.find(category, kind).spec
         if not spec.parts_field:
             return spec
@@ -248,7 +248,7 @@ class Registry:
 
     @staticmethod
     def _named(base: type[BaseModel], field: str, member: Any) -> Any:
-        """A map of named members, described as in the base model."""
+        """Return a map of named members, described as in the base model."""
         description = base.model_fields[field].description
         return dict[str, member], Field(default={}, description=description)
 
@@ -264,12 +264,12 @@ class Registry:
 
 
 def _unchecked(part: object) -> object:
-    """A part as its owner gets it, who alone knows what it is for."""
+    """Return a part unchanged; its owner checks it."""
     return part
 
 
 def _sources(plugin: Plugin, component: Component[Any]) -> frozenset[str]:
-    """Files in which a component is written, as far as they are known."""
+    """Return the known source files of a component."""
     modules = (component.build.partition(":")[0], component.spec.__module__)
     files = (getattr(sys.modules.get(module), "__file__", None) for module in modules)
     return frozenset(f for f in (plugin.file, *files) if f)
@@ -279,7 +279,7 @@ def _sources(plugin: Plugin, component: Component[Any]) -> frozenset[str]:
 def discover(
     *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
 ) -> Registry:
-    """Build the registry from what is installed and from paths given by hand.
+    """Build the registry from installed plugins and given paths.
 
     Args:
         extra: paths of plugins that are not installed (``--plugin DIR``).
@@ -294,7 +294,7 @@ def discover(
 
 
 def assemble(found: Sequence[Plugin]) -> Registry:
-    """Disable collisions and sort what is left into a registry."""
+    """Disable name clashes and build the registry from the rest."""
     plugins = _disable(found, _name_collisions(found))
     plugins = _disable(plugins, _kind_collisions(plugins))
     by_category = ComponentsByKind(
@@ -304,7 +304,7 @@ def assemble(found: Sequence[Plugin]) -> Registry:
 
 
 def _name_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
-    """The name of crowdbot's own plugin is refused to others before."""
+    """Return errors for duplicate names; crowdbot's own name is refused earlier."""
     names = Counter(p.name for p in plugins if not p.error)
     return {
         i: f"E301 plugin name '{p.name}' is claimed by {_origins(plugins, p.name)}"

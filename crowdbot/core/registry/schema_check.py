@@ -1,4 +1,4 @@
-"""Whether the specs of plugins can be described in a JSON Schema."""
+"""Check that the specs of plugins can be described in a JSON Schema."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from crowdbot.errors import PluginError
 
 
 def describable(registry: Registry) -> Registry:
-    """The registry without plugins whose schemas cannot be made; they are listed as failed.
+    """Return the registry without plugins whose schemas fail; these are listed as failed.
 
-    pydantic lets a spec write its own schema, in code that nothing else calls. All schemas go
-    into one document, so that one that cannot be made would take it down.
+    pydantic lets a spec generate its own schema, in code that nothing else calls. All schemas form
+    one document, which a failing one would break.
     """
     plugins = [p if p.name == BUILTIN or p.error else _tried(p) for p in registry.plugins]
     if all(new is old for new, old in zip(plugins, registry.plugins, strict=True)):

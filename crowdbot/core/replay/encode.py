@@ -1,4 +1,4 @@
-"""Packs a run for the page: plain data for JSON, and named blobs."""
+"""Pack a run for the page: plain data for JSON, and named blobs."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from crowdbot.core.replay.shown_run import Scenery, ShownRun
 from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories
 from crowdbot.core.types.arrays import Array
 
-#: Faster than this is not a step but a teleport, m/s (metric specification, 1.3).
+#: Faster steps are teleports, m/s (metric specification, 1.3).
 JUMP_SPEED = 10.0
 _LARGEST = 32000
 _SIDES = ("front", "left", "right", "rear")
 
 
 def encode(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
-    """What the page needs to draw: plain data for JSON, and named blobs of base64."""
+    """Return the page's data: plain data for JSON, and named base64 blobs."""
     run = shown.run
     blobs = {"t": pack_words(run.t.astype("<f8"))}
     meta: dict[str, Any] = {
@@ -54,7 +54,7 @@ def encode(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
 
 
 def _scenery(shown: ShownRun) -> dict[str, Any]:
-    """Walls as x0, y0, x1, y1 and whom they stop: 3 everybody, 1 robots, 2 people, 0 nobody."""
+    """Return walls as x0, y0, x1, y1 and what they stop: 3 all, 1 robots, 2 people, 0 nothing."""
     scene = shown.scenery
     if scene is None:
         walls = np.zeros((0, 4)) if shown.run.walls is None else shown.run.walls.reshape(-1, 4)
@@ -93,17 +93,17 @@ def _jumps(t: Array, agents: AgentTracks) -> NDArray[np.bool_]:
     if agents.jump is not None:
         return agents.jump
     step = np.hypot(np.diff(agents.x, axis=0), np.diff(agents.y, axis=0))
-    fast: NDArray[np.bool_] = step > JUMP_SPEED * np.diff(t)[:, None]  # False where NaN
+    fast: NDArray[np.bool_] = step > JUMP_SPEED * np.diff(t)[:, None]  # False if NaN
     return fast
 
 
 def nested(rows: Array | None) -> list[list[float]]:
-    """Rows as JSON has them, to a tenth of a millimetre."""
+    """Return rows for JSON, rounded to a tenth of a millimetre."""
     return [] if rows is None else np.round(rows, 4).tolist()
 
 
 def summary(run: Trajectories) -> Mapping[str, str]:
-    """Facts of the run that the page shows whatever it is told."""
+    """Return the facts of the run that the page always shows."""
     facts = {"Duration": f"{run.t[-1] - run.t[0]:.1f} s"}
     if run.agents is not None:
         facts["People"] = str(len(run.agents.id))

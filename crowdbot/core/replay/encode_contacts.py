@@ -1,4 +1,4 @@
-"""Contacts as the page shows them."""
+"""Contacts for the page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 
 
 def contacts_of(run: Trajectories) -> list[dict[str, Any]]:
-    """In order of time; people by their place in the list instead of an id, -1: a wall."""
+    """Return contacts by time; people by their index instead of their id, -1: a wall."""
     table = run.contacts
     if table is None:
         return []
@@ -34,12 +34,12 @@ def contacts_of(run: Trajectories) -> list[dict[str, Any]]:
 
 
 def number(value: float) -> float | None:
-    """As JSON has it, which knows no infinity."""
+    """Return a number for JSON, which has no infinity."""
     return float(value) if np.isfinite(value) else None
 
 
 def _reach(run: Trajectories, bearing: float) -> float:
-    """How far a robot's surface is from its base in some direction, m; 0 where it has none."""
+    """Return the distance of a robot's surface from its base in a direction, m; 0 without one."""
     if run.robot is None or not np.isfinite(bearing):
         return 0.0
     body = footprint_of(run)

@@ -1,4 +1,4 @@
-"""Packs what cameras saw: 255 colours or distances, and what changed since the image before."""
+"""Pack camera images: 255 colours or distances, and changes from image to image."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from crowdbot.core.recording.reading.images import ReplayImages
 from crowdbot.core.replay.pack import deflate
 
-#: Of base64, for all images of a run: beyond, every second one is left out, and so on.
+#: Largest size in base64 of all images of a run; beyond, every second image is dropped, and so on.
 BUDGET = 130_000
 _COLOURS = 255
-_BITS = 4  # of each channel by which colours are told apart
+_BITS = 4  # bits per channel that distinguish colours
 
 
 def encode_images(cameras: Sequence[ReplayImages]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Size, stamps and palette of each camera; pixels are indices, from image to image XOR."""
+    """Return size, stamps and palette of each camera; pixels are indices, XORed between images."""
     every = 1
     while True:
         packed = [_packed(camera, every) for camera in cameras]
@@ -48,14 +48,14 @@ def _packed(camera: ReplayImages, every: int) -> tuple[dict[str, Any], str]:
 
 
 def _depths(millimetres: NDArray[Any]) -> tuple[NDArray[np.uint8], list[int], float | None]:
-    """Steps of the largest distance (m); 0 where nothing was measured."""
+    """Return steps of the largest distance (m); 0 if nothing was measured."""
     far = max(int(millimetres.max()), 1)
     steps = np.ceil(millimetres * (_COLOURS / far)).astype(np.uint8)
     return steps, [], far / 1000.0
 
 
 def _colours(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], list[int], float | None]:
-    """The commonest colours, and for every other the nearest of them."""
+    """Return the most frequent colours, and the nearest of them for all others."""
     coarse = pixels.astype(np.int64) >> (8 - _BITS)
     codes = (coarse[..., 0] << 2 * _BITS) | (coarse[..., 1] << _BITS) | coarse[..., 2]
     counts = np.bincount(codes.ravel(), minlength=1 << 3 * _BITS)

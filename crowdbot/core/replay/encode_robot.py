@@ -1,4 +1,4 @@
-"""Packs the robots of a run."""
+"""Pack the robots of a run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.core.types.arrays import Array
 
 
 def encode_robots(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
-    """A list of robots with the contacts of all, and of each x, y, theta, v, w (5, N), float32."""
+    """Return robots with all contacts, and their x, y, theta, v, w (5, N), float32."""
     run = shown.run
     contacts = contacts_of(run)
     about, motions = [], []

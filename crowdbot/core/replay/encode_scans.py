@@ -1,4 +1,4 @@
-"""Packs what sensors of distances saw; 0 stands for nothing that came back."""
+"""Pack range sensor readings; 0 means no return."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ SCAN_BEAMS = 300
 
 
 def encode_scans(scans: Sequence[ReplayScan]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Lidars each for itself; ultrasounds and infrared sensors that were read at once together."""
+    """Return each lidar separately.
+
+    Ultrasounds and infrared sensors with the same times together.
+    """
     known = [scan for scan in scans if len(scan.t)]
     meta: dict[str, Any] = {"scans": [], "cones": []}
     blobs: dict[str, str] = {}
@@ -31,7 +34,7 @@ def encode_scans(scans: Sequence[ReplayScan]) -> tuple[dict[str, Any], dict[str,
 
 
 def _together(cones: Sequence[ReplayScan]) -> Iterable[Sequence[ReplayScan]]:
-    """Cones that were read at the same times."""
+    """Group cones that were read at the same times."""
     groups: dict[bytes, list[ReplayScan]] = {}
     for cone in cones:
         groups.setdefault(cone.t.tobytes(), []).append(cone)
@@ -39,7 +42,7 @@ def _together(cones: Sequence[ReplayScan]) -> Iterable[Sequence[ReplayScan]]:
 
 
 def _cones(cones: Sequence[ReplayScan]) -> tuple[dict[str, Any], str]:
-    """A row for each sensor."""
+    """Return a row per sensor."""
     chosen = _thinned(cones[0].t)
     ranges = np.stack([cone.ranges[chosen, 0] for cone in cones])
     about = {
@@ -58,7 +61,7 @@ def _cones(cones: Sequence[ReplayScan]) -> tuple[dict[str, Any], str]:
 
 
 def _scan(scan: ReplayScan) -> tuple[dict[str, Any], str]:
-    """Some beams of some scans, a row for each scan."""
+    """Return some beams of some scans, a row per scan."""
     every = max(1, -(-len(scan.angles) // SCAN_BEAMS))
     chosen = _thinned(scan.t)
     ranges = scan.ranges[chosen, ::every]
@@ -75,7 +78,7 @@ def _scan(scan: ReplayScan) -> tuple[dict[str, Any], str]:
 
 
 def _tilt(scan: ReplayScan) -> dict[str, list[float]]:
-    """Roll and pitch, where a sensor is not level."""
+    """Return roll and pitch, if a sensor is not level."""
     return {"tilt": list(scan.tilt)} if any(scan.tilt) else {}
 
 
@@ -92,7 +95,7 @@ def _stamps(t: Array) -> list[float]:
 
 
 def _thinned(t: Array) -> list[int]:
-    """Indices of stamps at least 1/`REPLAY_RATE` apart."""
+    """Return indices of stamps at least 1/`REPLAY_RATE` apart."""
     chosen: list[int] = []
     last = -np.inf
     for i, stamp in enumerate(t.tolist()):

@@ -1,4 +1,4 @@
-"""Packs the named series that planners and plugins recorded."""
+"""Pack the named signals recorded by planners and plugins."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _STEP_TIME = "planner step time"
 
 
 def encode_signals(run: Trajectories) -> tuple[dict[str, Any], dict[str, str]]:
-    """Names, and of each its times and values (2, P) as float32.
+    """Return names, and times and values of each (2, P) as float32.
 
-    The time that each step of the planner took is one of them, s; steps are evenly spread.
+    One of them is the planner's time per step, s; steps are evenly spaced.
     """
     series = {name: rows for name, rows in run.signals.items() if len(rows)}
     steps = run.planner_step_time

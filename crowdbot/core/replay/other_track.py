@@ -1,4 +1,4 @@
-"""The other robots of a fleet, as the replay page of one of them shows them."""
+"""The other robots of a fleet on one robot's replay page."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Seen = tuple[Array, str]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherTrack:
-    """Another robot of the run that a page shows.
+    """Another robot of the run shown on a page.
 
     Attributes:
-        run: what it did until it ended.
-        look: its parts as seen from above, the lowest first.
-        leaves: whether it is gone after its end; otherwise it stands where it ended.
+        run: its run until its end.
+        look: its parts seen from above, lowest first.
+        leaves: True if it disappears at its end; otherwise it stays there.
     """
 
     name: str
@@ -31,12 +31,12 @@ class OtherTrack:
 
 
 def motion_of(robot: RobotTrack) -> Array:
-    """x, y, theta, v, w (5, N)."""
+    """Return x, y, theta, v, w (5, N)."""
     return np.stack((robot.x, robot.y, robot.theta, robot.v, robot.w))
 
 
 def motion_until(robot: RobotTrack, samples: int, *, leaves: bool) -> Array:
-    """`motion_of` for so many samples; after its end it stands, or all is NaN."""
+    """Return `motion_of` for this many samples; after its end it stands, or all is NaN."""
     rows = np.full((5, samples), np.nan)
     count = min(samples, len(robot.x))
     rows[:, :count] = motion_of(robot)[:, :count]

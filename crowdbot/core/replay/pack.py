@@ -1,4 +1,4 @@
-"""Packs numbers for the page: small integers, differences, bytes by significance, zlib, base64.
+"""Pack numbers for the page: small integers, differences, bytes by significance, zlib, base64.
 
 Rows of int16 become differences modulo 2^16, and these are folded so that small ones of either
 sign have a zero high byte (0, -1, 1, -2 become 0, 1, 2, 3). All low bytes come before all high
@@ -18,12 +18,12 @@ from crowdbot.core.types.arrays import Array
 
 ABSENT = -32768
 _LARGEST = 32000
-#: Of zlib: half the time of level 6, for a twentieth more bytes.
+#: zlib level: half the time of level 6 for 5 % more bytes.
 _LEVEL = 4
 
 
 def quantise(rows: Array, scale: float) -> NDArray[np.int16]:
-    """Numbers as multiples of ``scale``; what is not finite as `ABSENT`."""
+    """Return numbers as multiples of ``scale``; non-finite ones as `ABSENT`."""
     steps = rows / scale
     np.rint(steps, out=steps)
     np.clip(steps, -_LARGEST, _LARGEST, out=steps)
@@ -32,20 +32,20 @@ def quantise(rows: Array, scale: float) -> NDArray[np.int16]:
 
 
 def pack_motion(rows: NDArray[np.int16]) -> str:
-    """Rows that change steadily, as positions do: differences of differences along each row."""
+    """Pack smooth rows such as positions: second differences along each row."""
     return _pack(_differences(_differences(rows.astype(np.uint16))), zlib.Z_DEFAULT_STRATEGY)
 
 
 def pack_readings(rows: NDArray[np.int16]) -> str:
-    """Rows whose neighbours are alike, as the beams of a scan: differences from row to row.
+    """Pack rows with similar neighbours, such as the beams of a scan: differences between rows.
 
-    They hold no strings that come again, so zlib does not look for any.
+    They contain no repeated strings, so zlib does not search for any.
     """
     return _pack(_differences(rows.T.astype(np.uint16)).T, zlib.Z_RLE)
 
 
 def pack_words(numbers: NDArray[Any]) -> str:
-    """Rows of float32 (K, N), or one of float64: differences of their bits along each row."""
+    """Pack rows of float32 (K, N) or one of float64: differences of their bits along each row."""
     kind = np.dtype(f"<u{numbers.dtype.itemsize}")
     words = np.atleast_2d(numbers).view(kind)
     shuffled = _differences(words).astype(kind).reshape(-1, 1).view(np.uint8)
@@ -53,13 +53,13 @@ def pack_words(numbers: NDArray[Any]) -> str:
 
 
 def deflate(data: bytes, strategy: int = zlib.Z_DEFAULT_STRATEGY) -> str:
-    """Zlib and base64."""
+    """Compress with zlib and base64."""
     squeeze = zlib.compressobj(_LEVEL, zlib.DEFLATED, 15, 9, strategy)
     return base64.b64encode(squeeze.compress(data) + squeeze.flush()).decode("ascii")
 
 
 def _differences(words: NDArray[Any]) -> NDArray[Any]:
-    """Along each row, the first one stays; modulo the size of a word."""
+    """Return differences along each row, keeping the first value; modulo the word size."""
     changes = words.copy()
     changes[:, 1:] -= words[:, :-1]
     return changes

@@ -1,4 +1,4 @@
-"""Writes the replay page: of one run, or of several beside each other."""
+"""Write the replay page of one run, or of several side by side."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def write_replay(path: Path, *shown: ShownRun, title: str = "") -> None:
     """Write one offline HTML page; equal input gives equal bytes.
 
     Args:
-        path: file to write, aside first and then renamed.
-        shown: the run; of several, each has a view of its own, and all have one clock.
+        path: the file, written atomically.
+        shown: the run; several runs have separate views and a common clock.
         title: heading; default: that of the first run.
 
     Raises:
@@ -65,7 +65,7 @@ def _facts(shown: ShownRun) -> dict[str, str]:
 
 
 def _order(shown: Sequence[ShownRun]) -> Any:
-    """Facts as the first run that has them tells them."""
+    """Return facts in the order of the first run that has them."""
     names: dict[str, int] = {}
     for one in shown:
         for name in _facts(one):

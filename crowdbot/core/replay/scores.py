@@ -1,4 +1,4 @@
-"""Scores as the rows of a table, with a column for each run."""
+"""Scores as rows of a table, with a column per run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ARROWS = {
 
 
 class Cell(NamedTuple):
-    """What one run scored."""
+    """The score of one run."""
 
     value: str
     status: str
@@ -26,7 +26,7 @@ class Cell(NamedTuple):
 
 
 class Row(NamedTuple):
-    """One line of the table; ``headline``: shown before anybody asks for all variants."""
+    """One line of the table; ``headline``: shown by default."""
 
     metric: str
     variant: str
@@ -38,16 +38,16 @@ class Row(NamedTuple):
 
     @property
     def status(self) -> str:
-        """That of all cells; ``ok`` where they differ."""
+        """Return the common status of all cells; ``ok`` if they differ."""
         found = {cell.status for cell in self.cells}
         return found.pop() if len(found) == 1 else "ok"
 
 
 def compared(runs: Sequence[Sequence[Score]]) -> dict[str, list[Row]]:
-    """Category -> rows, in the order given; the four scores are the first one.
+    """Return category -> rows, in the given order; the four main scores come first.
 
     Args:
-        runs: the scores of each run; what one of them lacks is an empty cell.
+        runs: the scores of each run; missing ones are empty cells.
     """
     groups: dict[str, list[Row]] = {}
     by_name = [{(s.metric, s.variant): s for s in scores} for scores in runs]
@@ -94,7 +94,7 @@ def _value(score: Score) -> str:
 
 
 def _digits(value: float) -> str:
-    """Four significant digits, integers as they are."""
+    """Return four significant digits; integers unchanged."""
     if value == int(value) and abs(value) < 1e6:
         return str(int(value))
     return f"{value:.4g}".replace("e-0", "e-").replace("e+0", "e")

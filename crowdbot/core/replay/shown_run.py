@@ -1,4 +1,4 @@
-"""What the page shows of one run."""
+"""The page's data of one run."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from crowdbot.core.types.score import Score
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenery:
-    """What stands in the scene, and whom it stops.
+    """Obstacles in the scene, and what they stop.
 
     Attributes:
         walls: (S, 4) segments x0, y0, x1, y1, m.
-        stops_robot, stops_crowd: (S,) whom each stops.
+        stops_robot, stops_crowd: (S,) True for walls that stop robots, or people.
         pillars: (P, 3) x, y, radius, m.
-        blocks: convex outlines (K, 2) of what stops robots as a whole, m.
-        steps: the same of what robots touch and people step over, m.
+        blocks: convex outlines (K, 2) of solids that stop robots and people, m.
+        steps: the same for solids that stop robots and that people step over, m.
     """
 
     walls: Array
@@ -38,21 +38,22 @@ class Scenery:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShownRun:
-    """One run as the page shows it.
+    """One run on the page.
 
     Attributes:
-        run: a run without robot or without people is fine.
+        run: the run, with or without robot and people.
         title: e.g. the scenario's id and the planner.
-        label: what tells the run from those beside it, e.g. the planner; default: the title.
+        label: label beside other runs, e.g. the planner; default: the title.
         facts: name -> text; ``Status`` is shown beside the title.
-        scans: what lidars, ultrasounds and infrared sensors saw; drawn from the robot's true pose.
-        images: what cameras saw.
+        scans: readings of lidars, ultrasounds and infrared sensors; drawn from the robot's true
+            pose.
+        images: camera images.
         scores: shown beside the run; may be empty.
-        look: parts of the robot as they are seen from above, the lowest first, in its frame;
-            without any it is its outline and an arrow.
-        robot: name of the run's robot, where there are others.
+        look: parts of the robot seen from above, lowest first, in its frame; without any, its
+            outline and an arrow.
+        robot: name of the run's robot, if there are others.
         others: the other robots of a fleet.
-        scenery: default: the run's walls, which stop everybody.
+        scenery: default: the run's walls, which stop robots and people.
     """
 
     run: Trajectories
@@ -69,5 +70,5 @@ class ShownRun:
 
     @property
     def status(self) -> str:
-        """How it ended; empty where nobody said so."""
+        """Return how it ended; empty if unknown."""
         return next((v for k, v in self.facts.items() if k.lower() == "status"), "")

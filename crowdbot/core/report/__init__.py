@@ -1,4 +1,4 @@
-"""The report: one offline HTML page about the runs of a suite, with its tables beside it."""
+"""The report: one offline HTML page about the runs of a suite, with its tables as files."""
 
 from crowdbot.core.report.contents import Contents, Heading, gather
 from crowdbot.core.report.page import write_report

@@ -14,7 +14,7 @@ _HEAD = ("category", "unit", "better", "range", "sampling", "needs")
 
 
 def cards(registry: Registry, metrics: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Metric -> what its card says; metrics that are not installed here are left out."""
+    """Return metric -> contents of its card; metrics that are not installed are left out."""
     known = registry.components("metric")
     found = {}
     for name in metrics:
@@ -22,17 +22,17 @@ def cards(registry: Registry, metrics: Iterable[str]) -> dict[str, dict[str, Any
             continue
         try:
             found[name] = card(known[name].read_card())
-        except PluginError:  # a plugin without a card: its scores are as good
+        except PluginError:  # a plugin without a card: its scores are still valid
             continue
     return found
 
 
 def card(text: str) -> dict[str, Any]:
-    """The parts of a card that fit beside a table.
+    """Return the parts of a card that fit beside a table.
 
     Returns:
         ``summary``, ``head`` (pairs of texts), ``formula``, ``variants`` (name -> definition),
-        ``literal``: what the literal form gets wrong.
+        ``literal``: the literal form's faults.
     """
     front, *rest = re.split(r"^## ", text, flags=re.MULTILINE)
     sections = {s.partition("\n")[0].strip(): s.partition("\n")[2] for s in rest}
@@ -48,7 +48,7 @@ def card(text: str) -> dict[str, Any]:
 
 
 def reference(card_: dict[str, Any] | None) -> dict[str, Any] | None:
-    """The value that means "as without the other one", where the card's range names one."""
+    """Return the value that means "same as without the other", if the card's range names one."""
     said = dict(card_["head"]).get("range", "") if card_ else ""
     match = re.search(r"; (-?\d+(?:\.\d+)?): ([^;,]+)", said)
     return None if match is None else {"value": float(match[1]), "meaning": match[2].strip()}
@@ -60,7 +60,7 @@ def _summary(front: str) -> str:
 
 
 def _cells(text: str) -> list[list[str]]:
-    """Rows of the first table, without its head."""
+    """Return the rows of the first table, without its head."""
     lines = [line for line in text.splitlines() if line.startswith("|")]
     cells = [re.split(r"(?<!\\)\|", line)[1:-1] for line in lines]
     rows = [[c.strip().replace("\\|", "|") for c in row] for row in cells]

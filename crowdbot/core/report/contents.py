@@ -1,4 +1,4 @@
-"""Contents: everything that the page, the CSV and the Markdown of one report are made from."""
+"""Contents of a report: the common source of its page, CSV and Markdown."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Heading:
-    """What stands at the head of a report and in its provenance, told by the caller.
+    """The head and provenance of a report, from the caller.
 
     Attributes:
-        suite: its id.
-        made: when the report was made, as text.
+        suite: the suite's id.
+        made: creation time of the report, as text.
         command: the command line.
-        accepted: differences between the runs that somebody has accepted, one sentence each.
-        warnings: differences that do not forbid a comparison.
-        references: planners whose scores were given to compare with.
-        audit: of the suite, if somebody has audited it.
+        accepted: accepted differences between the runs, one sentence each.
+        warnings: differences that do not prevent a comparison.
+        references: planners whose scores are given for comparison.
+        audit: audit of the suite, if there is one.
     """
 
     suite: str
@@ -54,18 +54,18 @@ class Heading:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contents:
-    """One report.
+    """Contents of one report.
 
     Attributes:
-        attempts: runs, then failures that no run has made good.
+        attempts: runs, then failures without a later successful run.
         axes: ``name`` and ``labels`` of each axis.
-        cards: metric -> what its card says.
+        cards: metric -> contents of its card.
         replays: run id -> address of its replay page, relative to the report.
-        floors: what each planner is told first: whether it beats the floors.
-        suspicion: why nothing here may mean anything; empty without a reason to think so.
-        sample: whether it is large enough for a verdict; None where nothing is compared.
-        crowds: how human the people of the runs are, a line for each different crowd.
-        ranks: what the order of planners owes to the crowd; None for runs of one crowd.
+        floors: comparison of each planner with the floors.
+        suspicion: why the results may be meaningless; empty if there is no reason.
+        sample: check of the sample size for a verdict; None if nothing is compared.
+        crowds: realism of the runs' people, a line per different crowd.
+        ranks: dependence of the order of planners on the crowd; None for runs of one crowd.
     """
 
     heading: Heading
@@ -93,26 +93,26 @@ class Contents:
         return sorted({a.seed for a in self.attempts})
 
     def of(self, planner: str) -> list[Attempt]:
-        """What was tried with one planner."""
+        """Return the attempts of one planner."""
         return [a for a in self.attempts if a.planner == planner]
 
     def counts(self, attempts: Sequence[Attempt] | None = None) -> dict[str, int]:
-        """How many attempts ended in which way; default: of all."""
+        """Return how many attempts had each outcome; default: all attempts."""
         chosen = self.attempts if attempts is None else attempts
         found = Counter(status_of(a) for a in chosen)
         return {ending: found[ending] for ending in ATTEMPTED}
 
     def is_privileged(self, planner: str) -> bool:
-        """Whether a planner was told what no sensor can tell, in any run."""
+        """Return True if a planner got ground truth in any run."""
         return any(isinstance(a, RunRow) and a.privileged for a in self.of(planner))
 
     def role(self, planner: str) -> str:
-        """What a planner is there for."""
+        """Return a planner's role."""
         roles = (a.role for a in self.of(planner) if isinstance(a, RunRow))
         return next(roles, "candidate")
 
     def is_pinned(self, planner: str) -> bool:
-        """Whether everything came from installed distributions, in all its runs."""
+        """Return True if everything came from installed distributions, in all its runs."""
         return all(a.pinned for a in self.of(planner) if isinstance(a, RunRow))
 
 
@@ -125,13 +125,13 @@ def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
 def gather(
     results: Results, registry: Registry, heading: Heading, replays: Mapping[str, str]
 ) -> Contents:
-    """Work out what a report shows.
+    """Compute the contents of a report.
 
     Args:
-        results: runs of one suite that may be compared.
-        registry: whose metrics' cards are shown.
-        heading: what the caller knows.
-        replays: run id -> address.
+        results: comparable runs of one suite.
+        registry: registry with the metrics' cards.
+        heading: head of the report.
+        replays: run id -> address of the replay page.
 
     Raises:
         InputError: there is no run.

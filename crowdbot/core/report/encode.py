@@ -1,4 +1,4 @@
-"""Columns of the page: names as numbers, scores as arrays. `data.js` reads them."""
+"""Columns for the page: names as numbers, scores as arrays. `data.js` reads them."""
 
 from __future__ import annotations
 
@@ -19,40 +19,40 @@ from crowdbot.core.types.ending import ATTEMPTED, Ending, has_failed
 ABSENT = 65535
 #: State of a score with a value.
 OK = ("ok", "")
-#: Of a traceback.
+#: Largest length of a traceback excerpt.
 _LINES, _WIDTH = 24, 400
 
 Attempt = RunRow | Failure
 
 
 class Names:
-    """Texts by number, in the order of their first use."""
+    """A list of texts with indices in the order of first use."""
 
     def __init__(self, *first: str) -> None:
         self.places = {name: i for i, name in enumerate(first)}
 
     def place(self, name: str) -> int:
-        """The number of a text; a new one if need be."""
+        """Return the index of a text, adding it if new."""
         return self.places.setdefault(name, len(self.places))
 
     @property
     def texts(self) -> list[str]:
-        """All texts, by number."""
+        """Return all texts, by index."""
         return list(self.places)
 
 
 def attempts(results: Results) -> list[Attempt]:
-    """Everything that was tried: the runs, and the failures that no run has made good since."""
+    """Return everything that was tried: the runs, and failures without a later successful run."""
     made = {(r.suite, r.scenario, r.planner, r.seed) for r in results.runs}
     failed = [f for f in results.failures if (f.suite, f.scenario, f.planner, f.seed) not in made]
     return [*results.runs, *failed]
 
 
 def axes_of(results: Results) -> list[dict[str, Any]]:
-    """Axes of the suite in its order: ``name``, ``labels``, and the words for both.
+    """Return the suite's axes in order: ``name``, ``labels``, and readable texts for both.
 
-    ``title`` says what the axis varies, ``words`` to which values. Runs that do not say it, and
-    those that do not agree, leave the names of the suite.
+    ``title`` describes the axis, ``words`` its values. If runs lack these or disagree, the suite's
+    names are used.
     """
     found: dict[str, dict[str, set[tuple[str, str]]]] = {}
     tried: list[Attempt] = [*results.runs, *results.failures]
@@ -78,7 +78,7 @@ def _axis(name: str, labels: Mapping[str, set[tuple[str, str]]]) -> dict[str, An
 
 
 def status_of(attempt: Attempt) -> str:
-    """How an attempt ended."""
+    """Return the outcome of an attempt."""
     return attempt.status if isinstance(attempt, RunRow) else Ending.NO_RUN
 
 
@@ -126,7 +126,10 @@ def _moment(run: RunRow) -> list[Any] | None:
 
 
 def _excerpt(traceback: str) -> str:
-    """The end, which says what went wrong; a deep recursion would be most of the page."""
+    """Return the end of a traceback, which shows the error.
+
+    A deep recursion would fill the page.
+    """
     lines = traceback.splitlines()
     cut = [f"… {len(lines) - _LINES} lines …"] if len(lines) > _LINES else []
     return "\n".join(line[:_WIDTH] for line in [*cut, *lines[-_LINES:]])
@@ -143,9 +146,9 @@ def _reason(attempt: Attempt) -> str:
 def encode_scores(
     results: Results, tried: Sequence[Attempt], series: Sequence[Series]
 ) -> tuple[list[tuple[str, str]], dict[str, str]]:
-    """States by code, and blobs of (series, run): values, bounds and codes.
+    """Return states by code, and blobs of (series, run): values, bounds and codes.
 
-    A run whose planner failed shows the values that it has; what is without one is ``failed``.
+    A run whose planner failed shows its existing values; the others are ``failed``.
     """
     rows = {(s.run_id, s.metric, s.variant): s for s in results.scores}
     shape = (len(series), len(tried))

@@ -1,7 +1,7 @@
-"""Figures: the statistics that a page shows but cannot work out itself, ready to be packed.
+"""Statistics that a page shows but cannot compute itself, ready for packing.
 
-Intervals are for all runs and for one label of one axis; comparisons for all runs only, because
-every further selection would be a further chance to find a difference that is not there.
+Intervals cover all runs and each label of each axis; comparisons cover all runs only, because every
+further selection would increase the risk of a false finding.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from crowdbot.core.statistics import (
 from crowdbot.core.statistics.axes import REALISED_DENSITY
 from crowdbot.core.statistics.summary_estimator import planner_mean
 
-#: What the page is told of a comparison, in this order.
+#: Fields of a comparison that the page gets, in this order.
 FIELDS = (
     "difference", "low", "high", "effect", "effect_low", "effect_high", "improvement",
     "improvement_low", "improvement_high", "detectable", "p_holm", "pairs", "draws", "undecided",
@@ -47,8 +47,8 @@ class Figures:
     """Statistics of a report.
 
     Attributes:
-        headline: of the scores that stand for their metrics: the four are one family of tests,
-            the others another; all other variants are a third.
+        headline: of the metrics' headline scores: the four main ones are one family of tests, the
+            others a second; all other variants are a third.
         selections: ``""`` for all runs, ``axis=label`` for a part.
         intervals: (selection, series, planner, 3): mean, share or rate, and its interval.
         pairs: (series, pair, field).
@@ -75,12 +75,12 @@ def figures(
     series: Sequence[Series],
     axes: Sequence[Mapping[str, Any]],
 ) -> Figures:
-    """Work out everything.
+    """Compute all figures.
 
     Args:
-        results: runs that may be compared.
-        table: of them.
-        series: what the page shows.
+        results: comparable runs.
+        table: table of the runs.
+        series: series that the page shows.
         axes: ``name`` and ``labels`` of each axis of the suite.
     """
     chosen = headline_names(table)
@@ -120,7 +120,7 @@ def _intervals(
 
 
 def _inside(table: Table, planner: str, selections: Sequence[str]) -> NDArray[np.bool_]:
-    """Which rows of the table belong to which selection, (selection, row)."""
+    """Return a mask (selection, row) of the table's rows in each selection."""
     runs = [table.runs.get((planner, key)) for key in table.keys]
     labels = [{f"{a}={x}" for a, x in run.axes.items()} if run else set() for run in runs]
     return np.array([[selection in found for found in labels] for selection in selections])
@@ -129,7 +129,7 @@ def _inside(table: Table, planner: str, selections: Sequence[str]) -> NDArray[np
 def _by_label(
     table: Table, one: Series, planner: str, inside: NDArray[np.bool_]
 ) -> Iterator[tuple[int, _Triple]]:
-    """What sums up the runs of each label of each axis."""
+    """Yield the summary of the runs with each label of each axis."""
     column = table.column(one.name, planner)
     for k in range(1, len(inside)):
         if (column.known & inside[k]).any():

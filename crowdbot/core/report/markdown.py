@@ -1,4 +1,4 @@
-"""The page as Markdown: the headline scores of all runs, and what is better for certain."""
+"""The report as Markdown: headline scores of all runs, and significant differences."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.core.statistics.estimate_text import joined_text, range_text
 
 
 def markdown(contents: Contents) -> str:
-    """The headline scores of all runs, and what is better for certain."""
+    """Return the headline scores of all runs, and the significant differences, as Markdown."""
     summary, heading = contents.figures.headline, contents.heading
     lines = [f"# {_plain(heading.suite)}", ""]
     lines += [f"Made {_plain(heading.made)}.", ""] if heading.made else []
@@ -42,7 +42,7 @@ def markdown(contents: Contents) -> str:
 
 
 def _by_crowd(ranks: CrowdRanks) -> list[str]:
-    """Order per crowd, how alike the orders are, and who is first in how many."""
+    """Return the order per crowd, its agreement, and how often each planner is first."""
     orders = [
         (
             _plain(o.crowd),
@@ -62,7 +62,7 @@ def _by_crowd(ranks: CrowdRanks) -> list[str]:
 
 
 def alike(tau: float) -> str:
-    """Kendall's tau as text."""
+    """Return Kendall's tau as text."""
     return "– (an order without differences)" if math.isnan(tau) else f"{tau:+.2f}"
 
 
@@ -76,17 +76,17 @@ def _meaning(summary: Summary) -> str:
 
 
 def chance(summary: Summary) -> str:
-    """What intervals leave to chance."""
+    """Return what the intervals treat as random."""
     if summary.conditions_fixed:
-        return "Intervals tell what other people would change; conditions are those of the suite."
+        return "Intervals show the variation between people; conditions are those of the suite."
     return (
-        "Intervals take people and conditions for chance: with one crowd draw a condition they "
-        "cannot be told apart."
+        "Intervals include variation between people and conditions: with one crowd draw per "
+        "condition they cannot be separated."
     )
 
 
 def _variances(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
-    """Shares of the variance of the main scores; of all scores where there are none."""
+    """Return variance shares of the main scores; of all scores if there are none."""
     known = [v for v in summary.variances if not v.reason]
     main = [v for v in known if is_main(v.metric, v.variant)] or known
     rows: list[Sequence[str]] = [
@@ -106,7 +106,7 @@ def _family(summary: Summary) -> str:
 
 
 def family(summary: Summary) -> str:
-    """What the scores that share the chance of a false verdict are called."""
+    """Return the name of the scores that share the probability of a false verdict."""
     main = any(is_main(s.metric, s.variant) for s in summary.scores)
     return FOUR_SCORES if main else "the headline scores"
 
@@ -148,7 +148,7 @@ def _score_cell(score: PlannerScore) -> str:
 
 
 def _whole(score: PlannerScore) -> list[str]:
-    """Between which bounds the mean of all runs lies, where that of some says too little."""
+    """Return bounds for the mean of all runs, if the mean of some is not enough."""
     if not score.counts.censored:
         return []
     return [f"mean of all {range_text(score.bounds)}"]
@@ -173,6 +173,6 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _plain(text: str) -> str:
-    """Text that Markdown shows as it is: names are user input."""
+    """Escape text for Markdown, since names are user input."""
     escaped = "".join(f"\\{c}" if c in "\\|*`<>[]#&" else c for c in text)
     return " ".join(escaped.split())

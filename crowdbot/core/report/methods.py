@@ -1,4 +1,4 @@
-"""The methods of a report as a paragraph that fits into a paper."""
+"""The methods of a report as a paragraph for a paper."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _SOFTWARE = ("crowdbot", "drake", "numpy", "python")
 
 
 def methods(contents: Contents) -> str:
-    """What was run, how scores are summed up and compared, and with which software.
+    """Describe runs, summaries, comparisons and software versions.
 
-    Every number is that of the report; nothing is said about what it found.
+    All numbers are those of the report; results are not mentioned.
     """
     parts = [_ran(contents), _ended(contents), _summed_up(contents), *_compared(contents)]
     parts += [f"We accepted that the runs differ in this: {text}." for text in _accepted(contents)]
@@ -37,7 +37,7 @@ def _ran(contents: Contents) -> str:
 
 
 def _named(contents: Contents, planner: str) -> str:
-    """A planner with what readers have to know of it."""
+    """Return a planner's name with the facts that readers need."""
     marks = [
         contents.role(planner) if contents.role(planner) != "candidate" else "",
         "privileged" if contents.is_privileged(planner) else "",

@@ -1,4 +1,4 @@
-"""Writes the report page."""
+"""Write the report page."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _SCRIPTS = (
 
 
 def write_report(path: Path, contents: Contents) -> dict[str, Path]:
-    """Write the page, and beside it the same as CSV and Markdown; equal input gives equal bytes.
+    """Write the page, and the same as CSV and Markdown; equal input gives equal bytes.
 
     Args:
-        path: of the page; the tables differ in the suffix.
-        contents: what to show.
+        path: path of the page; the tables have other suffixes.
+        contents: contents of the report.
 
     Returns:
-        ``html``, ``csv`` and ``md``: where they are.
+        ``html``, ``csv`` and ``md``: paths of the files.
 
     Raises:
         InputError: they cannot be written there.
@@ -51,18 +51,18 @@ def write_report(path: Path, contents: Contents) -> dict[str, Path]:
 
 
 def render(contents: Contents) -> str:
-    """The page as text."""
+    """Return the page as text."""
     states, blobs = encode_scores(contents.results, contents.attempts, contents.series)
     figures, runs = contents.figures, contents.results.runs
     blobs |= {name: pack(getattr(figures, name)) for name in ("pairs", "effects")}
-    blobs["intervals"] = pack_whole(figures.intervals)  # texts are to be those of other pages
+    blobs["intervals"] = pack_whole(figures.intervals)  # equal to the numbers on other pages
     blobs["meta"] = pack_document({**_meta(contents), "states": states})
     return render_page(
         __package__,
         more_style=ending_style(),
         endings=ATTEMPTED,
         scripts=[f"{name}.js" for name in _SCRIPTS],
-        images="blob:",  # a picture that is saved as PNG is drawn once more
+        images="blob:",  # saving as PNG draws the picture once more
         heading=contents.heading,
         contents=contents,
         planners=[_planner(contents, p) for p in contents.planners],
@@ -95,7 +95,7 @@ def _planner(contents: Contents, planner: str) -> dict[str, Any]:
 
 
 def _meta(contents: Contents) -> dict[str, Any]:
-    """What the script reads, apart from the columns of numbers."""
+    """Return the data that the script reads, apart from the columns of numbers."""
     marks = {metric: reference(card) for metric, card in contents.cards.items()}
     series = [{**s._asdict(), "reference": marks.get(s.metric)} for s in contents.series]
     return {
@@ -112,7 +112,7 @@ def _meta(contents: Contents) -> dict[str, Any]:
 
 
 def _first(contents: Contents) -> int:
-    """The series that is shown first: the primary score, or what comes first without it."""
+    """Return the series shown first: the primary score, or the first one without it."""
     known = {(s.metric, s.variant) for s in contents.figures.headline.scores}
     liked = [i for i, s in enumerate(contents.series) if s.name in known]
     return next(iter(liked), 0)

@@ -1,4 +1,4 @@
-"""Where the numbers come from: versions, hashes, plugins and machines of the runs."""
+"""Provenance of the numbers: versions, hashes, plugins and machines of the runs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.runs.record_parts import PluginPart
 
 
 def facts(runs: Sequence[RunRow]) -> dict[str, dict[str, str]]:
-    """Groups of facts: name -> text, with counts where the runs differ."""
+    """Return groups of facts: name -> text, with counts if the runs differ."""
     records = [run.record for run in runs]
     groups = {
         "software": _merged(r.versions for r in records),
@@ -37,7 +37,7 @@ def hashes(runs: Sequence[RunRow]) -> dict[str, str]:
 
 
 def scenarios(runs: Sequence[RunRow]) -> list[tuple[str, str, str]]:
-    """Scenario, the beginning of its hash, and of that of its crowd; several where they differ."""
+    """Return scenario, start of its hash and of its crowd's hash; several if they differ."""
     found: dict[str, tuple[dict[str, None], dict[str, None]]] = {}
     for run in runs:
         specs, draws = found.setdefault(run.scenario, ({}, {}))
@@ -47,7 +47,7 @@ def scenarios(runs: Sequence[RunRow]) -> list[tuple[str, str, str]]:
 
 
 def short(hash_: str) -> str:
-    """Enough of a hash to find it by."""
+    """Return the start of a hash, enough to identify it."""
     return hash_.removeprefix("cb1-sha256:")[:16]
 
 
@@ -57,7 +57,7 @@ def planner_facts(runs: Sequence[RunRow]) -> dict[str, str]:
 
 
 def _conditions(run: RunRow, *, metrics: bool) -> dict[str, str]:
-    """The parameters of metrics, or the rest but what is told as software and machine."""
+    """Return the parameters of metrics, or the other conditions without software and machine."""
     if metrics:
         names = {n: n.removeprefix("metrics.") for n in run.conditions if n.startswith("metrics.")}
     else:
@@ -84,7 +84,7 @@ def _plugins(plugins: Sequence[PluginPart]) -> dict[str, str]:
 
 
 def _merged(documents: Iterable[Mapping[str, str]]) -> dict[str, str]:
-    """One text for each name; different texts are told with the number of their runs."""
+    """Return one text per name; different texts are given with their number of runs."""
     counts: dict[str, Counter[str]] = {}
     for document in documents:
         for name, text in document.items():

@@ -1,4 +1,4 @@
-"""Series: one variant of one metric, in the order in which a report shows them."""
+"""Series: one variant of one metric, in the report's order."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _FIRST = (
     "similarity",
     "proximity",
 )
-#: Categories that no simulated run has data for.
+#: Categories without data in simulated runs.
 _LAST = ("shared control", "questionnaire")
 
 #: Category of the metrics that the suite names.
@@ -30,9 +30,8 @@ NAMED = "named by the suite"
 class Series(NamedTuple):
     """One variant of one metric.
 
-    ``plain``: the corrected variant, or one of a metric that has no such variant. ``headline``:
-    shown before anybody asks for more. ``centre``: what its runs are summed up by. ``over``: of a
-    rate, the variant of the same metric that it is over.
+    ``plain``: the corrected variant, or any if the metric has none. ``headline``: shown by default.
+    ``centre``: the summary of its runs. ``over``: for a rate, the variant by which it is divided.
     """
 
     metric: str
@@ -53,14 +52,14 @@ class Series(NamedTuple):
 
 
 def all_series(table: Table, named: Sequence[str] = ()) -> list[Series]:
-    """Every variant of every metric in some runs; those of the seed first in their category.
+    """Return every variant of every metric in some runs; the original ones first in their category.
 
-    The four scores are a category of their own, and come before all others; before them come the
-    metrics that the suite names, with the variants that stand for them.
+    The four main scores form a category before all others; before them come the metrics that the
+    suite names, with their headline variants.
 
     Args:
-        table: of all runs. A metric without a headline is represented by its plain variants.
-        named: metrics of the suite, in its order.
+        table: table of all runs. A metric without a headline is represented by its plain variants.
+        named: metrics that the suite names, in order.
     """
     headlines = set(headline_names(table))
     labels = {name: table.label(name) for name in table.names}

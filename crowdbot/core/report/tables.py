@@ -1,4 +1,4 @@
-"""The table beside the page: every score as tidy CSV."""
+"""The report's table: every score as tidy CSV."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _cells = attrgetter(*_SCORE)
 
 
 def csv_rows(contents: Contents) -> Iterator[Sequence[str]]:
-    """Header, then one row a score; an attempt without scores has one row without a metric."""
+    """Yield the header, then one row per score; an attempt without scores has one row."""
     axes = [axis["name"] for axis in contents.axes]
     scores: dict[str, list[ScoreRow]] = {}
     for row in contents.results.scores:

@@ -1,1 +1,1 @@
-"""What campaigns leave behind: rows of runs, scores and failures, their store and their export."""
+"""Results of campaigns: rows of runs, scores and failures, their store and their export."""

@@ -1,4 +1,4 @@
-"""Confounds: what besides the planner differs between runs that are about to be compared."""
+"""Confounds: differences between compared runs other than the planner."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow
 from crowdbot.errors import InputError, UnknownNameError
 
-#: Name of a confound -> how bad it is, and what it is.
+#: Name of a confound -> its severity and description.
 KINDS: Mapping[str, tuple[Literal["error", "warning"], str]] = {
     "scenario": ("error", "scenarios of one name with different content"),
     "crowd": ("error", "different people in one scenario"),
@@ -22,15 +22,15 @@ KINDS: Mapping[str, tuple[Literal["error", "warning"], str]] = {
     "metrics": ("error", "metrics of different versions or parameters"),
     "versions": ("error", "different versions of software"),
     "privileged": ("error", "planners that know ground truth among planners that sense"),
-    "agents": ("warning", "people read from a lock in some runs, drawn anew in others"),
-    "unpinned": ("warning", "code of no installed version, which nobody else can get by name"),
+    "agents": ("warning", "people read from a lock in some runs, sampled in others"),
+    "unpinned": ("warning", "code of no installed version, which others cannot get by name"),
     "processor": ("warning", "different processors, which round differently"),
     "unpaired": ("warning", "scenarios and seeds that not all planners have run"),
 }
 
 _SHOWN = 3
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
-#: Beginning of a condition's name -> the confound that it is.
+#: Prefix of a condition's name -> its confound.
 _CONDITIONS = {
     "rates": "rates",
     "rate": "rates",
@@ -43,20 +43,20 @@ _CONDITIONS = {
     "version": "versions",
     "processor": "processor",
 }
-#: These are to be equal in all runs; the others in all runs of one scenario.
+#: Conditions that must be equal in all runs; the others in all runs of one scenario.
 _EVERYWHERE = ("metrics", "versions", "processor")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
-    """One thing that differs.
+    """One difference.
 
     Attributes:
-        kind: of `KINDS`.
-        severity: ``error``: the runs must not be compared; ``warning``: they may.
-        subject: what differs: a scenario, a condition, a package.
-        values: value -> directories of the runs that have it, the commonest first.
-        accepted: somebody takes the responsibility; reports print it.
+        kind: key of `KINDS`.
+        severity: ``error``: the runs cannot be compared; ``warning``: they can.
+        subject: the scenario, condition or package that differs.
+        values: value -> directories of the runs with it, most frequent first.
+        accepted: True if the user accepted it; reports show it.
     """
 
     kind: str
@@ -72,15 +72,14 @@ class Finding:
 
 
 def confounds(results: Results, accept: Iterable[str] = ()) -> tuple[Finding, ...]:
-    """Everything besides the planner that differs, errors first.
+    """Return all differences other than the planner, errors first.
 
     Args:
-        results: the runs that are compared.
-        accept: names of confounds that are known and accepted; several in one text have commas
-            between them.
+        results: the compared runs.
+        accept: names of accepted confounds, separated by commas.
 
     Raises:
-        UnknownNameError: there is no confound of such a name.
+        UnknownNameError: there is no confound with this name.
     """
     accepted = {name.strip() for text in accept for name in text.split(",")}
     for name in sorted(accepted - set(KINDS)):
@@ -92,10 +91,10 @@ def confounds(results: Results, accept: Iterable[str] = ()) -> tuple[Finding, ..
 
 
 def check_comparable(findings: Sequence[Finding]) -> None:
-    """Refuse to compare.
+    """Refuse a comparison with errors.
 
     Raises:
-        InputError: a finding is an error and was not accepted.
+        InputError: there is an error that was not accepted.
     """
     errors = [f for f in findings if f.severity == "error" and not f.accepted]
     if errors:
@@ -108,7 +107,7 @@ def check_comparable(findings: Sequence[Finding]) -> None:
 
 
 def _lines(findings: Sequence[Finding]) -> Iterator[str]:
-    """Some findings of each kind."""
+    """Yield some findings of each kind."""
     for kind in dict.fromkeys(f.kind for f in findings):
         same = [f for f in findings if f.kind == kind]
         yield from (f"  {f}" for f in same[:_SHOWN])
@@ -123,12 +122,12 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
         yield _finding("crowd", scenario, group, lambda r: _short(r.realisation_hash))
         yield _finding("agents", scenario, group, lambda r: r.record.agents)
     yield from _conditions(runs)
-    # A ceiling is there to be compared with, and says what it is.
+    # A ceiling is meant for comparison and is marked as one.
     yield _finding("privileged", "planners", [r for r in runs if r.role != "ceiling"], _class)
     loose = [r for r in runs if not r.pinned]
     for planner, group in _grouped(loose, lambda r: r.planner):
         yield _finding("unpinned", planner, group, _source)
-    # Floors and ceilings are run in a sample; what is said of them says in how many pairs.
+    # Floors and ceilings run in a sample; results about them give the number of pairs.
     yield from _unpaired([r for r in runs if r.role not in ("floor", "ceiling")])
 
 
@@ -141,7 +140,7 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
         for scenario, group in groups:
             subject = f"{name}, {scenario}" if scenario else name
 
-            if kind == "metrics":  # what was not scored is not compared
+            if kind == "metrics":  # unscored runs are not compared
                 group = [r for r in group if _has_metric(all_conditions[r.run_id], name)]
 
             def value(r: RunRow, name: str = name) -> str:
@@ -151,13 +150,13 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
 
 
 def _has_metric(conditions: Mapping[str, str], name: str) -> bool:
-    """Whether a run has the metric of a condition such as ``metrics.risk.risk_horizon``."""
+    """Return True if a run has the metric of a condition such as ``metrics.risk.risk_horizon``."""
     head = ".".join(name.split(".")[:2])
     return any(n == head or n.startswith(f"{head}.") for n in conditions)
 
 
 def _unpaired(runs: Sequence[RunRow]) -> Iterator[Finding]:
-    """One finding for each set of planners that alone have run something."""
+    """Yield one finding per set of planners that share runs without the others."""
     planners = tuple(sorted({r.planner for r in runs}))
     by_place: dict[tuple[str, int], list[RunRow]] = {}
     for run in runs:
@@ -191,7 +190,7 @@ def _finding(
 
 
 def _merged(findings: Iterable[Finding]) -> Iterator[Finding]:
-    """Findings of one kind and one pair of values in many scenarios become one."""
+    """Merge findings of one kind and value pair in many scenarios."""
     found: dict[tuple[str, str, tuple[str, ...]], list[Finding]] = {}
     for finding in findings:
         name = finding.subject.partition(",")[0] if "," in finding.subject else ""
@@ -247,7 +246,7 @@ def _counted(runs: Sequence[str]) -> str:
 
 
 def _apart(values: Sequence[str]) -> str:
-    """By how much two values differ, where both are numbers with equal text around."""
+    """Return the difference of two values if both are numbers in equal text."""
     if len(values) != 2 or len({_NUMBER.sub("#", v) for v in values}) != 1:
         return ""
     found = [_NUMBER.findall(v) for v in values]

@@ -1,4 +1,4 @@
-"""What is left of a run that could not be made: a file beside the place where it would be."""
+"""Records of failed runs: a file beside the place where the run would be."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Failure:
 
 
 def write_failure(run: Path, failure: Failure) -> None:
-    """Write it beside the directory of the run, which need not exist.
+    """Write the failure beside the run's directory, which need not exist.
 
     Raises:
         InputError: it cannot be written.
@@ -46,17 +46,17 @@ def write_failure(run: Path, failure: Failure) -> None:
 
 
 def read_failure(file: Path) -> Failure | None:
-    """What `write_failure` wrote; None for anything else."""
+    """Read a failure; return None for anything else."""
     try:
         content = json.loads(read_text(file))
-        content.setdefault("axes", {})  # records of earlier versions have none
+        content.setdefault("axes", {})  # missing in records of earlier versions
         return Failure(**{f.name: content[f.name] for f in fields(Failure)})
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
 
 
 def forget_failure(run: Path) -> None:
-    """The run is there now."""
+    """Delete the failure of a run that now exists."""
     with suppress(FileNotFoundError):
         _file(run).unlink()
 

@@ -1,4 +1,4 @@
-"""Results: all rows of a campaign, read from its folder, and their tables for pandas and Arrow."""
+"""Results: all rows of a campaign, read from its folder, and pandas and Arrow tables."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ Table = Literal["scores", "runs"]
 class Results:
     """All runs, scores and failures, as they were when the folder was read.
 
-    Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run,
-    metric and variant. ``scales`` are those of the metrics that are installed, from
-    `crowdbot.core.scoring.score_scale.score_scales`: intervals do not leave bounds that are known.
-    ``damaged`` runs are listed apart from the others.
+    Runs are sorted by suite, scenario in the suite's order, planner and seed; scores by run, metric
+    and variant. ``scales`` are those of the installed metrics, from
+    `crowdbot.core.scoring.score_scale.score_scales`; they bound the intervals. ``damaged`` runs are
+    listed separately.
     """
 
     runs: tuple[RunRow, ...] = ()
@@ -39,12 +39,12 @@ class Results:
 
     @classmethod
     def open(cls, root: str | Path = "runs") -> Results:
-        """Read all runs, scores and failures below a folder; write nothing there.
+        """Read all runs, scores and failures below a folder, without writing.
 
         A damaged run is left out, with a warning.
 
         Args:
-            root: of the run directories.
+            root: root of the run directories.
 
         Raises:
             InputError: there is no such folder.
@@ -54,7 +54,7 @@ class Results:
         return cls(**read_rows(path_of("root", root))._asdict())
 
     def to_pandas(self, table: Table = "scores") -> pd.DataFrame:
-        """One row per score, with suite, scenario, planner, seed and the axes of its run.
+        """Return one row per score, with suite, scenario, planner, seed and axes of its run.
 
         Args:
             table: ``scores``, or ``runs`` for one row per run.
@@ -65,7 +65,7 @@ class Results:
         return to_pandas(*self._lines(table))
 
     def to_arrow(self, table: Table = "scores") -> pa.Table:
-        """The same as an Arrow table.
+        """Return the same as an Arrow table.
 
         Args:
             table: ``scores`` or ``runs``.
@@ -76,7 +76,7 @@ class Results:
         return to_arrow(*self._lines(table))
 
     def _lines(self, table: str) -> tuple[list[dict[str, Any]], list[str]]:
-        """Rows and names of the columns of a table."""
+        """Return rows and column names of a table."""
         if table not in ("scores", "runs"):
             raise InputError(f"there is no table {table!r}; there are 'scores' and 'runs'")
         lines = score_lines(self.runs, self.scores) if table == "scores" else run_lines(self.runs)

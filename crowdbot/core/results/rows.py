@@ -1,4 +1,4 @@
-"""The rows of a campaign's results: runs, scores, failures and damaged runs, as plain values."""
+"""Rows of a campaign's results: runs, scores, failures and damaged runs, as plain values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import cached_property
 
 from crowdbot.core.runs.run_record import RunRecord
 
-#: What is known of an attempt that left no run: its robot did not arrive.
+#: Known scores of an attempt without a run: its robot did not arrive.
 WITHOUT_RUN: Mapping[str, float] = {
     "success": 0.0,
     "success_no_collision": 0.0,
@@ -174,7 +174,7 @@ class ScoreRow:
     Attributes:
         value: None unless ``status`` is ``ok``.
         better: ``higher``, ``lower``, ``reference`` (nearer to the reference run) or ``none``.
-        status: ``ok``, ``undefined`` or ``censored``; ``reason`` says why.
+        status: ``ok``, ``undefined`` or ``censored``; ``reason`` explains it.
         lower, upper: bounds of a censored value.
     """
 
@@ -194,11 +194,11 @@ class ScoreRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DamagedRun:
-    """A run that is left out, because something of it is missing, cut or malformed.
+    """A run that is left out because a file is missing, truncated or malformed.
 
     Attributes:
         directory: relative to the results' root.
-        reason: what is wrong with it.
+        reason: the error.
     """
 
     directory: str

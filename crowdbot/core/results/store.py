@@ -1,7 +1,7 @@
 """results.sqlite: an index of the run directories below a root, which can always be rebuilt.
 
-The directories are the truth. One process writes the index at a time, a campaign, which holds
-``results.lock``; who only reads brings a copy in memory up to date, and writes nothing.
+The directories are authoritative. One process at a time, a campaign with ``results.lock``, writes
+the index; readers update a copy in memory and write nothing.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ CREATE TABLE IF NOT EXISTS failures (
 
 
 class StoredRows(NamedTuple):
-    """Everything below a root: runs in the promised order, scores by run, and what has no run."""
+    """Everything below a root: runs in the documented order, scores by run, and failures."""
 
     runs: tuple[RunRow, ...]
     scores: tuple[ScoreRow, ...]
@@ -60,7 +60,7 @@ class StoredRows(NamedTuple):
 
 
 def read_rows(root: Path) -> StoredRows:
-    """All runs, scores and failures below a root as they are now; nothing is written there.
+    """Return all current runs, scores and failures below a root, without writing.
 
     A damaged run is left out, with a warning.
 
@@ -79,7 +79,7 @@ def read_rows(root: Path) -> StoredRows:
 
 @contextmanager
 def index(root: Path) -> Iterator[Store]:
-    """The index of a root, for the one process that may write it.
+    """Yield the index of a root for the only process that may write it.
 
     Raises:
         InputError: it cannot be written, or another process is writing it.
@@ -102,7 +102,7 @@ def index(root: Path) -> Iterator[Store]:
 
 @contextmanager
 def _copy(root: Path) -> Iterator[Store]:
-    """The index in memory; an empty one where there is none that can be read."""
+    """Yield the index in memory; empty if there is none that can be read."""
     with closing(sqlite3.connect(":memory:")) as database:
         with suppress(sqlite3.Error, OSError), closing(_reader(root / INDEX)) as original:
             if original.execute("PRAGMA user_version").fetchone()[0] == VERSION:
@@ -112,11 +112,11 @@ def _copy(root: Path) -> Iterator[Store]:
 
 
 def _reader(file: Path) -> sqlite3.Connection:
-    """The index, opened so that nothing appears beside it.
+    """Open the index without creating files beside it.
 
-    SQLite makes files beside an index with a log (WAL) even for somebody who only reads. Where a
-    campaign has them open they are there; elsewhere the file is whole, and is read as bytes that
-    say that they have no log.
+    SQLite creates files beside an index with a write-ahead log (WAL), even for readers. During a
+    campaign they exist; otherwise the file is complete, and is read as bytes marked as having no
+    log.
     """
     if file.with_name(f"{file.name}-wal").exists():
         return sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
@@ -128,7 +128,7 @@ def _reader(file: Path) -> sqlite3.Connection:
 
 
 def _opened(file: Path) -> sqlite3.Connection:
-    """A usable index; one that is damaged or of another version begins anew."""
+    """Return a usable index; a damaged or outdated one is recreated."""
     for _ in range(2):
         database = sqlite3.connect(file, timeout=30.0)
         try:
@@ -163,9 +163,9 @@ class Store:
         database.row_factory = sqlite3.Row
 
     def synchronise(self) -> None:
-        """Add what is new or changed, remove what is gone; a run that is unchanged is not read.
+        """Add new or changed runs and remove deleted ones; unchanged runs are not read.
 
-        A run that is damaged is removed, and told with the results.
+        A damaged run is removed, and reported with the results.
         """
         self._damaged = []
         found = dict(self._whole(_scan(self._root)))
@@ -180,7 +180,7 @@ class Store:
                         self._insert(directory, stamp)
 
     def add(self, directory: str) -> None:
-        """A run has been made; its failure, if there was one, is over."""
+        """Add a new run and remove its failure, if any."""
         stamp = _stamp_of_run(self._root / directory)
         with self._database:
             failure = directory + SUFFIX
@@ -188,19 +188,19 @@ class Store:
             self._insert(directory, stamp)
 
     def add_failure(self, directory: str) -> None:
-        """A run could not be made."""
+        """Add a run that could not be made."""
         with self._database:
             self._insert(directory + SUFFIX, _stamp(self._root / (directory + SUFFIX)))
 
     def rows(self) -> StoredRows:
-        """Everything, in the promised order."""
+        """Return everything, in the documented order."""
         order = "ORDER BY suite, position, scenario, planner, seed"
         runs = self._database.execute(f"SELECT * FROM runs {order}").fetchall()
         ids = {row["directory"]: row["run_id"] for row in runs}
         scores: dict[str, list[ScoreRow]] = {d: [] for d in ids}
         query = f"SELECT directory, {', '.join(_SCORE)} FROM scores"
         for row in self._database.execute(f"{query} ORDER BY directory, metric, variant, row"):
-            directory, *cells = row  # by place: there are hundreds of thousands
+            directory, *cells = row  # by position: there are hundreds of thousands
             named = dict(zip(_SCORE, cells, strict=True))
             scores[directory].append(ScoreRow(run_id=ids[directory], **named))
         failures = self._database.execute(f"SELECT * FROM failures {order}").fetchall()
@@ -212,7 +212,7 @@ class Store:
         )
 
     def _whole(self, found: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-        """What was found, without runs of which a file is missing."""
+        """Yield the found runs without those that lack a file."""
         for directory, stamp in found:
             if stamp:
                 yield directory, stamp
@@ -227,7 +227,7 @@ class Store:
         run = self._root / directory
         self._database.execute("DELETE FROM runs WHERE directory = ?", [directory])
         if not (run / files.RECORD).exists():
-            return  # replaced at this very moment; the next look finds it
+            return  # replaced at this moment; the next scan finds it
         try:
             row, rows = _read_row(run, directory), read_scores_csv(run / files.SCORES)
             _check_rows(run / files.SCORES, row, rows)
@@ -270,14 +270,14 @@ _FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error",
 
 
 def _scan(root: Path) -> Iterator[tuple[str, str]]:
-    """Runs and failures below a root with their stamps; calibration runs are not results."""
+    """Yield runs and failures below a root with their stamps, without calibration runs."""
     for folder, below, names in os.walk(root):
         here = Path(folder)
         if files.RECORD in names:
             below.clear()
             try:
                 yield here.relative_to(root).as_posix(), _stamp_of_run(here)
-            except OSError:  # replaced at this very moment, or a link that leads nowhere
+            except OSError:  # replaced at this moment, or a broken link
                 if (here / files.RECORD).is_symlink():
                     yield here.relative_to(root).as_posix(), ""
             continue
@@ -301,7 +301,7 @@ def _stamp(file: Path) -> str:
 
 
 def _stamp_of_run(run: Path) -> str:
-    """Changes when the record does, or when another file of the run is cut or gone."""
+    """Return a stamp that changes with the record, or if another file is truncated or missing."""
     parts = [_stamp(run / files.RECORD)]
     for name in (files.RECORDING, files.SCORES):
         try:
@@ -315,7 +315,7 @@ def _read_row(run: Path, directory: str) -> RunRow:
     """The row of a run.
 
     Raises:
-        InputError: something of it is missing, cut or malformed.
+        InputError: a part is missing, truncated or malformed.
     """
     document = files.checked_record(run)
     listed = document.get("files")

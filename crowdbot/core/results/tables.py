@@ -1,4 +1,4 @@
-"""Results as tables: one line a score or a run, for CSV, Parquet and questions."""
+"""Results as tables: one line per score or run, for CSV, Parquet and queries."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _NULL = "\\N"
 
 
 def axes_of(runs: Iterable[RunRow]) -> list[str]:
-    """Names of all axes, in the order of the suites."""
+    """Return the names of all axes, in the order of the suites."""
     return list(dict.fromkeys(name for run in runs for name in run.axes))
 
 
 def run_lines(runs: Sequence[RunRow]) -> list[Line]:
-    """One line a run; its label on axis ``x`` is in ``axis_x``."""
+    """Return one line per run; its label on axis ``x`` is in ``axis_x``."""
     axes = axes_of(runs)
     return [
         {
@@ -38,7 +38,7 @@ def run_lines(runs: Sequence[RunRow]) -> list[Line]:
 
 
 def score_lines(runs: Sequence[RunRow], scores: Iterable[ScoreRow]) -> list[Line]:
-    """One line a score, with the columns that identify its run."""
+    """Return one line per score, with the columns that identify its run."""
     axes, by_id = axes_of(runs), {run.run_id: run for run in runs}
     lines = []
     for score in scores:
@@ -57,7 +57,7 @@ def score_lines(runs: Sequence[RunRow], scores: Iterable[ScoreRow]) -> list[Line
 
 
 def write_csv(path: Path, lines: Sequence[Line]) -> None:
-    """RFC 4180, UTF-8; empty cells for what is not there.
+    """Write CSV (RFC 4180, UTF-8); missing values are empty cells.
 
     Raises:
         InputError: there is nothing to write, or it cannot be written there.
@@ -68,7 +68,7 @@ def write_csv(path: Path, lines: Sequence[Line]) -> None:
 
 
 def write_parquet(path: Path, lines: Sequence[Line]) -> None:
-    """The same with types, through DuckDB.
+    """Write the same with types as Parquet, through DuckDB.
 
     Raises:
         MissingLibraryError: ``duckdb`` is not installed.

@@ -1,4 +1,4 @@
-"""Robots: from a spec to a model that is checked, and what their descriptions say."""
+"""Robots: build and check the model of a spec, and read robot descriptions."""
 
 from crowdbot.core.robots.build import MODES, build_model, build_robot
 from crowdbot.core.robots.description import Description, read_description

@@ -1,4 +1,4 @@
-"""Builds robots from scenarios."""
+"""Build robots from scenarios."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.dsl.spec.component_specs import RobotSpec
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger(__name__)
-#: Drive -> control modes that fit it.
+#: Drive -> supported control modes.
 MODES: Mapping[type, tuple[str, ...]] = {
     DifferentialDrive: ("differential_drive", "force", "kinematic"),
     HolonomicDrive: ("force", "kinematic"),
@@ -23,21 +23,21 @@ MODES: Mapping[type, tuple[str, ...]] = {
 
 @cache
 def _tell(kind: str, note: str) -> None:
-    """Say a note once."""
+    """Issue a note once."""
     _LOG.warning("%s: %s", kind, note)
 
 
 def build_model(registry: Registry, spec: RobotSpec) -> RobotModel:
-    """The model that a robot's spec describes.
+    """Build the model that a robot's spec describes.
 
     Raises:
-        PluginError: it cannot be built, or its parts do not fit each other.
+        PluginError: the model cannot be built or is inconsistent.
     """
     return registry.build(spec, check_model)
 
 
 def build_robot(registry: Registry, robot: Robot) -> RobotModel:
-    """The model of a scenario's robot.
+    """Build the model of a scenario's robot.
 
     Raises:
         PluginError: as `build_model`.

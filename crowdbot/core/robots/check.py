@@ -1,4 +1,4 @@
-"""Checks what a robot's build function returned, before anything is simulated with it."""
+"""Check the result of a robot's build function before it is simulated."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
 from crowdbot.errors import PluginError
 
-_LENGTH = 1e-3  # m; what two statements about one length may differ by
-_FLOOR = 5e-3  # m; what a wheel may hang or sink before it is set down
-_SHARE = 0.01  # of a mass or a length
-_ALONG = 0.999  # cosine of the angle between two directions that are one
+_LENGTH = 1e-3  # m; tolerance between two statements of a length
+_FLOOR = 5e-3  # m; tolerance of a wheel's height over the floor
+_SHARE = 0.01  # share of a mass or a length
+_ALONG = 0.999  # cosine of the largest angle between equal directions
 
 
 def check_model(model: object) -> RobotModel:
-    """What a build function returned, if it is a robot whose parts fit each other.
+    """Return the model if it is a consistent robot.
 
     Raises:
         PluginError: it is not; the message says what to change.
@@ -125,7 +125,10 @@ def _check_wheels(model: RobotModel, drive: DifferentialDrive, described: Descri
 
 
 def _check_place(name: str, pose: Array, base: str, fitting: float) -> None:
-    """``fitting``: height of the base above the axle of a wheel that stands on the floor."""
+    """Check a wheel's position.
+
+    ``fitting``: height of the base above the axle of a wheel on the floor.
+    """
     x, _, z = pose[:3, 3].tolist()
     if abs(x) > _LENGTH:
         raise PluginError(

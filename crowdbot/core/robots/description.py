@@ -1,4 +1,4 @@
-"""Reads a robot's description, SDFormat or URDF, far enough to check it and to take from it.
+"""Read a robot's description, SDFormat or URDF, as far as checks and models need it.
 
 Nothing here needs Drake.
 """
@@ -30,10 +30,10 @@ class Description:
     """A robot's description.
 
     Attributes:
-        text: as it was read.
-        model: its ``robot`` or ``model`` element.
-        version: of SDFormat.
-        notes: what was simplified in reading it, for its user.
+        text: the text as read.
+        model: the ``robot`` or ``model`` element.
+        version: version of SDFormat.
+        notes: simplifications made on reading, for the user.
     """
 
     text: str
@@ -60,7 +60,7 @@ class Description:
 
     @cached_property
     def root(self) -> str:
-        """The one link that hangs from no other.
+        """Return the only link without a parent.
 
         Raises:
             PluginError: there is none, or there are several.
@@ -73,37 +73,38 @@ class Description:
         return roots[0]
 
     def link(self, name: str) -> Xml.Element:
-        """The link of a name.
+        """Return the link with this name.
 
         Raises:
-            PluginError: there is none; the message names the nearest.
+            PluginError: there is none; the message suggests the closest name.
         """
         if name not in self.links:
             raise PluginError(_unknown("link", name, self.links))
         return self.links[name]
 
     def joint(self, name: str) -> Joint:
-        """The joint of a name.
+        """Return the joint with this name.
 
         Raises:
-            PluginError: there is none; the message names the nearest.
+            PluginError: there is none; the message suggests the closest name.
         """
         if name not in self.joints:
             raise PluginError(_unknown("joint", name, self.joints))
         return self.joints[name]
 
     def pose(self, link: str, seen_from: str) -> Array:
-        """Pose of a link in the frame of another, all joints at zero, 4 x 4.
+        """Return the pose of a link in the frame of another, with all joints at zero, 4 x 4.
 
         Raises:
-            PluginError: there is no such link, or its pose is relative to what is not a link.
+            PluginError: there is no such link, or its pose is relative to something that is not a
+                link.
         """
         of = self._from_root if self.format == "urdf" else self._in_model
         pose: Array = np.linalg.inv(of(seen_from, ())) @ of(link, ())
         return pose
 
     def wheel_radius(self, joint: str) -> float:
-        """Radius of the collision shape that a joint turns, m.
+        """Return the radius of the collision shape on a joint, m.
 
         Raises:
             PluginError: there is no such joint, or no sphere or cylinder on it.
@@ -119,10 +120,10 @@ class Description:
     def differential_drive(
         self, left_joint: str, right_joint: str, *, base: str = "base_link"
     ) -> DifferentialDrive:
-        """The drive of two wheels, with radius and track as described.
+        """Return the drive of two wheels, with radius and track from the description.
 
         Raises:
-            PluginError: there are no such joints, or no wheels on them, or they are exchanged.
+            PluginError: the joints are missing, have no wheels, or are swapped.
         """
         left, right = (
             self.pose(self.joint(name).child, base)[:3, 3] for name in (left_joint, right_joint)
@@ -162,7 +163,7 @@ class Description:
 
 
 def read_description(source: str | Path | Traversable) -> Description:
-    """A robot's description from its text, or from a file.
+    """Read a robot's description from text or from a file.
 
     Args:
         source: text that begins with ``<``, or a path: of a file beside the scenario
@@ -170,7 +171,7 @@ def read_description(source: str | Path | Traversable) -> Description:
             (``importlib.resources.files("my_package") / "robot.urdf"``).
 
     Raises:
-        PluginError: it cannot be read, is not well-formed, or describes no robot.
+        PluginError: it cannot be read, is not well-formed, or contains no robot.
     """
     text, _ = read_text(source)
     try:
@@ -182,7 +183,7 @@ def read_description(source: str | Path | Traversable) -> Description:
 
 
 def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
-    """The text of a description, and the folder that it lies in; arguments as `read_description`.
+    """Return the text of a description and its folder; arguments as in `read_description`.
 
     Raises:
         PluginError: it cannot be read.
@@ -198,10 +199,10 @@ def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
 
 
 def parse_description(text: str) -> Description:
-    """A description from its text; what is in it is not looked at.
+    """Parse a description without checking its contents.
 
     Raises:
-        PluginError: it is not well-formed, or describes no robot.
+        PluginError: it is not well-formed, or contains no robot.
     """
     try:
         top = Xml.fromstring(text.lstrip("\ufeff \t\r\n"))
@@ -254,7 +255,7 @@ def _check_circle(link: str, below: tuple[str, ...]) -> None:
 
 
 def _mass(link: Xml.Element, kind: Format) -> float:
-    """Mass of a link, kg; that of SDFormat is 1 kg where it does not say."""
+    """Return the mass of a link, kg; 1 kg in SDFormat by default."""
     mass = link.find("inertial/mass")
     if mass is None:
         if kind == "urdf" and link.find("inertial") is not None:
@@ -265,7 +266,7 @@ def _mass(link: Xml.Element, kind: Format) -> float:
 
 
 def collisions(link: Xml.Element) -> Iterator[Xml.Element]:
-    """The shapes of a link that collide."""
+    """Yield the collision shapes of a link."""
     for collision in link.findall("collision"):
         yield from collision.findall("geometry/*")
 

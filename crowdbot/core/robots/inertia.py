@@ -1,4 +1,4 @@
-"""Whether moments of inertia are those of a body."""
+"""Check that moments of inertia are physically possible."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from crowdbot.core.robots.xml import number
 
-_SLACK = 1e-3  # of the largest moment; files are rounded
-#: Radius of gyration of a part, m; a robot of 2 m has 0.6 m.
+_SLACK = 1e-3  # share of the largest moment; files are rounded
+#: Largest radius of gyration of a part, m; a robot of 2 m has 0.6 m.
 _WIDEST = 1.0
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
@@ -18,16 +18,16 @@ _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 def check_inertia(
     inertial: Xml.Element, radius: float | None
 ) -> Literal["impossible", "implausible"] | None:
-    """What is wrong with the ``<inertial>`` of a link of a URDF; None: nothing.
+    """Return what is wrong with the ``<inertial>`` of a URDF link; None if nothing.
 
-    No body has moments that are not positive, or of which one is more than the other two
-    together. No wheel has the gyration of a larger one.
+    Moments must be positive, and none may exceed the sum of the other two. A wheel's radius of
+    gyration must fit its radius.
 
     Args:
-        radius: of the wheel that it is, m; None of all other links.
+        radius: radius of the wheel, m; None for other links.
 
     Raises:
-        PluginError: something that should be a number is not.
+        PluginError: a value is not a number.
     """
     mass = _value(inertial.find("mass"), "value", "a mass")
     xx, yy, zz, xy, xz, yz = (_value(inertial.find("inertia"), n, n) for n in _MOMENTS)
@@ -41,9 +41,9 @@ def check_inertia(
 
 
 def rolling(inertial: Xml.Element, radius: float) -> None:
-    """Give it the moments of a ball as heavy as a disc of this radius (m) is to turn: m r^2 / 2.
+    """Set the inertia of a ball that turns like a disc of this radius (m): m r^2 / 2.
 
-    A ball's are the same about every axis, so that it does not matter how the link is turned.
+    A ball's inertia is equal about all axes, so the link's orientation does not matter.
     """
     moment = 0.5 * _value(inertial.find("mass"), "value", "a mass") * radius**2
     inertia = inertial.find("inertia")

@@ -1,4 +1,4 @@
-"""The joints of a robot's description."""
+"""Joints of a robot's description."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import PluginError
 
-#: Joints that a mobile base may have.
+#: Joint types that a mobile base may have.
 KNOWN = ("fixed", "continuous", "revolute", "prismatic")
-#: From here on SDFormat takes a limit as none.
+#: SDFormat treats limits from this value on as unlimited.
 _UNLIMITED = 1e16
 
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One joint.
+    """A joint of a robot's description.
 
     Attributes:
-        kind: as SDFormat or URDF call it.
+        kind: joint type in SDFormat or URDF.
         axis: (3,) in the frame of the child.
-        effort: largest force or torque, N or N m; None where the description does not say.
-        free: whether it turns without end.
+        effort: largest force or torque, N or N m; None if not given.
+        free: True if it rotates without limits.
     """
 
     name: str
@@ -38,13 +38,13 @@ class Joint:
 
 
 def child_of(joint: Xml.Element) -> str:
-    """Name of the link that a joint holds."""
+    """Return the name of a joint's child link."""
     child = joint.find("child")
     return "" if child is None else child.get("link") or (child.text or "").strip()
 
 
 def parent_of(joint: Xml.Element) -> str:
-    """Name of the link that a joint of a URDF hangs from."""
+    """Return the name of a URDF joint's parent link."""
     parent = joint.find("parent")
     return "" if parent is None else parent.get("link", "")
 
@@ -58,11 +58,11 @@ def _axis(text: str, name: str) -> Array:
 
 
 def urdf_joint(joint: Xml.Element) -> Joint:
-    """A joint of a URDF, whose frame is its child's."""
+    """Return a joint of a URDF, whose frame is its child's."""
     name, kind = name_of(joint), joint.get("type", "")
     limit, axis = joint.find("limit"), joint.find("axis")
     if kind == "fixed":
-        axis = None  # it has no use for one, and files have 0 0 0 there
+        axis = None  # unused here, and files contain 0 0 0
     effort = None if limit is None else limit.get("effort")
     return Joint(
         name=name,
@@ -76,7 +76,7 @@ def urdf_joint(joint: Xml.Element) -> Joint:
 
 
 def sdf_joint(joint: Xml.Element) -> Joint:
-    """A joint of an SDFormat model; its frame may be turned against its child's."""
+    """Return a joint of an SDFormat model; its frame may be rotated against its child's."""
     name, kind = name_of(joint), joint.get("type", "")
     axis, effort = joint.find("axis/xyz"), joint.findtext("axis/limit/effort")
     pose = joint.find("pose")

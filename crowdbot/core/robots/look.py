@@ -1,6 +1,6 @@
-"""What a robot looks like: the shapes of its description that are seen.
+"""A robot's appearance: the visible shapes of its description.
 
-Cameras draw each as a solid; from above it is the outline of its projection on the floor.
+Cameras draw each as a solid; a view from above shows the outline of its projection.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from crowdbot.core.robots.xml import matrix, numbers, pose_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
 
-_RIM = 24  # corners that stand for a circle
+_RIM = 24  # corners of a circle
 _GREY = "#8a8d91"
-_LEAST = 1e-6  # m^2; a smaller outline is not drawn
+_LEAST = 1e-6  # m^2; smaller outlines are not drawn
 
 
 class SeenPart(NamedTuple):
-    """A part from above.
+    """A visible part, seen from above.
 
     Attributes:
         outline: (K, 2) convex, counter-clockwise, base frame, m.
         colour: ``#rrggbb``.
-        top: how high it reaches above the base's frame, m.
+        top: height of its top above the base's frame, m.
     """
 
     outline: Array
@@ -41,7 +41,7 @@ class VisualPart(NamedTuple):
     """A part as cameras see it.
 
     Attributes:
-        corners: (N, 3) whose convex hull it is, base frame, m.
+        corners: (N, 3) points whose convex hull is the part, base frame, m.
         colour: ``#rrggbb``.
     """
 
@@ -50,7 +50,7 @@ class VisualPart(NamedTuple):
 
 
 def visual_parts(robot: RobotModel) -> list[VisualPart]:
-    """The parts that are seen; meshes are left out."""
+    """Return the visible parts, without meshes."""
     described = read_description(robot.description)
     return [
         part
@@ -60,7 +60,7 @@ def visual_parts(robot: RobotModel) -> list[VisualPart]:
 
 
 def seen_from_above(robot: RobotModel) -> list[SeenPart]:
-    """The parts that are seen, the lowest first; meshes are left out."""
+    """Return the visible parts, lowest first, without meshes."""
     found = []
     for corners, colour in visual_parts(robot):
         outline = _hull(corners[:, :2])
@@ -80,7 +80,7 @@ def _visual_parts(link: Xml.Element, at: Array, described: Description) -> Itera
 
 
 def _cloud(shape: Xml.Element) -> Array:
-    """Points (N, 3) whose hull is the shape; none of a mesh."""
+    """Return points (N, 3) whose hull is the shape; empty for a mesh."""
     if shape.tag == "box":
         half = 0.5 * np.array(_values(shape, "size"))
         signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -102,14 +102,14 @@ def _circle(radius: float) -> Array:
 
 
 def _values(shape: Xml.Element, name: str) -> list[float]:
-    """Numbers that URDF writes as an attribute and SDFormat as text."""
+    """Return numbers that are an attribute in URDF and text in SDFormat."""
     return numbers(shape.get(name) or shape.findtext(name) or "", f"the {name} of a {shape.tag}")
 
 
 def _hull(points: Array) -> Array:
-    """Corners (K, 2) of the convex hull, counter-clockwise; none where it has no area.
+    """Return the corners (K, 2) of the convex hull, counter-clockwise; empty without area.
 
-    By shapely, which is loaded anyway: scipy.spatial takes half a second to load.
+    Uses shapely, which is loaded anyway; scipy.spatial takes half a second to load.
     """
     hull = shapely.convex_hull(shapely.multipoints(points))
     if hull.geom_type != "Polygon" or hull.area <= _LEAST:

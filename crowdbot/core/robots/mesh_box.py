@@ -1,4 +1,4 @@
-"""The box around a mesh: of STL, binary or text, and of Wavefront OBJ."""
+"""Bounding box of a mesh: STL (binary or text) or Wavefront OBJ."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ import numpy as np
 from crowdbot.core.robots.xml import numbers
 from crowdbot.core.types.arrays import Array
 
-_HEAD, _FACE = 84, 50  # bytes of a binary STL's head, and of each triangle
+_HEAD, _FACE = 84, 50  # bytes of a binary STL's header, and of each triangle
 _THINNEST = 1e-3  # m; a sheet becomes a plate
 Vector = tuple[float, float, float]
 
 
 def mesh_box(file: Path, scale: str = "1 1 1") -> tuple[Vector, Vector] | None:
-    """Sides and centre (m) of the box around a mesh, along the axes of its own frame.
+    """Return sides and centre (m) of a mesh's bounding box, along its own axes.
 
     Args:
-        scale: three factors, as a URDF has them.
+        scale: three scale factors, as in a URDF.
 
     Returns:
-        None of another format, or of a file without a vertex.
+        None for another format, or a file without vertices.
 
     Raises:
-        PluginError: ``scale`` is not made of numbers.
+        PluginError: ``scale`` does not consist of numbers.
     """
     read = {".stl": _stl, ".obj": _obj}.get(file.suffix.lower())
     factors = numbers(scale, "the scale of a mesh")
@@ -39,7 +39,7 @@ def mesh_box(file: Path, scale: str = "1 1 1") -> tuple[Vector, Vector] | None:
 
 
 def _stl(data: bytes) -> Array:
-    """Corners of all triangles (N, 3)."""
+    """Return the corners of all triangles (N, 3)."""
     if len(data) >= _HEAD:
         (count,) = struct.unpack_from("<I", data, _HEAD - 4)
         if len(data) == _HEAD + _FACE * count:
@@ -53,7 +53,7 @@ def _obj(data: bytes) -> Array:
 
 
 def _lines(data: bytes, word: bytes) -> Array:
-    """The three numbers after a word at the begin of lines (N, 3)."""
+    """Return the three numbers after a word at the start of lines (N, 3)."""
     rows = (line.split() for line in data.splitlines())
     try:
         found = [[float(x) for x in row[1:4]] for row in rows if row[:1] == [word]]

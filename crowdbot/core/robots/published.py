@@ -1,8 +1,8 @@
-"""Robots as their makers publish them: a URDF for viewers and planners of arms, made to drive.
+"""Convert published robot URDFs, made for viewers and arm planners, to drivable models.
 
-Such files have meshes that are elsewhere, fingers that mimic each other, joints that float and
-frames that weigh nothing. `read_published` makes a description of it that a mobile base can be
-simulated with, and keeps a note of each thing that it simplified.
+Such files have missing meshes, mimic joints, floating joints and frames without mass.
+`read_published` converts them to a description that a mobile base can be simulated with, and keeps
+a note of each simplification.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from crowdbot.core.robots.xml import matrix, name_of, pose_of
 from crowdbot.errors import PluginError, did_you_mean, nearest
 
 _HELD = ("revolute", "prismatic", "floating", "planar")
-#: So many names are listed; of more, the number.
+#: Number of names that are listed; beyond it, only their number is given.
 _NAMED = 4
 
 
 class PublishedWheel(NamedTuple):
-    """What a published description does not say about a wheel, or only by its mesh.
+    """Facts about a wheel that a published description lacks, or gives only by its mesh.
 
     Attributes:
         radius: m.
-        effort: of the motor, N m; of a driven wheel. None: the wheel slides, as omni wheels of a
-            holonomic drive do.
+        effort: torque of the motor of a driven wheel, N m. None: the wheel slides, like omni wheels
+            of a holonomic drive.
     """
 
     radius: float
@@ -53,19 +53,18 @@ def read_published(
     base: str = "base_link",
     packages: Mapping[str, Path] | None = None,
 ) -> Description:
-    """A robot's description from a URDF that was not written for simulating contacts.
+    """Convert a URDF that was not written for simulated contacts to a robot's description.
 
     Args:
-        source: as of `read_description`.
-        wheels: of the joints that hold wheels, by name.
-        shell: ``<collision>`` elements, in the frame of the base, of what touches walls.
+        source: as in `read_description`.
+        wheels: wheels by the name of their joint.
+        shell: ``<collision>`` elements for contact with walls, in the base's frame.
         base: the link that sensors are mounted on.
-        packages: where the files of ``package://NAME/…`` lie; a collision mesh that is found there
-            (STL or OBJ), or beside the description, becomes the box around it, others are left
-            out.
+        packages: folders for ``package://NAME/…``. A collision mesh found there (STL or OBJ), or
+            beside the description, becomes its bounding box; others are left out.
 
     Returns:
-        the description, whose `Description.notes` tell what was simplified.
+        the description; its `Description.notes` list the simplifications.
 
     Raises:
         PluginError: it cannot be read, is not a URDF, has no such joint or link, or ``shell`` is
@@ -89,7 +88,7 @@ def read_published(
 
 
 class _Work:
-    """A description that is being changed, and the notes so far."""
+    """A description being converted, and its notes so far."""
 
     def __init__(self, robot: Xml.Element, base: str, wheels: dict[str, PublishedWheel]) -> None:
         self.robot, self.base, self.wheels = robot, base, wheels
@@ -104,7 +103,7 @@ class _Work:
         return {name_of(joint): joint for joint in self.robot.findall("joint")}
 
     def note(self, names: Sequence[str], one: str, several: str) -> None:
-        """A note about some things, if there are any; ``{}`` stands for their number."""
+        """Add a note about some things, if any; ``{}`` is replaced by their number."""
         if names:
             listed = ", ".join(names[:_NAMED])
             more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
@@ -112,7 +111,7 @@ class _Work:
             self.notes.append(f"{what}: {listed}{more}")
 
     def check(self) -> None:
-        """Whether all that was named is there."""
+        """Check that everything named exists."""
         named = [("link", self.base, self.links)]
         named += [("joint", joint, self.joints) for joint in self.wheels]
         for what, name, known in named:
@@ -121,7 +120,7 @@ class _Work:
                 raise PluginError(f"the robot's description has no {what} '{name}'{hint}")
 
     def keep_one_tree(self) -> None:
-        """Leave out links that do not hang together with the base."""
+        """Remove links that are not connected to the base."""
         hangs = {self.base}
         pairs = [(parent_of(j), child_of(j)) for j in self.joints.values()]
         while grown := {x for pair in pairs if hangs & set(pair) for x in pair} - hangs:
@@ -136,7 +135,7 @@ class _Work:
                   "{} links that do not hang together with the base are left out")  # fmt: skip
 
     def hold_joints(self) -> None:
-        """Fix all joints but those of driven wheels and of casters."""
+        """Fix all joints except those of driven wheels and casters."""
         held, mimics, sliding = list[str](), list[str](), list[str]()
         for name, joint in self.joints.items():
             wheel, kind = self.wheels.get(name), joint.get("type", "")
@@ -174,7 +173,7 @@ class _Work:
         limit.set("effort", f"{effort:.12g}")
 
     def replace_meshes(self, find: Callable[[str], Path | None]) -> None:
-        """Collision meshes become boxes around them, or are left out."""
+        """Replace collision meshes by their bounding boxes, or remove them."""
         boxed, lost = list[str](), list[str]()
         for link, collision, mesh in _meshes(self.robot):
             geometry = collision.find("geometry")
@@ -196,7 +195,7 @@ class _Work:
                   "{} collision meshes are not there and left out")  # fmt: skip
 
     def shape_wheels(self) -> None:
-        """Each wheel touches the floor with a sphere of its radius."""
+        """Give each wheel a sphere of its radius for contact with the floor."""
         for name, wheel in self.wheels.items():
             link = self.links[child_of(self.joints[name])]
             for collision in link.findall("collision"):
@@ -207,7 +206,7 @@ class _Work:
                   "{} wheels touch the floor as spheres")  # fmt: skip
 
     def weigh(self) -> None:
-        """Replace inertias that no body has."""
+        """Replace impossible inertias."""
         impossible, implausible = list[str](), list[str]()
         turned = {child_of(self.joints[n]): w for n, w in self.wheels.items()}
         for name, link in self.links.items():
@@ -231,7 +230,7 @@ class _Work:
         self.note(weightless, "link has a shape and no mass", "{} links have shapes and no mass")
 
     def drop_the_rest(self) -> None:
-        """What only other programs read: transmissions, Gazebo's elements, meshes that are seen."""
+        """Remove parts for other programs: transmissions, Gazebo's elements, visual meshes."""
         for tag, one in (("transmission", "transmission"), ("gazebo", "<gazebo> element")):
             found = self.robot.findall(tag)
             for element in found:
@@ -249,7 +248,7 @@ class _Work:
             self.notes.append(f"{seen} mesh{'' if seen == 1 else 'es'} for looks left out")
 
     def add_shell(self, shell: str) -> None:
-        """Give the base the shapes that touch walls."""
+        """Add the base's shapes for contact with walls."""
         try:
             shapes = list(Xml.fromstring(f"<shell>{shell}</shell>"))
         except Xml.ParseError as error:
@@ -267,7 +266,7 @@ def _fix(joint: Xml.Element) -> None:
 
 
 def _meshes(robot: Xml.Element) -> Iterator[tuple[Xml.Element, Xml.Element, Xml.Element]]:
-    """Link, collision and mesh of each collision mesh."""
+    """Yield link, collision and mesh of each collision mesh."""
     for link in robot.findall("link"):
         for collision in link.findall("collision"):
             mesh = collision.find("geometry/mesh")
@@ -276,7 +275,7 @@ def _meshes(robot: Xml.Element) -> Iterator[tuple[Xml.Element, Xml.Element, Xml.
 
 
 def _shift(collision: Xml.Element, by: tuple[float, float, float]) -> None:
-    """Move a shape within its own frame: what was at the origin is at ``by``."""
+    """Move a shape within its own frame from the origin to ``by``."""
     pose = pose_of(collision)
     place = matrix(pose) @ (*by, 1.0)
     origin = collision.find("origin")
@@ -287,7 +286,7 @@ def _shift(collision: Xml.Element, by: tuple[float, float, float]) -> None:
 
 
 def _find(name: str, folder: Path | None, packages: Mapping[str, Path]) -> Path | None:
-    """The file of a mesh, if it is there."""
+    """Return the file of a mesh, if it exists."""
     if name.startswith("package://"):
         package, _, rest = name.removeprefix("package://").partition("/")
         file = packages[package] / rest if package in packages else None

@@ -1,11 +1,11 @@
-"""A robot's description as the simulation takes it: a body, and wheels that roll.
+"""Simplify a robot's description for the simulation: a body, and rolling wheels.
 
 - Joints with limits (arms, pan and tilt heads) are held at zero.
-- Wheels are spheres to the floor: a cylinder's contact point jumps between its rims
+- Wheels touch the floor as spheres: a cylinder's contact point jumps between its rims
   (docs/decisions/0004).
-- What does not say how it rubs slides without friction, as casters and omni wheels do, but for the
-  driven wheels, which grip.
-- What is only seen, and motors, but for those of the driven wheels, are left out.
+- Shapes without given friction slide without friction, like casters and omni wheels, except driven
+wheels, which grip.
+- Visual shapes, and motors except those of the driven wheels, are left out.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from crowdbot.core.robots.description import Description, Format
 from crowdbot.core.robots.xml import name_of
 
 _DRAKE = "{http://drake.mit.edu}"
-Xml.register_namespace("drake", "http://drake.mit.edu")  # else it would become ns0
+Xml.register_namespace("drake", "http://drake.mit.edu")  # otherwise it would become ns0
 
 
 def simplified(described: Description, driven: Collection[str]) -> str:
-    """The text for Drake's parser, in the format of the description.
+    """Return the text for Drake's parser, in the format of the description.
 
     Args:
         driven: names of the joints of the driven wheels.

@@ -1,7 +1,7 @@
-"""Robots as URDF, for the tools of ROS: the body, and a frame for each sensor.
+"""Export robots as URDF for ROS tools: the body, and a frame for each sensor.
 
-A robot is described in SDFormat or URDF (`RobotModel.description`). They differ in where joints
-stand: a URDF joint is its child's frame.
+A robot is described in SDFormat or URDF (`RobotModel.description`). They differ in the frames of
+joints: a URDF joint is its child's frame.
 """
 
 from __future__ import annotations
@@ -24,22 +24,23 @@ from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.errors import InputError
 
 FOOTPRINT, BASE = "base_footprint", "base_link"
-_SAME = 1e-3  # m, and of the entries of a rotation
-#: URDF must name limits that SDFormat may leave out, which there means that there are none.
+_SAME = 1e-3  # m; also tolerance of a rotation's entries
+#: URDF requires limits that SDFormat may omit, which means unlimited there.
 _UNLIMITED = 1e9
 LEVEL = (0.0, 0.0, 0.0)
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
 def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> str:
-    """The URDF text of a robot.
+    """Return the URDF text of a robot.
 
     Args:
-        sensors: framed by their names; those that measure motion (odometry) get no frame.
-        name: what the document calls the robot.
+        sensors: sensors by name, which is also their frame; those that measure motion (odometry)
+            have no frame.
+        name: the robot's name in the document.
 
     Raises:
-        InputError: the description holds something that URDF cannot say, or `check_frames`
+        InputError: the description has something that URDF cannot express, or `check_frames`
             refuses a sensor.
     """
     check_frames(robot, sensors)
@@ -62,7 +63,7 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
 
 
 def _ground(document: Xml.Element, robot: RobotModel, described: Description) -> None:
-    """The frames that every recording has: ``base_link``, and ``base_footprint`` on the floor."""
+    """Add the standard frames: ``base_link``, and ``base_footprint`` on the floor."""
     if robot.base != BASE:
         _frame(document, robot.base, BASE, f"{BASE}_joint", (0.0, 0.0, 0.0), LEVEL)
     if FOOTPRINT in described.links:
@@ -79,11 +80,11 @@ def _ground(document: Xml.Element, robot: RobotModel, described: Description) ->
 
 
 def check_frames(robot: RobotModel, sensors: Mapping[str, SensorInfo]) -> None:
-    """Refuse sensors whose frames would not be theirs alone.
+    """Refuse sensors whose frames clash with others.
 
     Raises:
-        InputError: one has the name of a frame that every recording has, of another sensor's
-            optical frame, or of a link that is elsewhere.
+        InputError: a sensor has the name of a standard frame, of another sensor's optical frame, or
+            of a link at another position.
     """
     described = read_description(robot.description)
     framed = {n: info for n, info in sensors.items() if info.category != "odometry"}
@@ -99,7 +100,7 @@ def check_frames(robot: RobotModel, sensors: Mapping[str, SensorInfo]) -> None:
 
 
 def _check_same(sensor: str, info: SensorInfo, described: Description, base: str) -> None:
-    """A link that has a sensor's name stands for it, where it is where the sensor is."""
+    """Accept a link with a sensor's name as its frame if it is at the sensor's position."""
     x, y, z, yaw = info.mount
     if not np.allclose(
         described.pose(sensor, base), matrix([x, y, z, *info.tilt, yaw]), atol=_SAME
@@ -118,7 +119,7 @@ def _frame(
     at: tuple[float, float, float],
     rpy: tuple[float, float, float],
 ) -> None:
-    """A fixed joint; links that are not there yet are made."""
+    """Add a fixed joint, and its links if they do not exist yet."""
     links = {link.get("name") for link in document.iter("link")}
     for link in (parent, child):
         if link not in links:
@@ -136,7 +137,7 @@ def _origin(parent: Xml.Element, pose: list[float]) -> None:
 
 # ---------------------------------------------------------------------------- SDFormat
 def wheel_rates(robot: RobotModel) -> dict[str, float]:
-    """How fast each driven wheel turns at the robot's limits, rad/s, by its joint's name."""
+    """Return each driven wheel's rate at the robot's limits, rad/s, by its joint's name."""
     drive, limits = robot.drive, robot.limits
     if not isinstance(drive, DifferentialDrive):
         return {}
@@ -201,7 +202,7 @@ def _material(part: Xml.Element, source: Xml.Element) -> None:
 def _joint(
     document: Xml.Element, source: Xml.Element, described: Description, fastest: float
 ) -> None:
-    """One joint; ``fastest`` (rad/s) is its limit of velocity where the description has none."""
+    """Add a joint; ``fastest`` (rad/s) is its velocity limit if the description has none."""
     found = described.joints[name_of(source)]
     name, kind = found.name, "continuous" if found.free else found.kind
     if any(pose_of(source)):
@@ -224,7 +225,7 @@ def _joint(
 
 
 def _six(matrix: Array) -> list[float]:
-    """x, y, z, roll, pitch, yaw of a 4 x 4 pose."""
+    """Return x, y, z, roll, pitch, yaw of a 4 x 4 pose."""
     flat = math.hypot(matrix[0, 0], matrix[1, 0])
     pitch = math.atan2(-matrix[2, 0], flat)
     if flat > 1e-9:

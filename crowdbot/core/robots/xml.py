@@ -16,12 +16,12 @@ from crowdbot.errors import PluginError
 
 
 def name_of(element: Xml.Element) -> str:
-    """The attribute ``name``."""
+    """Return the attribute ``name``."""
     return element.get("name", "")
 
 
 def pose_of(element: Xml.Element) -> list[float]:
-    """x, y, z, roll, pitch, yaw of an element of SDFormat (``pose``) or URDF (``origin``).
+    """Return x, y, z, roll, pitch, yaw of an SDFormat (``pose``) or URDF (``origin``) element.
 
     Raises:
         PluginError: they are not six numbers.
@@ -38,7 +38,7 @@ def pose_of(element: Xml.Element) -> list[float]:
 
 
 def numbers(text: str, what: str) -> list[float]:
-    """The numbers in a text.
+    """Return the numbers in a text.
 
     Raises:
         PluginError: a word is not a number, or not finite.
@@ -53,7 +53,7 @@ def numbers(text: str, what: str) -> list[float]:
 
 
 def number(text: str, what: str) -> float:
-    """The one number in a text.
+    """Return the only number in a text.
 
     Raises:
         PluginError: it is not a number, or not finite.
@@ -65,7 +65,7 @@ def number(text: str, what: str) -> float:
 
 
 def matrix(pose: list[float]) -> Array:
-    """x, y, z, roll, pitch, yaw as a 4 x 4 pose."""
+    """Return the 4 x 4 pose of x, y, z, roll, pitch, yaw."""
     found = np.eye(4)
     found[:3, :3], found[:3, 3] = rotation(*pose[3:]), pose[:3]
     return found

@@ -1,1 +1,1 @@
-"""Runs on disk: what decides their identity, their directories and their records."""
+"""Runs on disk: their identity, directories and records."""

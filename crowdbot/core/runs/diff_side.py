@@ -1,4 +1,4 @@
-"""A side of a comparison: one scenario, or one run."""
+"""One side of a comparison: a scenario or a run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.core.scenarios.library import open_spec, pick, suite_names
 from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash
 from crowdbot.errors import InputError
 
-#: What a run says about itself that two equal runs need not have in common.
+#: Entries of a record in which equal runs may differ.
 _PASSING = (
     "cpu_time", "files", "machine", "planner_step_time", "real_time_factor", "references",
     "wall_time",
@@ -25,13 +25,13 @@ _PASSING = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiffSide:
-    """What is compared.
+    """One side of a comparison.
 
     Attributes:
-        name: what people call it.
+        name: readable name.
         scenario: canonical form.
         hash: content hash of the scenario.
-        run: ``run.json`` without what passes; None for a scenario.
+        run: ``run.json`` without entries that may differ; None for a scenario.
         scores: ``metric.variant`` -> value, unit and status; empty for a scenario.
     """
 
@@ -43,16 +43,16 @@ class DiffSide:
 
 
 def read_diff_side(text: str, registry: Registry, overrides: Sequence[str] = ()) -> DiffSide:
-    """Read one side.
+    """Read one side of a comparison.
 
     Args:
         text: a run directory; ``SPEC/ID`` or ``SPEC#ID``, SPEC a packaged suite or a file; or a
-            document that holds one scenario.
+            document with a single scenario.
         registry: the installed components.
-        overrides: ``key=value`` texts, laid over the scenario.
+        overrides: ``key=value`` texts that override the scenario.
 
     Raises:
-        InputError: it is nothing of these, or something in it is wrong.
+        InputError: it is none of these, or its contents are invalid.
     """
     folder = Path(text)
     if folder.is_dir():
@@ -62,7 +62,7 @@ def read_diff_side(text: str, registry: Registry, overrides: Sequence[str] = ())
 
 
 def _split(text: str, registry: Registry) -> tuple[str, str | None]:
-    """The document and the id in it. A file may have any name, so that ``#`` is looked for last."""
+    """Split into document and id. A file may have any name, so ``#`` is tried last."""
     if Path(text).is_file():
         return text, None
     if "#" in text:

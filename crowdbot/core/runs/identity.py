@@ -1,4 +1,4 @@
-"""What decides what happens in a run, and where it goes. Nothing here simulates or knows Drake."""
+"""The identity of a run and its directory, without simulation or Drake."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ from crowdbot.errors import InputError
 _LOG = logging.getLogger("crowdbot")
 
 ROBOT_ALONE, CROWD_ALONE = "robot_alone", "crowd_alone"
-#: What can be a part of a topic, and of a frame.
+#: Allowed names in topics and frames.
 _ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-#: How the people of a scenario are found.
+#: Function that finds the people of a scenario.
 Populate = Callable[[Scenario, Registry], Population]
 
 
@@ -43,7 +43,7 @@ class Trial:
     """A scenario, or one of its calibration runs, with its people.
 
     Attributes:
-        spec, realisation: hashes of its words and of its people.
+        spec, realisation: hashes of the scenario and of its people.
     """
 
     scenario: Scenario
@@ -54,11 +54,11 @@ class Trial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prepared:
-    """Everything about a scenario that neither planner nor seed change.
+    """The parts of a run that depend neither on planner nor on seed.
 
     Attributes:
         run: the scenario.
-        alone, crowd: its calibration runs; None where there is nobody to compare with.
+        alone, crowd: its calibration runs; None if there is nothing to compare.
     """
 
     run: Trial
@@ -113,12 +113,12 @@ def prepare(
     Args:
         scenario: from an expanded suite.
         registry: the installed components.
-        references: False leaves the calibration runs out.
-        populate: finds people; a caller with many scenarios remembers them.
+        references: False omits the calibration runs.
+        populate: function that finds people; a caller with many scenarios can cache them.
 
     Raises:
-        InputError: it has no robot, one of several has no name for topics, or its lock does not
-            fit it any more.
+        InputError: it has no robot, one of several has no name for topics, or its lock is out of
+            date.
     """
     if not scenario.robots:
         raise InputError(
@@ -142,7 +142,7 @@ def prepare(
     alone = scenario.references.get(ROBOT_ALONE) or scenario.model_copy(update={"crowd": None})
     crowd = scenario.references.get(CROWD_ALONE) or scenario.model_copy(update={"robots": {}})
     same = (crowd.crowd, crowd.environment) == (scenario.crowd, scenario.environment)
-    people = run.people if same else populate(crowd, registry)  # the same, also near the robot
+    people = run.people if same else populate(crowd, registry)  # equal, also near the robot
     return Prepared(
         run=run, alone=trial(alone, populate(alone, registry)), crowd=trial(crowd, people)
     )
@@ -168,7 +168,7 @@ def planner_part(choice: PlannerChoice) -> PlannerPart:
 
 
 def references_of(request: Request, prepared: Prepared) -> tuple[Reference, ...]:
-    """The calibration runs of a run, whether they are there or not."""
+    """Return the calibration runs of a run, existing or not."""
     if prepared.alone is None or prepared.crowd is None:
         return ()
     by_planner = {"planner": request.choice.spec_dump, "seed": request.seed, **_budget(request)}
@@ -183,7 +183,7 @@ def references_of(request: Request, prepared: Prepared) -> tuple[Reference, ...]
 
 
 def longest(scenario: Scenario) -> float:
-    """The longest that a run may last, s."""
+    """Return the longest possible duration of a run, s."""
     return max(robot.task.time_limit for robot in scenario.robots.values())
 
 
@@ -257,7 +257,7 @@ def _holds(record: RunRecord, request: Request) -> bool:
 def recorded_otherwise(request: Request, identity: RunIdentity) -> tuple[str, ...]:
     """How the run that is there now differs from the one that is wanted, as dotted keys.
 
-    Empty where none is there, or the very same.
+    Empty if there is none, or the same one.
     """
     before = RunRecord.find(request.directory)
     if before is None:
@@ -271,7 +271,7 @@ def recorded_otherwise(request: Request, identity: RunIdentity) -> tuple[str, ..
 
 
 def _flat(name: str, value: Any) -> dict[str, Any]:
-    """A document as dotted key -> value; lists are values, as JSON says them."""
+    """Return a document as dotted key -> value; lists count as JSON values."""
     if isinstance(value, Mapping):
         return {k: v for key in value for k, v in _flat(f"{name}.{key}", value[key]).items()}
     return {name: list(value) if isinstance(value, (list, tuple)) else value}

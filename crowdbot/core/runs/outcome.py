@@ -1,4 +1,4 @@
-"""How far a run is, and how it ended. Nothing here knows Drake."""
+"""Progress and outcome of a run, without Drake."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PLANNER_FAILED, INTERRUPTED = Ending.PLANNER_FAILED, Ending.INTERRUPTED
 
 
 class Progress(NamedTuple):
-    """How far a run is: simulated time and limit (s), real-time factor, distance to goal (m)."""
+    """Progress of a run: simulated time and limit (s), real-time factor, distance to goal (m)."""
 
     stage: str
     t: float
@@ -24,13 +24,13 @@ class Progress(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """How a run ended; times in s.
+    """The outcome of a run; times in s.
 
     Attributes:
         toppled_time: when the robot toppled, which ended the run; or None.
-        clamped: commands that had to be clamped to the robot's limits.
+        clamped: number of commands clamped to the robot's limits.
         planner_step_time: mean and largest wall time of a planner step.
-        robots: how each of several robots ended; empty in a run of one.
+        robots: outcome of each of several robots; empty in a run of one.
     """
 
     status: str
@@ -46,5 +46,5 @@ class Outcome:
 
     @property
     def real_time_factor(self) -> float:
-        """Simulated time over wall time."""
+        """Return simulated time over wall time."""
         return self.sim_time / max(self.wall_time, 1e-9)

@@ -1,4 +1,4 @@
-"""Provenance: hashes of what a run depends on and left behind, and what it ran on."""
+"""Provenance: hashes of a run's inputs and results, and its machine."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def recording_hashes(identity: Part) -> dict[str, str]:
 
 
 def trajectory_hash(run: Trajectories) -> str:
-    """Hash of every simulated number of a run; wall times are left out.
+    """Return the hash of every simulated number of a run, without wall times.
 
     Two runs with equal hashes agree bit by bit.
     """
@@ -64,7 +64,7 @@ def _feed(sha: Any, name: str, value: Any) -> None:
 
 
 def versions() -> dict[str, str]:
-    """Versions of crowdbot and of what its numbers depend on."""
+    """Return the versions of crowdbot and of libraries that affect its numbers."""
     return dict(_versions())
 
 
@@ -75,10 +75,10 @@ def _versions() -> tuple[tuple[str, str], ...]:
 
 
 def plugins(registry: Registry) -> list[dict[str, Any]]:
-    """The plugins that were loaded; of those that are not pinned, the hash of their files.
+    """Return the loaded plugins, with file hashes for those that are not pinned.
 
-    One that was given by a path is called by its last part: a run is the same run however the
-    path was written, and wherever the plugin lies.
+    A plugin given by path is named by its last part, so that a run's identity does not depend on
+    the path.
     """
     return [
         {
@@ -94,7 +94,7 @@ def plugins(registry: Registry) -> list[dict[str, Any]]:
 
 
 def third_parties(registry: Registry) -> dict[str, Any]:
-    """What decides what a reference run does, beside crowdbot itself; nothing without plugins."""
+    """Return everything besides crowdbot that affects a reference run; empty without plugins."""
     others = [p for p in plugins(registry) if p["name"] != BUILTIN]
     return {"plugins": others} if others else {}
 
@@ -125,10 +125,10 @@ def runs_inside(record: RunRecord) -> bool:
 
 
 def machine() -> dict[str, str]:
-    """What the run ran on.
+    """Describe the machine of the run.
 
-    ``processor`` is the one that compiled code was made for; machines with equal ``processor`` and
-    ``rounding`` give equal trajectories.
+    ``processor`` is the target of compiled code; machines with equal ``processor`` and ``rounding``
+    give equal trajectories.
     """
     return {
         "system": platform.system(),

@@ -1,4 +1,4 @@
-"""Runs of one robot or of several, read and scored alike: robot -> what it did."""
+"""Read and score runs of one or several robots alike: robot -> run."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class SeenRun:
-    """What one robot did, and what its sensors of distances saw."""
+    """One robot's run, and the readings of its range sensors."""
 
     run: Trajectories
     scans: Sequence[ReplayScan]
@@ -33,12 +33,12 @@ class SeenRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordedRun:
-    """What a recording of one robot or of several says of itself.
+    """The contents of a recording with one or several robots.
 
     Attributes:
-        runs: of each robot; of one, or of people alone, under an empty name.
-        trajectory: hash of everything that was simulated.
-        until: s, how far it can be read.
+        runs: run of each robot; with one robot, or people only, under an empty name.
+        trajectory: hash of all simulated numbers.
+        until: readable until, s.
     """
 
     header: RecordingHeader
@@ -54,16 +54,16 @@ def read_robots(
     max_rate: float,
     images: ImageCollector | None = None,
 ) -> dict[str, SeenRun]:
-    """The runs of all robots of a recording.
+    """Read the runs of all robots of a recording.
 
     Args:
         path: a recording.
-        robots: their names, in the scenario's order.
-        max_rate: of scans, Hz.
-        images: collects what cameras saw, in the same pass.
+        robots: the robots' names, in the scenario's order.
+        max_rate: largest rate of scans, Hz.
+        images: collector of camera images, in the same pass.
 
     Raises:
-        InputError: it cannot be read, or one is not in it.
+        InputError: it cannot be read, or a robot is not in it.
     """
     also = None if images is None else images.add
     with Recording(path, max_rate=max_rate, observe=also) as recording:
@@ -78,7 +78,7 @@ def read_robots(
 
 
 def references_by_robot(paths: Mapping[str, Path], robots: Sequence[str]) -> dict[str, References]:
-    """What each robot's run is compared with; see `read_references`."""
+    """Return the references of each robot's run; see `read_references`."""
     if len(robots) == 1:
         return {robots[0]: read_references(paths)}
     people = read_references({n: p for n, p in paths.items() if n == CROWD_ALONE})
@@ -95,7 +95,7 @@ def score_robots(
     metrics: str | Sequence[str] = "*",
     variants: str | Sequence[str] = "all",
 ) -> Scores:
-    """Scores of a run: of its robot, or of the fleet and of each of its robots.
+    """Return the scores of a run: of its robot, or of the fleet and each robot.
 
     Raises:
         InputError: as `score`.
@@ -112,13 +112,13 @@ def score_robots(
 
 
 def trajectory_of(runs: Mapping[str, Trajectories]) -> str:
-    """Hash of every simulated number of a run of one robot or of several."""
+    """Return the hash of every simulated number of a run with one or several robots."""
     hashes = {name: provenance.trajectory_hash(run) for name, run in runs.items()}
     return next(iter(hashes.values())) if len(hashes) == 1 else digest(hashes)
 
 
 def read_recorded(path: Path) -> RecordedRun:
-    """A recording of one robot, of several, or of people alone.
+    """Read a recording with one robot, several robots, or only people.
 
     Raises:
         InputError: it cannot be read.
@@ -142,7 +142,7 @@ def recorded_run(recording: Recording) -> RecordedRun:
 
 
 def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
-    """Hashes of the calibration runs' trajectories, by name; kept as long as the files stay."""
+    """Return the trajectory hashes of calibration runs by name, cached until the files change."""
     found = {}
     for name, path in paths.items():
         state = path.stat()
@@ -152,7 +152,7 @@ def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
 
 @lru_cache(maxsize=64)
 def _hash(path: Path, *state: int) -> str:
-    del state  # another one is another recording
+    del state  # a changed file is another recording
     with Recording(path) as recording:
         if recording.robots:
             return recorded_run(recording).trajectory

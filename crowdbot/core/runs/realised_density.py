@@ -1,4 +1,4 @@
-"""How many people a run really had, beside what its scenario asks for."""
+"""The realised number of people in a run, compared with the scenario."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def mean_density(run: Trajectories, scenario: Scenario, parts: EnvironmentParts) -> float | None:
-    """People inside the crowd's area for each m² of it, mean over the samples of the run, 1/m².
+    """Return the mean density of people in the crowd's area over the samples, 1/m².
 
     The area is the zone in which a flow starts; without a flow the periodic floor, or the rectangle
     around all walls.
 
     Args:
-        run: with people, world frame.
-        scenario: what was run.
+        run: a run with people, world frame.
+        scenario: its scenario.
         parts: its environment.
 
     Returns:
-        None without people, or where there is no area.
+        None without people or area.
     """
     outline = _outline(scenario, parts)
     if run.agents is None or outline is None or not run.agents.x.size:
@@ -36,7 +36,7 @@ def mean_density(run: Trajectories, scenario: Scenario, parts: EnvironmentParts)
 
 
 def inside_polygon(x: Array, y: Array, corners: Array) -> NDArray[np.bool_]:
-    """Which points lie inside a polygon (K, 2), by the even-odd rule; NaN lies nowhere."""
+    """Return a mask of points inside a polygon (K, 2), by the even-odd rule; False for NaN."""
     inside = np.zeros(x.shape, np.bool_)
     for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         if y0 != y1:
@@ -60,6 +60,6 @@ def _outline(scenario: Scenario, parts: EnvironmentParts) -> Array | None:
 
 
 def _area(corners: Array) -> float:
-    """Of a simple polygon, m² (shoelace formula)."""
+    """Return the area of a simple polygon, m² (shoelace formula)."""
     x, y = corners.T
     return float(abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2.0)

@@ -1,4 +1,4 @@
-"""Where the recording of a run and those of its references are."""
+"""Find the recordings of a run and of its references."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingSource:
-    """A recording to score, and what is known about it.
+    """A recording to score, and known facts about it.
 
     Attributes:
-        path: what the user named, or a run directory below it.
-        planner: name of the planner; ``label`` tells its parameters apart, too.
+        path: the user's path, or a run directory below it.
+        planner: name of the planner; ``label`` also distinguishes its parameters.
     """
 
     path: Path
@@ -31,9 +31,9 @@ class RecordingSource:
 
 
 def expand_paths(paths: Iterable[Path]) -> list[Path]:
-    """Files and run directories as they are; in place of any other directory the runs below it.
+    """Return files and run directories; other directories are replaced by the runs below.
 
-    Calibration runs are not runs of their own, and what is being written is left alone.
+    Calibration runs and unfinished runs are skipped.
     """
     found: list[Path] = []
     for path in paths:
@@ -46,7 +46,7 @@ def expand_paths(paths: Iterable[Path]) -> list[Path]:
 def find_source(
     path: Path, robot_alone: Path | None = None, crowd_alone: Path | None = None
 ) -> RecordingSource:
-    """The recording of one run directory or file; references that are given win.
+    """Return the recording of one run directory or file; explicit references take precedence.
 
     Raises:
         InputError: there is no such run or file, or run.json is not a record of a run.
@@ -94,7 +94,7 @@ def _in_directory(folder: Path) -> RecordingSource:
 
 
 def _record(folder: Path) -> Mapping[str, Any]:
-    """run.json; an interrupted run may have none."""
+    """Return run.json; an interrupted run may have none."""
     file = folder / RECORD
     if not file.is_file():
         if folder.name.endswith(".partial"):
@@ -108,7 +108,7 @@ def _beside(folder: Path, reference: object) -> Path | None:
 
 
 def _name(planner: object, *keys: str) -> str:
-    """A planner is recorded by name, or as its document and names."""
+    """Return the planner's name, from a name or from its document."""
     if isinstance(planner, Mapping):
         planner = next((planner[k] for k in keys if planner.get(k)), "")
     return str(planner or "")

@@ -1,4 +1,4 @@
-"""What the replay page shows of a run: while it is made, and later from its directory."""
+"""The replay page's data of a run, from the simulation or from its directory."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def replay_facts(record: RunRecord) -> dict[str, str]:
 
 
 def scenery(parts: EnvironmentParts, height: float) -> Scenery:
-    """What stands in the way of a robot of some height, m, and of people."""
+    """Return the obstacles for a robot of some height, m, and for people."""
     low = (parts.wall_heights[:, 0] < height) & ~parts.sides()
     stops = parts.solids_stop_crowd.tolist()
     solids = [
@@ -68,20 +68,20 @@ def scenery(parts: EnvironmentParts, height: float) -> Scenery:
 
 
 def images_of_replay(recording: Path) -> ImageCollector:
-    """Collects what the page shows of cameras."""
+    """Collect camera images for the page."""
     return ImageCollector(recording, REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH)
 
 
 def replayed_runs(folders: Sequence[Path], registry: Registry) -> list[ShownRun]:
-    """Runs of one scenario, from their directories.
+    """Return runs of one scenario, from their directories.
 
     Args:
         folders: run directories.
-        registry: the installed components; those of the scenario have to be among them.
+        registry: the installed components; they must include those of the scenario.
 
     Raises:
-        InputError: one of them is not a complete run, or its scenario cannot be built.
-        UsageError: they are runs of different scenarios.
+        InputError: a run is incomplete, or its scenario cannot be built.
+        UsageError: the runs have different scenarios.
     """
     records = [_record(folder) for folder in folders]
     first = records[0]
@@ -125,7 +125,7 @@ def shown_run(
     scores: Sequence[Score],
     images: Sequence[ReplayImages],
 ) -> ShownRun:
-    """What the page shows of a run of one robot or of several.
+    """Return the page's data of a run with one or several robots.
 
     Args:
         scenario: what was run.
@@ -135,7 +135,7 @@ def shown_run(
         scores: of the run.
         images: what cameras saw.
     """
-    # What is shown of the people goes on until the last robot has ended.
+    # People are shown until the last robot has ended.
     last = max(seen, key=lambda name: len(seen[name].run.t))
     several = {} if len(seen) == 1 else {"Robot": last}
     looks = {

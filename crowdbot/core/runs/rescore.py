@@ -1,4 +1,4 @@
-"""Scores of recorded runs, one after the other or several at a time; a bad one stops no other."""
+"""Score recorded runs again, one by one or in parallel; a bad run does not stop the others."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from crowdbot.errors import CrowdbotError, InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RescoreRequest:
-    """What to score, and from what.
+    """The input of a rescoring.
 
     Attributes:
-        path: run directory or recording; None where there are only commands or answers.
-        robot: whose topics to read where a recording holds several robots.
-        topics: of the user's and of the final command, in the recording.
+        path: run directory or recording; None for commands or answers only.
+        robot: robot whose topics to read from a recording with several.
+        topics: topics of the user's and the final command in the recording.
         commands, commands_baseline: CSV files, or recordings with the two topics.
         limits: largest speed (m/s) and yaw rate (rad/s) that can be commanded.
         questionnaires: CSV file.
-        allow_incomplete: score a recording that is cut as far as it can be read.
-        plugins, allow: what a process of its own has to load: paths, and the allow-list.
+        allow_incomplete: score the readable part of an incomplete recording.
+        plugins, allow: plugin paths and allow-list for separate processes.
     """
 
     path: Path | None
@@ -57,11 +57,11 @@ class RescoreRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rescored:
-    """Scores of one run, or why there are none.
+    """Scores of one run, or the reason for their absence.
 
     Attributes:
-        until: s, how far the recording could be read; None where none was read.
-        complete: whether it goes to the end of the run.
+        until: s, end of the readable part; None without a recording.
+        complete: True if the recording is complete.
     """
 
     source: RecordingSource
@@ -73,7 +73,7 @@ class Rescored:
 
 
 class IncompleteError(InputError):
-    """A recording is cut; ``until`` says how far it can be read, s."""
+    """A recording is incomplete; ``until`` is the end of its readable part, s."""
 
     def __init__(self, text: str, until: float) -> None:
         super().__init__(text)
@@ -81,10 +81,10 @@ class IncompleteError(InputError):
 
 
 def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
-    """Score one run again from what was recorded.
+    """Score one run again from its recording.
 
     Raises:
-        IncompleteError: a recording is cut, and that is not allowed.
+        IncompleteError: a recording is incomplete, which is not allowed.
         CrowdbotError: it cannot be read, or a metric failed.
     """
     source, run = RecordingSource(path=Path(), recording=Path()), None
@@ -104,7 +104,7 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
     if request.path is not None:
         source = find_source(request.path, request.robot_alone, request.crowd_alone)
         with Recording(source.recording) as recording:
-            # a recording of nothing but commands is not a run, and need not be one
+            # a recording with only commands need not be a run
             if request.topics is None or recording.holds_run:
                 if request.robot is None and recording.robots:
                     return _whole_fleet(request, source, recording, registry)
@@ -134,7 +134,7 @@ def _whole_fleet(
     """All robots of a run, and the fleet.
 
     Raises:
-        IncompleteError: the recording is cut, and that is not allowed.
+        IncompleteError: the recording is incomplete, which is not allowed.
         CrowdbotError: it cannot be read, or a metric failed.
     """
     fleet = {name: recording.robot(name) for name in recording.robots}
@@ -165,7 +165,7 @@ def _checked(recording: Recording, robot: str | None, *, allowed: bool) -> Robot
         raise _cut(recording.path, found.until)
     try:
         check_sizes(found.run)
-    except InputError as error:  # of a run, a calibration run: say of which
+    except InputError as error:  # name the calibration run's run in the error
         raise InputError(f"{recording.path}: damaged: {error}") from None
     return found
 
@@ -173,15 +173,15 @@ def _checked(recording: Recording, robot: str | None, *, allowed: bool) -> Robot
 def rescore_all(
     requests: Sequence[RescoreRequest], registry: Registry, jobs: int
 ) -> Iterator[Rescored]:
-    """The same for many runs, in their order; what fails is told in the result.
+    """Score many runs in order; errors are part of the results.
 
-    With several ``jobs`` each process discovers the plugins for itself.
+    With several ``jobs`` each process discovers the plugins itself.
     """
     if jobs == 1 or len(requests) == 1:
         for request in requests:
             yield _guarded(request, registry)
         return
-    # a fresh interpreter: threads of numpy and of the progress bar do not survive a fork
+    # a fresh interpreter, since threads of numpy and of the progress bar do not survive a fork
     with ProcessPoolExecutor(min(jobs, len(requests)), get_context("spawn")) as pool:
         try:
             yield from pool.map(_guarded, requests, chunksize=1)
@@ -216,7 +216,7 @@ def _own_registry(plugins: tuple[Path, ...], allow: tuple[str, ...] | None) -> R
 def _commands(
     request: RescoreRequest, file: Path | None, source: RecordingSource | None
 ) -> Commands | None:
-    """From a CSV file, from the topics of a recording, or from those of the run itself."""
+    """Return commands from a CSV file, from topics of a recording, or from the run itself."""
     v_max, w_max = request.limits
     if file is not None and file.suffix.lower() == ".csv":
         if v_max is None or w_max is None:

@@ -1,4 +1,4 @@
-"""What to simulate, and what came of it."""
+"""The request for a simulation, and the resulting run."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ class Run:
 
     @classmethod
     def open(cls, directory: str | Path) -> Run:
-        """Open a run that was made before.
+        """Open an existing run.
 
         Args:
             directory: with its ``run.json``.
 
         Raises:
-            InputError: the folder holds no complete run.
+            InputError: the folder contains no complete run.
         """
         path = path_of("directory", directory)
         if not (path / files.RECORD).is_file():
@@ -89,7 +89,7 @@ class Run:
 
     @cached_property
     def scores(self) -> Scores:
-        """What was computed when it was made, read from ``scores.csv``.
+        """Return the original scores, read from ``scores.csv``.
 
         Raises:
             InputError: they cannot be read.
@@ -99,10 +99,10 @@ class Run:
 
     @cached_property
     def trajectories(self) -> Trajectories:
-        """The run itself, read from its recording.
+        """Return the run's trajectories, read from its recording.
 
         Raises:
-            InputError: it has several robots; `robots` has the run of each.
+            InputError: it has several robots; see `robots`.
         """
         with Recording(self.directory / files.RECORDING) as recording:
             return recording.trajectories()
@@ -122,7 +122,7 @@ class Run:
         return read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
 
     def _repr_html_(self) -> str:
-        """The replay page for notebooks, in a frame of its own; without one, what is known."""
+        """Return the replay page for notebooks in a frame; without one, known facts."""
         facts = f"{self.scenario} · {self.planner} · seed {self.seed}: {self.status}"
         page = self.directory / files.REPLAY
         if not page.is_file():
@@ -136,10 +136,10 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What to simulate, and how.
+    """The input of a simulation.
 
     Attributes:
-        seed: of the run: sensor noise and planner.
+        seed: seed of sensor noise and planner.
         out: root of the run directories.
         suite: first folder below it.
         options: how.
@@ -172,15 +172,15 @@ class Request:
 
     @property
     def pinned(self) -> bool:
-        """Whether planner and plugins all come from installed distributions."""
+        """Return True if planner and plugins all come from installed distributions."""
         return self.choice.pinned and all(p.pinned for p in self.registry.plugins if not p.error)
 
     @property
     def directory(self) -> Path:
-        """Where the run goes.
+        """Return the directory of the run.
 
         Raises:
-            InputError: a name leads out of the root, or is one that crowdbot needs itself.
+            InputError: a name leads out of the root, or is reserved by crowdbot.
         """
         for name in (self.suite, self.scenario.id, self.choice.label):
             if why := path_problem(name):
@@ -189,16 +189,16 @@ class Request:
 
 
 def read_references(paths: Mapping[str, Path]) -> References:
-    """The recordings of the calibration runs, by name.
+    """Return the recordings of the calibration runs, by name.
 
-    Several runs share them: the latest few are kept, as long as their files do not change.
+    Several runs share them, so the latest few are cached until their files change.
     """
     runs: dict[str, Any] = {name: read_kept(path) for name, path in paths.items()}
     return References(**runs)
 
 
 def read_kept(path: Path) -> Trajectories:
-    """The trajectories of a recording that several runs share.
+    """Return the trajectories of a recording that several runs share.
 
     Raises:
         InputError: it cannot be read.
@@ -206,7 +206,7 @@ def read_kept(path: Path) -> Trajectories:
     try:
         state = _state_of(path)
     except OSError:
-        return _read(path)  # says what is wrong
+        return _read(path)  # reports the error
     return _kept(*state)
 
 
@@ -215,9 +215,9 @@ def _state_of(path: Path) -> tuple[Path, int, int, int]:
     return path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size
 
 
-@lru_cache(maxsize=4)  # with 200 people for 180 s one takes 18 MB
+@lru_cache(maxsize=4)  # one takes 18 MB with 200 people for 180 s
 def _kept(path: Path, *state: int) -> Trajectories:
-    del state  # another one is another recording
+    del state  # a changed file is another recording
     return _read(path)
 
 

@@ -25,10 +25,10 @@ _NEEDED = (RECORDING, SCENARIO, SCORES)
 
 
 def checked_record(directory: Path) -> dict[str, Any]:
-    """``run.json`` of a complete run.
+    """Return ``run.json`` of a complete run.
 
     Raises:
-        InputError: it cannot be read, or is not a mapping; says why.
+        InputError: it cannot be read, or is not a mapping.
     """
     file = directory / RECORD
     try:
@@ -43,14 +43,14 @@ def checked_record(directory: Path) -> dict[str, Any]:
 
 
 def attach_files(folder: Path, record: Mapping[str, Any]) -> None:
-    """Put scenario, scores and ``run.json`` into the recording, which then says it all alone.
+    """Attach scenario, scores and ``run.json`` to the recording, which is then self-contained.
 
     Args:
-        folder: of a run, with its recording.
-        record: as it will be written, but for the sizes of files.
+        folder: folder of a run with its recording.
+        record: the record as written later, without file sizes.
     """
     from crowdbot.core.recording.container.attachments import (
-        attach,  # numpy, which listing does without
+        attach,  # numpy, which listing does not need
     )
 
     plain = {k: v for k, v in record.items() if k != "files"}
@@ -60,7 +60,7 @@ def attach_files(folder: Path, record: Mapping[str, Any]) -> None:
 
 
 def sizes(folder: Path) -> dict[str, int]:
-    """Name -> bytes of the files that a run cannot do without, for its record."""
+    """Return name -> bytes of the files that a run requires, for its record."""
     return {name: (folder / name).stat().st_size for name in _NEEDED if (folder / name).is_file()}
 
 
@@ -94,21 +94,21 @@ def check_whole(directory: Path, listed: Mapping[str, int]) -> None:
 
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:
-    """Write a document under a temporary name, then rename it."""
+    """Write a document atomically."""
     atomic_write(path, json_text(document))
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """A document as it is written."""
+    """Return a document as JSON text."""
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
 @contextmanager
 def partial(final: Path) -> Iterator[Path]:
-    """A directory of one's own beside ``final``; kept as it is when the body raises.
+    """Yield a temporary directory beside ``final``, which remains if the context raises.
 
-    Leftovers of an interrupted run are replaced; the directory of a run that is still going on
-    in another process is left alone, and the next free name is taken.
+    Leftovers of an interrupted run are replaced; the directory of a run that is still active in
+    another process is kept, and the next free name is used.
 
     Raises:
         InputError: it cannot be made or written.
@@ -124,13 +124,13 @@ def partial(final: Path) -> Iterator[Path]:
         yield folder
     finally:
         with suppress(OSError):
-            if _is_ours(lock, folder):  # once published, the name may be another process's
+            if _is_ours(lock, folder):  # once published, the name may belong to another process
                 (folder / _LOCK).unlink()
         os.close(lock)
 
 
 def publish(folder: Path, final: Path) -> None:
-    """Give a complete directory its final name, in place of what was there."""
+    """Rename a complete directory to its final name, replacing an old one."""
     for file in folder.iterdir():
         _sync(file)
     old = final.with_name(f"{final.name}.old-{os.getpid()}")
@@ -141,9 +141,9 @@ def publish(folder: Path, final: Path) -> None:
     except OSError as error:
         if error.errno not in (errno.EEXIST, errno.ENOTEMPTY):
             raise
-        shutil.rmtree(old, ignore_errors=True)  # another process was faster with the very same run
+        shutil.rmtree(old, ignore_errors=True)  # another process finished the same run first
         folder.rename(old)
-    with suppress(OSError):  # only now: until it is renamed, the folder must stay claimed
+    with suppress(OSError):  # only now: the folder must stay locked until it is renamed
         (final / _LOCK).unlink()
     _sync(final.parent)
     shutil.rmtree(old, ignore_errors=True)
@@ -164,7 +164,7 @@ def _claim(final: Path) -> tuple[Path, int]:
 
 
 def _lock(folder: Path) -> int | None:
-    """Make a folder and lock it; None when another process has it."""
+    """Create and lock a folder; return None if another process has it."""
     while True:
         try:
             folder.mkdir(exist_ok=True)
@@ -180,7 +180,7 @@ def _lock(folder: Path) -> int | None:
             return None
         if _is_ours(lock, folder):
             return lock
-        os.close(lock)  # the lock of a folder that has another name by now
+        os.close(lock)  # the lock of a folder that was renamed meanwhile
 
 
 def _is_ours(lock: int, folder: Path) -> bool:
@@ -191,7 +191,7 @@ def _is_ours(lock: int, folder: Path) -> bool:
 
 
 def _sync(path: Path) -> None:
-    """Wait until a file or directory is on the disk."""
+    """Wait until a file or directory is on disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)

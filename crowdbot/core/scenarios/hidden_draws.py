@@ -1,7 +1,7 @@
-"""Hidden draws: an organiser commits to a seed, and reveals it when nobody can tune to it.
+"""Hidden draws: an organiser commits to a seed, and reveals it once tuning is impossible.
 
-Works on a suite's file: lines are added at its end, and written only if the file then says what it
-should. What is hidden, seed and salt, lies in a file of its own that only its owner can read.
+Works on a suite's file: lines are added at its end, and written only if the resulting file is
+correct. Seed and salt are in a separate file that only its owner can read.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _SHOWN = 3
 
 
 class Secret(BaseModel):
-    """The content of ``NAME.secret.json``: what reveals a commitment."""
+    """The content of ``NAME.secret.json``, which reveals a commitment."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -57,12 +57,12 @@ class Secret(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """Lines to be added to a suite's file.
+    """Lines to add to a suite's file.
 
     Attributes:
-        path: of the file.
-        lines: to be added at its end.
-        text: of the file, with the lines.
+        path: the file's path.
+        lines: lines to add at its end.
+        text: the file's text with the lines.
     """
 
     path: Path
@@ -71,12 +71,12 @@ class Change:
 
 
 def secret_path(document: Path) -> Path:
-    """Where the secret of a suite lies, if nobody says otherwise."""
+    """Return the default path of a suite's secret."""
     return document.with_suffix(".secret.json")
 
 
 def commit(spec: str, registry: Registry, seed: int | None = None) -> tuple[Secret, Change]:
-    """Choose seed and salt of a suite, and say what to add to it. Nothing is written.
+    """Choose seed and salt of a suite, and the lines to add to it, without writing.
 
     Args:
         spec: the suite.
@@ -84,8 +84,8 @@ def commit(spec: str, registry: Registry, seed: int | None = None) -> tuple[Secr
         seed: default: from the system's entropy, as the salt is always.
 
     Raises:
-        InputError: it is not a suite, is committed already, has a seed in the open, or draws nobody
-            from its seed.
+        InputError: it is not a suite, is committed already, has a seed in the open, or samples no
+            people from its seed.
     """
     document = open_document(spec, registry)
     _check_open(document)
@@ -103,10 +103,10 @@ def commit(spec: str, registry: Registry, seed: int | None = None) -> tuple[Secr
 
 
 def reveal(spec: str, registry: Registry, secret_file: Path) -> tuple[Secret, Change]:
-    """What to add to a suite so that everybody knows its seed.
+    """Return the lines to add to a suite to reveal its seed.
 
     Raises:
-        InputError: the secret is that of another suite, or suite or commitment were changed since.
+        InputError: the secret belongs to another suite, or suite or commitment were changed since.
     """
     secret = read_secret(secret_file)
     document = open_document(spec, registry)
@@ -126,7 +126,7 @@ def reveal(spec: str, registry: Registry, secret_file: Path) -> tuple[Secret, Ch
 
 
 def write_change(change: Change) -> None:
-    """Write the suite's file anew, whole or not at all.
+    """Write the suite's file atomically.
 
     Raises:
         InputError: it cannot be written.
@@ -135,10 +135,10 @@ def write_change(change: Change) -> None:
 
 
 def write_secret(path: Path, secret: Secret) -> None:
-    """Write seed and salt into a new file that only its owner can read, at every moment.
+    """Write seed and salt to a new file that only its owner can ever read.
 
     Raises:
-        InputError: there is such a file already, or it cannot be written.
+        InputError: the file exists already, or it cannot be written.
     """
     text = secret.model_dump_json(indent=1) + "\n"
     try:
@@ -162,7 +162,7 @@ def write_secret(path: Path, secret: Secret) -> None:
 
 
 def read_secret(path: Path) -> Secret:
-    """A secret from its file.
+    """Read a secret from its file.
 
     Raises:
         InputError: it cannot be read, or is not one.
@@ -183,10 +183,10 @@ def read_secret(path: Path) -> Secret:
 
 
 def read_seed(path: Path) -> int:
-    """A seed from a file that holds nothing else, such as the outcome of a public lottery.
+    """Read a seed from a file with nothing else, such as the outcome of a public lottery.
 
     Raises:
-        InputError: it cannot be read, or holds something else.
+        InputError: it cannot be read, or contains something else.
     """
     try:
         text = path.read_bytes()[:_LONGEST].decode("ascii", errors="replace").strip()
@@ -224,10 +224,10 @@ def _new_salt() -> str:
 
 # ----------------------------------------------------------------------- changing
 def _change(document: OpenDocument, lines: Sequence[str], registry: Registry) -> Change:
-    """The file with lines added at its end, which is read once to see that it says the same.
+    """Return the file with added lines, checked by reading it once.
 
     Raises:
-        InputError: nothing can be added to it, or nobody is drawn from its seed.
+        InputError: nothing can be added to it, or no people are sampled from its seed.
     """
     check_writable(LockFiles(document.path, document.name))
     before = document.path.read_bytes().decode()
@@ -249,12 +249,12 @@ def _change(document: OpenDocument, lines: Sequence[str], registry: Registry) ->
 def _check_drawn(document: OpenDocument, after: ParsedSuite, registry: Registry) -> None:
     expansion = expand_document(after, registry.scenario_model)
     if not any(scenario.hidden for scenario in expansion.scenarios):
-        raise InputError(f"{document.name}: nobody is drawn from suite.seed: nothing to hide")
+        raise InputError(f"{document.name}: no people are drawn from suite.seed: nothing to hide")
 
 
 @contextlib.contextmanager
 def _copy(path: Path, text: str) -> Iterator[Path]:
-    """A text as a file beside another one, whose includes it finds, while somebody reads it."""
+    """Yield a temporary file with a text, beside another one so that its includes resolve."""
     copy = path.with_name(f".{path.stem}.{os.getpid()}.try.yaml")
     try:
         copy.write_bytes(text.encode())
@@ -267,7 +267,7 @@ def _copy(path: Path, text: str) -> Iterator[Path]:
 
 
 def _why(secret: Secret, content: dict[str, Any]) -> str:
-    """Which of secret, commitment and document was changed."""
+    """Return if secret, commitment or document was changed."""
     if commitment_of(secret.document, secret.seed, secret.salt) != secret.commitment:
         return "seed, salt or document in the secret are not those of its commitment"
     changed = list(changes(flatten(secret.document), flatten(content)))

@@ -1,4 +1,4 @@
-"""Opening suites by path or packaged name, and picking scenarios by id, prefix or pattern."""
+"""Open suites by path or packaged name, and select scenarios by id, prefix or pattern."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ if TYPE_CHECKING:
 
 _LOG = logging.getLogger("crowdbot")
 _BUILTIN = "builtin"
-#: In one plugin's folder, those in folders inside it included.
+#: Largest number of files in one plugin's folder, including subfolders.
 _MOST_FILES = 2000
 _UNPACKED = "crowdbot-unpacked-"
-#: Errors about something that no plugin has: kind, metric, file.
+#: Errors about something missing in all plugins: kind, metric, file.
 _UNKNOWN = ("E120", "E121", "E201")
 
 
 @dataclass(frozen=True, slots=True)
 class OpenDocument:
-    """A document that has been read: its file, what messages call it, and what it says."""
+    """A document after reading: its file, its name for messages, and its contents."""
 
     path: Path
     name: str
@@ -50,10 +50,10 @@ class OpenDocument:
 
 @seldom_collected()
 def open_document(spec: str, registry: Registry) -> OpenDocument:
-    """Read a suite or scenario with all it extends; nothing is expanded.
+    """Read a suite or scenario with everything it extends, without expanding it.
 
     Raises:
-        SpecError: the document cannot be taken apart.
+        SpecError: the document cannot be parsed.
         UnknownNameError: neither a file nor a packaged suite has this name.
     """
     roots = plugin_folders(registry)
@@ -73,10 +73,10 @@ def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> E
     Args:
         spec: a path, or the name of a packaged suite (``challenge-2020``, ``acme:office``).
         registry: the installed components.
-        overrides: ``key=value`` texts, laid over every scenario.
+        overrides: ``key=value`` texts, applied to every scenario.
 
     Raises:
-        SpecError: the document is wrong; every error at once.
+        SpecError: the document is invalid; with all errors.
         UnknownNameError: neither a file nor a packaged suite has this name.
     """
     expansion, _ = open_suite(spec, registry, overrides)
@@ -102,7 +102,7 @@ def open_suite(
 
 
 def _with_reason(diagnostic: Diagnostic, registry: Registry) -> Diagnostic:
-    """An error about something of a plugin that failed, or is not allowed, says so."""
+    """Add the reason to an error about a plugin that failed or is not allowed."""
     if diagnostic.code not in _UNKNOWN:
         return diagnostic
     quoted = re.search(r"'([^']+)'", diagnostic.message)
@@ -111,10 +111,10 @@ def _with_reason(diagnostic: Diagnostic, registry: Registry) -> Diagnostic:
 
 
 def check_writable(files: LockFiles) -> None:
-    """Whether a lock may be written where it belongs.
+    """Check that a lock may be written to its place.
 
     Raises:
-        InputError: it belongs into an installed package.
+        InputError: it would be inside an installed package.
     """
     folder = files.lock_path.parent.resolve()
     installed_ = {"site-packages", "dist-packages"} & set(folder.parts)
@@ -126,7 +126,7 @@ def check_writable(files: LockFiles) -> None:
 
 
 class _Origins:
-    """The scenarios as the suite has them, without ``--set``; each expanded when asked for."""
+    """The scenarios as in the suite, without ``--set``; each expanded on demand."""
 
     def __init__(
         self,
@@ -148,13 +148,13 @@ def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:
 
 
 def installed(registry: Registry) -> Installed:
-    """What is installed, by the names that documents use."""
+    """Return the installed components, by the names used in documents."""
     return _InstalledIn(registry)
 
 
 @dataclass(frozen=True)
 class _InstalledIn:
-    """What a registry has, looked up where a document speaks of it."""
+    """The registry's components, looked up on demand."""
 
     registry: Registry
 
@@ -169,21 +169,21 @@ class _InstalledIn:
 
 
 def suite_names(registry: Registry) -> list[str]:
-    """Names of all packaged suites."""
+    """Return the names of all packaged suites."""
     return sorted(_packaged(plugin_folders(registry)))
 
 
 def pick(expansion: Expansion, pattern: str | None) -> Scenario:
-    """The one scenario that an id means.
+    """Return the only scenario that matches an id.
 
     Args:
         expansion: from `open_spec`.
         pattern: an id, a unique prefix or pattern of one, with or without ``suite-id/`` in front;
-            None means the only scenario.
+            None: the only scenario.
 
     Raises:
         UnknownNameError: no scenario has such an id.
-        InputError: several have.
+        InputError: several scenarios match.
     """
     if pattern is None:
         return _only(expansion, expansion.scenarios, "no id was given")
@@ -197,15 +197,15 @@ def pick(expansion: Expansion, pattern: str | None) -> Scenario:
 
 
 def _like(pattern: str, ids: Sequence[str]) -> Sequence[str]:
-    """What a pattern may have meant: ids, or their beginnings of as many parts."""
+    """Return suggestions for a pattern: ids, or their beginnings with as many parts."""
     parts = pattern.count("-") + 1
     return sorted({"-".join(i.split("-")[:parts]) for i in ids})
 
 
 def select(expansion: Expansion, pattern: str) -> list[Scenario]:
-    """All scenarios whose id fits: equal, beginning with ``pattern``, or matching it as a glob.
+    """Return all scenarios whose id equals, begins with, or matches ``pattern`` as a glob.
 
-    A ``+`` suffix that ``--set`` gave to the ids need not be written.
+    A ``+`` suffix of the ids from ``--set`` is optional.
     """
     bare = _bare(expansion, pattern)
     ids = [s for s in expansion.scenarios if bare in (s.id, s.id.partition("+")[0])]
@@ -229,7 +229,7 @@ def _only(expansion: Expansion, found: Sequence[Scenario], why: str) -> Scenario
 
 
 def _find(spec: str, roots: dict[str, list[Path]], registry: Registry) -> tuple[Path, str]:
-    """The file that a SPEC means, and what messages call it."""
+    """Return the file of a SPEC, and its name for messages."""
     path, packaged = Path(spec), _packaged(roots)
     looks_like_path = path.suffix in (".yaml", ".yml") or os.sep in spec or "/" in spec
     if not looks_like_path and spec in packaged:
@@ -243,7 +243,7 @@ def _find(spec: str, roots: dict[str, list[Path]], registry: Registry) -> tuple[
 
 
 def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:
-    """Name -> file of every packaged suite; crowdbot's own have no prefix."""
+    """Return name -> file of every packaged suite; crowdbot's own have no prefix."""
     return {
         file.stem if plugin == _BUILTIN else f"{plugin}:{file.stem}": file
         for plugin, folders in roots.items()
@@ -253,9 +253,9 @@ def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:
 
 
 def plugin_folders(registry: Registry) -> dict[str, list[Path]]:
-    """Plugin name -> its scenario folders as real ones; those inside archives are unpacked.
+    """Return plugin name -> its scenario folders; those in archives are unpacked.
 
-    Folders that cannot be read are left out with a warning: other plugins' suites stay.
+    Unreadable folders are left out with a warning; other plugins' suites remain.
     """
     roots: dict[str, list[Path]] = {}
     for plugin in registry.plugins:
@@ -266,7 +266,7 @@ def plugin_folders(registry: Registry) -> dict[str, list[Path]]:
         except CrowdbotError as error:
             _warn_once(f"{error}; they are left out")
             continue
-        if folders:  # without, one that has taken another's name would hide that one's
+        if folders:  # without folders, a plugin with a duplicate name would hide the other
             roots[plugin.name] = folders
     return roots
 
@@ -282,7 +282,7 @@ def _real(folder: Any) -> Path:
 
 @cache
 def _unpacked(folder: Traversable) -> Path:
-    """A folder of an archive as a real one, which lives as long as the process."""
+    """Return a folder of an archive as a real one, kept until the process ends."""
     import tempfile
 
     target = Path(tempfile.mkdtemp(prefix=_UNPACKED))
@@ -295,7 +295,7 @@ def _unpack(folder: Traversable, target: Path, numbers: Iterator[int]) -> None:
     """Copy a folder.
 
     Raises:
-        InputError: it has too many files, or one with a name that no file can have.
+        InputError: it has too many files, or an invalid file name.
     """
     for item in folder.iterdir():
         if next(numbers) > _MOST_FILES:
@@ -311,7 +311,10 @@ def _unpack(folder: Traversable, target: Path, numbers: Iterator[int]) -> None:
 
 
 def _shown(path: Path, spec: str) -> str:
-    """A packaged file for messages: relative below the working directory, else as in `extends`."""
+    """Return a packaged file's name for messages.
+
+    Relative if below the working directory, else as in `extends`.
+    """
     if path.is_relative_to(Path.cwd()):
         return str(path.relative_to(Path.cwd()))
     plugin, _, _ = spec.rpartition(":")

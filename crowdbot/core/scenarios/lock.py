@@ -33,14 +33,14 @@ _NAME = re.compile(r"[A-Za-z0-9_.+-]+")
 
 @dataclass(frozen=True)
 class Population:
-    """The agents of a scenario, and whether they were read from a lock."""
+    """The agents of a scenario, and True if they were read from a lock."""
 
     agents: Realisation
     source: Literal["locked", "drawn", "none"]
 
     @cached_property
     def hash(self) -> str:
-        """Content hash of the agents, which scenarios and runs share; nobody changes them."""
+        """Return the content hash of the agents, which scenarios and runs share unchanged."""
         return self.agents.hash
 
 
@@ -52,7 +52,7 @@ def _check_draw(files: LockFiles, scenario: Scenario, origin: Scenario, name: st
     """
     locked = files.lock.scenarios[origin.id]
     if population_inputs(scenario) != population_inputs(origin) or locked.draw is None:
-        return  # changed with --set, or a calibration run with people of its own
+        return  # changed with --set, or a calibration run with its own people
     found = files.lock.draws[name].realisation if name is not None else "none"
     if name != locked.draw or found != locked.realisation:
         raise InputError(
@@ -64,7 +64,7 @@ def _check_draw(files: LockFiles, scenario: Scenario, origin: Scenario, name: st
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """A new lock, its tables by name, and how many of these were drawn just now."""
+    """A new lock, its tables by name, and the number of newly sampled tables."""
 
     lock: Lock
     tables: Mapping[str, str]
@@ -77,13 +77,12 @@ class Made:
 
 
 def population(scenario: Scenario, registry: Registry) -> Population:
-    """The agents of a scenario: from its suite's lock, drawn only where there is none.
+    """Return a scenario's agents from its suite's lock, sampled only if there is none.
 
-    Agents are drawn all the same when ``--set`` or Python code changed something that the
-    drawing depends on.
+    Agents are also sampled if ``--set`` or Python code changed an input of the sampling.
 
     Raises:
-        InputError: the lock does not fit the suite any more, or the seed of the agents is hidden.
+        InputError: the lock is out of date, or the seed of the agents is hidden.
     """
     if scenario.crowd is None:
         return Population(Realisation.nobody(), "none")
@@ -117,7 +116,7 @@ def make_lock(
         redraw: keep no table.
 
     Raises:
-        InputError: a crowd cannot be drawn or is hidden, or the old lock is not a lock.
+        InputError: a crowd cannot be sampled or is hidden, or the old lock is not a lock.
     """
     for scenario in expansion.scenarios:
         check_revealed(scenario)
@@ -152,7 +151,7 @@ def make_lock(
 
 
 def write_lock(files: LockFiles, made: Made) -> None:
-    """Write both files under temporary names, then rename them; both or neither.
+    """Write both files atomically: both or neither.
 
     A file of tables that is shared with another suite is left alone.
 
@@ -220,7 +219,7 @@ def _kept(old: LockFiles | None, inputs: str) -> str | None:
     try:
         table = old.table(name)
         Realisation.from_csv(table)
-    except InputError:  # changed by hand, or written by a release whose tables had other columns
+    except InputError:  # edited by hand, or written by a release with other columns
         return None
     return table
 
@@ -233,7 +232,7 @@ def _with_crowd(expansion: Expansion) -> Iterator[Scenario]:
 
 
 def _free_name(scenario: Scenario, suite: str, taken: Mapping[str, object]) -> str:
-    """The crowd's seed key if it has one; numbered if other inputs have the same."""
+    """Return the crowd's seed key if it has one; numbered if other inputs use it."""
     assert scenario.crowd is not None
     key = scenario.crowd.seed.key
     name = key if _NAME.fullmatch(key) else suite

@@ -18,13 +18,13 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class LockDifference:
-    """One thing in which a suite and its lock differ.
+    """One difference between a suite and its lock.
 
     Attributes:
         what: ``added`` or ``removed`` (an id), ``changed`` (a scenario), ``order`` (of the ids),
             ``agents`` (a table), ``suite`` (its id).
-        id: of the scenario; name of the table for ``agents``.
-        details: the fields that changed, or what is wrong.
+        id: id of the scenario; name of the table for ``agents``.
+        details: the changed fields, or the error.
     """
 
     what: str
@@ -36,15 +36,15 @@ class LockDifference:
         return f"{self.what} {self.id}{more}"
 
     def as_dict(self) -> dict[str, Any]:
-        """For ``--json``."""
+        """Return a dictionary for ``--json``."""
         return asdict(self)
 
 
 def spec_of(scenario: Scenario, registry: Registry) -> str:
-    """The hash of a scenario.
+    """Return the hash of a scenario.
 
     Raises:
-        InputError: its people are not known yet, so that it has none.
+        InputError: its people are hidden, so it has none.
     """
     check_revealed(scenario)
     return content_hash(scenario, registry.spec_versions(scenario))
@@ -54,7 +54,7 @@ def check_revealed(scenario: Scenario) -> None:
     """Check that the people of a scenario are known.
 
     Raises:
-        InputError: their seed is hidden; the message says how to practise.
+        InputError: their seed is hidden; the message explains how to practise.
     """
     if scenario.hidden:
         raise InputError(
@@ -72,7 +72,7 @@ def check_fits(files: LockFiles, scenario: Scenario, registry: Registry) -> None
     """Check that one scenario is still the one that was locked.
 
     Raises:
-        InputError: it is not; the message says what changed, and names ``crowdbot lock``.
+        InputError: it changed; the message lists the changes, and names ``crowdbot lock``.
     """
     lock, name = files.lock, files.lock_path.name
     advice = f"run {files.command} ('--check' lists what changed)"
@@ -84,7 +84,7 @@ def check_fits(files: LockFiles, scenario: Scenario, registry: Registry) -> None
 
 
 def differences(expansion: Expansion, files: LockFiles, registry: Registry) -> list[LockDifference]:
-    """Everything in which a suite and its lock differ.
+    """Return all differences between a suite and its lock.
 
     Raises:
         InputError: the lock cannot be read.
@@ -126,7 +126,7 @@ def _changed(lock: Lock, scenario: Scenario, registry: Registry) -> list[str]:
 
 
 def _of_tables(files: LockFiles) -> Iterator[LockDifference]:
-    """Tables that are not what the lock says, and the places in the lock that disagree."""
+    """Yield tables that differ from the lock, and inconsistent entries of the lock."""
     lock = files.lock
     for name in lock.draws:
         try:
@@ -146,7 +146,7 @@ def _of_tables(files: LockFiles) -> Iterator[LockDifference]:
 
 
 def _of_needed_tables(expansion: Expansion, lock: Lock) -> Iterator[LockDifference]:
-    """Tables that are missing or not needed; asked when everything else fits."""
+    """Yield missing or unneeded tables; used if everything else matches."""
     needed = set()
     for scenario in expansion.scenarios:
         for name, one in [("", scenario), *scenario.references.items()]:

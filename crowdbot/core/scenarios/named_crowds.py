@@ -1,4 +1,4 @@
-"""Crowds by name: the parts in ``parts/crowds`` of all plugins, files, and kinds of policies."""
+"""Crowds by name: parts in ``parts/crowds`` of all plugins, files, and kinds of policies."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ scenario:
   crowd:
     flow: {{direction: in, density: 0.25 1/m^2, area: crowd}}{policy}
 """
-#: What a crowd is like that does not say so: as fast as recorded people.
+#: Defaults of a named crowd: the speeds of recorded people.
 _USUAL = "crowd.speed: {mean: 1.5 m/s, std: 0.2 m/s}\n"
 
 
 def crowd_parts(registry: Registry) -> dict[str, Path]:
-    """Name -> file of every named crowd; those of plugins have the plugin's name in front."""
+    """Return name -> file of every named crowd; those of plugins have the plugin's prefix."""
     return {
         file.stem if plugin == _BUILTIN else f"{plugin}:{file.stem}": file
         for plugin, folders in plugin_folders(registry).items()
@@ -48,7 +48,7 @@ def crowd_parts(registry: Registry) -> dict[str, Path]:
 
 
 def names_crowd(text: str, registry: Registry) -> bool:
-    """Whether a text names a crowd rather than a suite: a part, or the kind of a policy."""
+    """Return True if a text names a crowd (a part or a policy's kind) rather than a suite."""
     if text in crowd_parts(registry) or text in registry.components("crowd policy"):
         return True
     path = Path(text)
@@ -56,15 +56,15 @@ def names_crowd(text: str, registry: Registry) -> bool:
 
 
 def open_crowd(text: str, registry: Registry, overrides: Sequence[str] = ()) -> Crowd:
-    """The crowd that a text means; speeds that it leaves open are those of recorded people.
+    """Return the crowd that a text names; its default speeds are those of recorded people.
 
     Args:
         text: the name of a part, the path of one, or the kind of a crowd policy.
-        overrides: ``key=value`` texts; keys as in a scenario, ``crowd.`` may be left out.
+        overrides: ``key=value`` texts; keys as in a scenario, ``crowd.`` is optional.
 
     Raises:
-        UnknownNameError: nothing has this name.
-        SpecError: the part or an override is wrong.
+        UnknownNameError: there is no crowd with this name.
+        SpecError: the part or an override is invalid.
     """
     parts, path = crowd_parts(registry), Path(text)
     known = sorted({*parts, *registry.components("crowd policy")})
@@ -111,7 +111,7 @@ def _opened(
 
 
 def _as_given(diagnostic: Diagnostic, text: str) -> Diagnostic:
-    """An error in the user's file names it as the user did."""
+    """Return an error with the user's own name of the file."""
     mark = diagnostic.mark
     if mark is None or not mark.source.name.startswith(f"{_GIVEN}:"):
         return diagnostic
@@ -123,6 +123,6 @@ def _in_crowd(override: str) -> str:
 
 
 def _is_document(path: Path) -> bool:
-    """Whether a file is a suite or a scenario: parts do not say ``crowdbot: 1``."""
+    """Return True if a file is a suite or a scenario: parts have no ``crowdbot: 1``."""
     text = path.read_text(encoding="utf-8", errors="replace")
     return any(line.startswith("crowdbot:") for line in text.splitlines())

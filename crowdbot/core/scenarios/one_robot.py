@@ -1,4 +1,4 @@
-"""Scenarios for what drives one robot."""
+"""A check for features that support only one robot."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from crowdbot.errors import InputError
 
 
 def check_one_robot(scenario: Scenario, driver: str) -> None:
-    """Refuse a scenario that has not exactly one robot.
+    """Refuse a scenario that does not have exactly one robot.
 
     Args:
-        driver: what would drive it, such as "a session".
+        driver: the driver, such as "a session".
 
     Raises:
-        InputError: it names the robots, and says what drives several.
+        InputError: with the robots' names, and what supports several.
     """
     robots = list(scenario.robots)
     if not robots:

@@ -1,4 +1,4 @@
-"""The same scenarios with other crowds: how people decide changes, who walks where does not."""
+"""Replace the crowds of scenarios: decisions change, starts and goals do not."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from crowdbot.dsl.scenario.scenario import Crowd, Scenario
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError
 
-#: Axis that tells the crowds apart.
+#: Name of the axis for the crowds.
 AXIS = "crowd"
 
 
 def with_crowds(expansion: Expansion, names: Sequence[str], registry: Registry) -> Expansion:
-    """Every scenario once for each named crowd, with the axis ``crowd``; by crowds, then as before.
+    """Repeat every scenario with each named crowd, on the axis ``crowd``; sorted by crowds.
 
-    Policy, cost functions, steering and what the named crowd says of bodies are laid over; flows,
-    places, speeds and what people do about robots stay the scenario's. So do the draws.
+    Policy, cost functions, steering and the named crowd's bodies are replaced; flows, places,
+    speeds, responses to robots and draws remain the scenario's.
 
     Args:
-        expansion: of a suite or a scenario.
-        names: as `open_crowd` takes them; without any, the expansion is as it was.
+        expansion: expansion of a suite or a scenario.
+        names: names for `open_crowd`; if empty, the expansion is unchanged.
 
     Raises:
-        InputError: a scenario has no crowd, a name is there twice, or the suite has such an axis.
-        SpecError, UnknownNameError: there is no such crowd, or it is wrong.
+        InputError: a scenario has no crowd, a name occurs twice, or the suite has such an axis.
+        SpecError, UnknownNameError: a crowd does not exist or is invalid.
     """
     if not names:
         return expansion
@@ -49,7 +49,7 @@ def with_crowds(expansion: Expansion, names: Sequence[str], registry: Registry) 
 
 
 def label_of(name: str) -> str:
-    """What a crowd is called in ids and on axes."""
+    """Return the name of a crowd in ids and on axes."""
     stem = re.sub(r"\.ya?ml$", "", name.rpartition("/")[2])
     return re.sub(r"[^A-Za-z0-9_.-]", ".", stem)
 

@@ -1,1 +1,1 @@
-"""Scoring: the contract of metrics, how runs are scored, and the table of scores."""
+"""Scoring: the metric interface, scoring of runs, and the table of scores."""

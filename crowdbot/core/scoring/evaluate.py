@@ -1,4 +1,4 @@
-"""Scores of one run: choose metrics from a registry, build them, ask each."""
+"""Scores of one run: select metrics from a registry, build them, and run each."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Scores(Sequence[Score]):
 
     Attributes:
         items: the scores.
-        scenario, planner, seed: of the run, where they are known.
+        scenario, planner, seed: of the run, if known.
     """
 
     items: tuple[Score, ...] = ()
@@ -69,16 +69,16 @@ class Scores(Sequence[Score]):
     @overload
     def __getitem__(self, index: slice) -> Scores: ...
     def __getitem__(self, index: int | slice) -> Score | Scores:
-        """One score, or a part of them."""
+        """Return one score or a slice."""
         found = self.items[index]
         return replace(self, items=found) if isinstance(found, tuple) else found
 
     def __len__(self) -> int:
-        """How many there are."""
+        """Return the number of scores."""
         return len(self.items)
 
     def __iter__(self) -> Iterator[Score]:
-        """In order."""
+        """Iterate in order."""
         return iter(self.items)
 
     def find(self, metric: str, variant: str = "corrected") -> Score:
@@ -108,7 +108,7 @@ class Scores(Sequence[Score]):
         return to_pandas(self._rows(), _COLUMNS)
 
     def to_arrow(self) -> pa.Table:
-        """The same as an Arrow table; missing values are null.
+        """Return the scores as an Arrow table; missing values are null.
 
         Raises:
             InputError: pyarrow is not installed.
@@ -120,7 +120,7 @@ class Scores(Sequence[Score]):
         return [{**run, **{n: getattr(s, n) for n in _COLUMNS[3:]}} for s in self.items]
 
     def _repr_html_(self) -> str:
-        """A table for notebooks."""
+        """Return an HTML table for notebooks."""
         heads = ("metric", "variant", "value", "unit", "better", "status")
         head = "".join(f"<th>{n}</th>" for n in heads)
         rows = "".join(f"<tr>{_cells(s)}</tr>" for s in self.items)
@@ -149,24 +149,24 @@ def score(
     """Score a run.
 
     Args:
-        registry: where metrics come from.
-        crowded: the run; None where only commands or answers are known. Then metrics that need a
-            run are undefined: there is no robot in it, and nobody else. Velocities that were not
-            recorded are derived, here and in the references.
-        robot_alone: the same robot without people, where known.
-        crowd_alone: the same people without robot, where known.
+        registry: registry with the metrics.
+        crowded: the run; None if only commands or answers are known, then metrics that need a run
+            are undefined. Velocities that were not recorded are derived, here and in the
+            references.
+        robot_alone: the same robot without people, if known.
+        crowd_alone: the same people without robot, if known.
         commands: the user's and the final commands.
         commands_baseline: commands of a drive of the same user without shared control.
         questionnaires: answers; see `Questionnaires.from_mapping`.
         metrics: one or several globs over metric names; each must match. Experimental metrics are
-            scored only where a glob matches no stable one, as their own names do.
+            scored only if a glob matches no stable one, as their own names do.
         variants: ``all``, or the names of the variants to keep.
-        parameters: metric -> field -> value; what is left out keeps its default.
+        parameters: metric -> field -> value; others keep their defaults.
 
     Raises:
-        UnknownNameError: no metric or variant answers to a name.
+        UnknownNameError: no metric or variant has a given name.
         InputError: there is nothing to score, a metric is retired, a parameter does not fit, an
-            arrival time lies outside its run, or a number of it is beyond all sizes.
+            arrival time lies outside its run, or a number is too large.
         PluginError: a metric failed.
     """
     if crowded is None and commands is None and questionnaires is None:
@@ -183,7 +183,7 @@ def score(
     run = Trajectories(t=np.zeros(1)) if crowded is None else with_velocities(crowded)
     for trajectories in (run, robot_alone, crowd_alone):
         if trajectories is not None:
-            truncate_at_arrival(trajectories)  # an impossible arrival is not a metric's failure
+            truncate_at_arrival(trajectories)  # not the metric's fault
             check_sizes(trajectories)
     specs = metric_specs(registry, metrics, parameters or {})
     scores = [s for spec in specs for s in _scores_of(registry, spec, run, refs)]
@@ -193,7 +193,7 @@ def score(
 def metric_specs(
     registry: Registry, metrics: str | Sequence[str], parameters: MetricParameters
 ) -> list[MetricSpec]:
-    """Specs of the metrics that match, by name; all parameters are checked.
+    """Return the specs of matching metrics, by name; all parameters are checked.
 
     Raises:
         UnknownNameError: a glob, or a metric with parameters, matches nothing installed.
@@ -212,7 +212,7 @@ def metric_specs(
 
 
 def _matching(known: Mapping[str, Component[MetricSpec]], glob: str, absent: str) -> list[str]:
-    """Stable metrics that match; if there are none, experimental ones."""
+    """Return the stable metrics that match; if there are none, experimental ones."""
     if glob in known and known[glob].successor:
         raise InputError(f"metric '{glob}' is retired; use '{known[glob].successor}'")
     matching = [kind for kind in fnmatch.filter(known, glob) if not known[kind].successor]
@@ -238,13 +238,13 @@ def _complaint(component: Component[MetricSpec], where: Sequence[int | str], wha
 
 
 def build_metric(registry: Registry, spec: MetricSpec, call: PluginCall | None = None) -> Metric:
-    """The metric that a spec describes.
+    """Build the metric that a spec describes.
 
     Args:
-        call: the boundary to its plugin; by default a new one.
+        call: call boundary to its plugin; default: a new one.
 
     Raises:
-        PluginError: it cannot be built, or is not a metric.
+        PluginError: the metric cannot be built, or is not a metric.
     """
     return registry.build(spec, _checked_metric, call=call)
 
@@ -255,21 +255,21 @@ def _checked_metric(metric: object) -> Metric:
     return cast(Metric, metric)
 
 
-#: Of one metric; what it returns may never end.
+#: Largest number of scores of one metric; a plugin may return an endless iterator.
 _MOST_SCORES = 1000
 
 
 def _scores_of(
     registry: Registry, spec: MetricSpec, run: Trajectories, refs: References
 ) -> list[Score]:
-    """Ask one metric; whatever it does wrong is its plugin's failure."""
+    """Run one metric; any error in it is its plugin's failure."""
     call = registry.plugin_call(spec, passes=PluginError)
     metric = build_metric(registry, spec, call)
     with call("score"):
         answer: object = metric.score(run, refs)
         if not isinstance(answer, Iterable):
             call.fail(f"score returned {answer!r}; a list of scores is wanted")
-        scores = list(islice(answer, _MOST_SCORES))  # of more, the variants are wrong anyway
+        scores = list(islice(answer, _MOST_SCORES))  # with more, the variants are wrong anyway
     with call("what it returned"):
         wrong = _what_is_wrong(scores, registry.find("metric", spec.kind))
     if wrong:
@@ -279,7 +279,7 @@ def _scores_of(
 
 
 def _what_is_wrong(scores: Sequence[object], component: Component[MetricSpec]) -> str:
-    """What is wrong with what a metric returned; empty where nothing is."""
+    """Describe what is wrong with a metric's result; empty if nothing is."""
     for item in scores:
         if not isinstance(item, Score) or item.metric != component.kind:
             return f"returned {item!r} instead of its own scores"

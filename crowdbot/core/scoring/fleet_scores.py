@@ -1,4 +1,4 @@
-"""Scores of several robots in one run: of each, and of the fleet."""
+"""Scores of several robots in one run: per robot, and for the fleet."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from dataclasses import replace
 
 from crowdbot.core.types.score import Score
 
-#: Between a variant and the robot whose score it is.
+#: Separator between a variant and its robot.
 AT = "@"
 
 
 def variant_of(variant: str, robot: str) -> str:
-    """Name of a variant of one robot's score: ``rate@a``."""
+    """Return the name of a variant of one robot's score: ``rate@a``."""
     return f"{variant}{AT}{robot}"
 
 
 def fleet_scores(by_robot: Mapping[str, Sequence[Score]]) -> list[Score]:
-    """One score of the fleet for each score of its robots, followed by theirs.
+    """Return one fleet score for each score of its robots, followed by the robots' scores.
 
-    The fleet's is the mean over its robots: of those of whom it is known, which the reason tells
-    where it is not all of them. If it is censored for one, it is for the fleet.
+    The fleet's score is the mean over robots with a known score; the reason says if some are
+    missing. If one is censored, so is the fleet's.
 
     Args:
         by_robot: name -> scores, of the same metrics and variants in the same order.
@@ -57,6 +57,6 @@ def _of_fleet(scores: Mapping[str, Score]) -> Score:
 
 
 def _mean(numbers: Sequence[float | None]) -> float | None:
-    """None if one is not known."""
+    """Return the mean, or None if a number is unknown."""
     known = [number for number in numbers if number is not None]
     return sum(known) / len(known) if known and len(known) == len(numbers) else None

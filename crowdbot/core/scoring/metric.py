@@ -1,4 +1,4 @@
-"""What a metric gets and returns."""
+"""Input and output of a metric."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class References:
-    """What a run is compared with, and what else was recorded of it; all may be missing.
+    """References for a run, and its other recordings; all may be missing.
 
     Attributes:
         robot_alone: the same robot without people.
         crowd_alone: the same people without robot.
         commands: the user's and the final commands of this run.
-        commands_baseline: of a drive of the same user without shared control.
+        commands_baseline: commands of the same user's drive without shared control.
         questionnaires: what the user answered after this run.
     """
 
@@ -36,5 +36,5 @@ class Metric(Protocol):
     """A pure function of trajectories."""
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """One score per variant; a status instead of NaN."""
+        """Return one score per variant; a status instead of NaN."""
         ...

@@ -1,4 +1,4 @@
-"""ScoreFactory: makes the scores of one metric as its component declares them."""
+"""ScoreFactory: builds the scores of one metric from its declaration."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from crowdbot.dsl.spec.metric_component import MetricComponent
 
 @dataclass(frozen=True, slots=True)
 class ScoreFactory:
-    """Makes scores that carry the symbol, category, unit and direction of a metric.
+    """Builds scores with the symbol, category, unit and direction of a metric.
 
     Attributes:
         metric: the component that declares the metric.
 
     Raises:
-        ValueError: by all methods, where the metric declares no such variant.
+        ValueError: from any method, if the metric declares no such variant.
     """
 
     metric: MetricComponent[Any]
@@ -31,15 +31,15 @@ class ScoreFactory:
     def ok(
         self, variant: str, value: SupportsFloat, extras: Mapping[str, float] | None = None
     ) -> Score:
-        """A score with a value."""
+        """Return a score with a value."""
         return Score(**self._common(variant), value=float(value), extras=extras or {})
 
     def undefined(self, variant: str, reason: str) -> Score:
-        """A score that does not exist, and why."""
+        """Return an undefined score with its reason."""
         return Score(**self._common(variant), status="undefined", reason=reason)
 
     def all_undefined(self, reason: str, variants: Iterable[str] | None = None) -> list[Score]:
-        """All variants, or some, that do not exist for the same reason."""
+        """Return all variants, or some, as undefined for the same reason."""
         return [self.undefined(v, reason) for v in variants or self.variants]
 
     def censored(
@@ -50,7 +50,7 @@ class ScoreFactory:
         upper: float | None = None,
         extras: Mapping[str, float] | None = None,
     ) -> Score:
-        """A score that exists but was not seen to its end, with the bounds that are known."""
+        """Return a score whose true value was not observed to the end, with its known bounds."""
         return Score(
             **self._common(variant),
             status="censored",
@@ -68,13 +68,13 @@ class ScoreFactory:
         zero_tol: float,
         extras: Mapping[str, float] | None = None,
     ) -> Score:
-        """A quotient; undefined (``zero_denominator``) when the denominator counts as zero."""
+        """Return a quotient; undefined (``zero_denominator``) if the denominator counts as zero."""
         if not denominator > zero_tol:
             return self.undefined(variant, "zero_denominator")
         return self.ok(variant, numerator / denominator, extras)
 
     def _common(self, variant: str) -> dict[str, Any]:
-        """The fields of a score that do not depend on the run."""
+        """Return the fields of a score that do not depend on the run."""
         metric = self.metric
         if variant not in metric.variants:
             declared = ", ".join(metric.variants)

@@ -1,4 +1,4 @@
-"""What is known of the values of a score before any run: bounds, and what it is a rate over."""
+"""Known properties of a score before any run: bounds, and the exposure of a rate."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from crowdbot.core.registry.registry import Registry
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScoreScale:
-    """Of one variant of a metric, as the metric declares it.
+    """Scale of one variant, as its metric declares it.
 
     Attributes:
         minimum, maximum: bounds of every value, inclusive.
-        integer: values are whole numbers; of a rate, what is counted: contacts are, work is not.
-        rate_over: variant of the same metric that the value is a rate over; empty: not a rate.
+        integer: values are whole numbers; for a rate, its numerator is a count, such as contacts
+            but not work.
+        rate_over: variant of the same metric by which the rate is divided; empty: not a rate.
     """
 
     minimum: float = -math.inf
@@ -26,7 +27,7 @@ class ScoreScale:
     rate_over: str = ""
 
 
-#: Of scores that nobody has declared.
+#: Scale of undeclared scores.
 UNKNOWN = ScoreScale()
 #: By metric and variant.
 Scales = Mapping[tuple[str, str], ScoreScale]
@@ -48,5 +49,5 @@ def score_scales(registry: Registry) -> Scales:
 
 
 def _counts(rate_over: str, unit: str) -> bool:
-    """Whether a rate is one of things that are counted, which have no unit: 1/km, not J/m."""
+    """Return True if a rate's numerator is a count, which has no unit: 1/km, not J/m."""
     return bool(rate_over) and unit.startswith("1/")

@@ -1,4 +1,4 @@
-"""scores.csv, and the table of scores that a terminal shows."""
+"""scores.csv, and the table of scores for terminals."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ COLUMNS = (
     "upper",
 )
 _VALUE_WIDTH, _WHOLE_NAMES = 20, 80
-#: Of names in narrower terminals.
+#: Largest length of names in narrow terminals.
 _NAME_WIDTH = 14
 _NUMBERS = ("value", "lower", "upper")
 _TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
@@ -47,7 +47,7 @@ _TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status",
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunScore:
-    """One row of scores.csv; extras are not kept there."""
+    """One row of scores.csv, which does not contain extras."""
 
     scenario: str
     planner: str
@@ -59,9 +59,9 @@ class RunScore:
 def write_scores_csv(
     path: str | os.PathLike[str], scores: Iterable[Score], scenario: str, planner: str, seed: int
 ) -> None:
-    """Write one row a score: RFC 4180, UTF-8; floats come back bit for bit.
+    """Write one row per score as CSV (RFC 4180, UTF-8) with exact floats.
 
-    The file appears under its name only when complete.
+    The file is written atomically.
 
     Raises:
         InputError: it cannot be written there.
@@ -71,7 +71,7 @@ def write_scores_csv(
 
 
 def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
-    """Write rows of text, RFC 4180, UTF-8; the file appears under its name only when complete.
+    """Write rows of text as CSV (RFC 4180, UTF-8), atomically.
 
     Raises:
         InputError: it cannot be written there.
@@ -82,7 +82,10 @@ def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
 
 
 def safe_cell(cell: str) -> str:
-    """A cell that no spreadsheet takes for a formula: such a text gets an apostrophe in front."""
+    """Return a cell that no spreadsheet treats as a formula.
+
+    It gets an apostrophe in front if needed.
+    """
     if not cell.startswith(("=", "+", "-", "@", "\t", "\r")):
         return cell
     try:
@@ -93,7 +96,7 @@ def safe_cell(cell: str) -> str:
 
 
 class _SafeCells(dict[str, str]):
-    """`safe_cell` of each different text, worked out once: most stand in every run."""
+    """A cache of `safe_cell`, since most texts occur in every run."""
 
     def __missing__(self, cell: str) -> str:
         self[cell] = safe = safe_cell(cell)
@@ -104,7 +107,7 @@ def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
     """Read what `write_scores_csv` wrote.
 
     Raises:
-        InputError: no such file, other columns, or a cell that is not a score; names the line.
+        InputError: missing file, wrong columns, or an invalid score (the message names the line).
     """
     path = Path(path)
     try:
@@ -117,10 +120,10 @@ def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
 
 
 def parse_scores(text: str, name: str | os.PathLike[str]) -> list[RunScore]:
-    """The rows of a ``scores.csv``; ``name`` is what messages call it.
+    """Return the rows of a ``scores.csv``; ``name`` is used in messages.
 
     Raises:
-        InputError: other columns, or a cell that is not a score; names the line.
+        InputError: wrong columns, or an invalid score (the message names the line).
     """
     path = os.fspath(name)
     try:
@@ -133,7 +136,7 @@ def parse_scores(text: str, name: str | os.PathLike[str]) -> list[RunScore]:
 
 
 def cells_of(score: Score) -> list[str]:
-    """What stands in the columns from ``category`` on."""
+    """Return the cells of the columns from ``category`` on."""
     cells = {name: str(getattr(score, name)) for name in _TEXTS}
     for name in _NUMBERS:
         number = getattr(score, name)
@@ -156,13 +159,13 @@ def _row(path: str, line: int, cells: Mapping[str, Any]) -> RunScore:
 
 
 def _plain(number: str) -> str:
-    """A number that others read alike: Python also takes ``1_0``, spaces and other digits."""
+    """Return a portable number text: Python also accepts ``1_0``, spaces and other digits."""
     if not number.isascii() or "_" in number or number != number.strip():
         raise ValueError(f"'{number[:40]}' is not a number")
     return number
 
 
-#: The same few texts stand in every run.
+#: A cache, since the same few texts occur in every run.
 _hidden = lru_cache(maxsize=4096)(hidden_character)
 
 
@@ -175,7 +178,7 @@ def _score(cells: Mapping[str, Any]) -> Score:
             raise ValueError(f"{name} '{cells[name]}' is not one of {', '.join(known)}")
     for name in _TEXTS:
         if hidden := _hidden(cells[name]):
-            raise ValueError(f"{name} has the character {hidden}, which nobody sees")
+            raise ValueError(f"{name} has the hidden character {hidden}")
     values: dict[str, Any] = {name: cells[name] for name in _TEXTS}
     values |= {name: float(_plain(cells[name])) if cells[name] else None for name in _NUMBERS}
     return Score(**values)
@@ -188,9 +191,9 @@ _SIGNS = {"higher": "+", "lower": "-", "reference": "=", "none": ""}
 
 
 def headlines(scores: Sequence[Score]) -> list[Score]:
-    """One score for each metric that the run has data for: the four scores first.
+    """Return one score per metric with data in the run; the four main scores first.
 
-    That is the rate, where a metric has one, else the corrected variant, else what stands for it.
+    This is the rate if the metric has one, else the corrected variant, else its headline.
     """
     found = []
     for _, group in groupby(scores, key=lambda s: s.metric):
@@ -208,16 +211,15 @@ def _name(score: Score) -> tuple[str, str]:
 
 
 def section_of(score: Score) -> str:
-    """Under which heading a score is shown: its category, but for the four scores."""
+    """Return the heading of a score: its category, except for the four main scores."""
     return FOUR_SCORES if is_main(*_name(score)) else score.category
 
 
 def scores_table(scores: Sequence[Score]) -> Table:
-    """A table for people, the four scores first, then by category.
+    """Return a readable table, the four main scores first, then by category.
 
     It fits the terminal: in one of less than 80 columns names are broken between their words, and
-    none is left out.
-    The last column says what is better: + higher, - lower, = like the people.
+    none is left out. The last column shows the better direction: + higher, - lower, = like people.
     """
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
@@ -248,7 +250,7 @@ def scores_table(scores: Sequence[Score]) -> Table:
 
 
 def verdict(score: Score) -> str:
-    """Value and unit; without a value why, and within which bounds it lies."""
+    """Return value and unit; without a value, the reason and the bounds."""
     if score.value is not None:
         return _with_unit(float(score.value), score.unit)
     bounds = [

@@ -1,10 +1,10 @@
-"""What sensors see.
+"""Sensing: what sensors measure.
 
-- `sensor`: the contracts; `build` builds sensors and checks what they return.
+- `sensor`: the interfaces; `build` builds sensors and checks their readings.
 - `scene`: walls, pillars and people at one instant; `body_model` gives people legs and a trunk.
 - `raycast` casts single rays, `raycast_columns` grids of them, `raycast_tilted` those of tilted
   sensors.
 - `depth_renderer` makes depth images, with `projection` and `depth`; `depth_mm` rounds them.
-- `range_model`: from true distances to readings; `noise`: random numbers of sensors.
-- `mount`: where a sensor is; `points`: lidar points for planners.
+- `range_model`: converts true distances to readings; `noise`: random numbers of sensors.
+- `mount`: pose of a sensor; `points`: lidar points for planners.
 """

@@ -1,6 +1,6 @@
 """Appearances of people to sensors: legs of their own, wheelchairs, what they push.
 
-All upright cylinders, as in `crowdbot.core.sensing.body_model`. Where the sizes come from:
+All upright cylinders, as in `crowdbot.core.sensing.body_model`. For the sources of the sizes, see
 docs/reference/people.md.
 """
 
@@ -25,24 +25,24 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
 
-#: Columns of a gait: height of the hip, length of a stride, phase at the start, how far the legs
-#: swing as a share of the usual, how far they are before the middle; m and rad.
+#: Columns of a gait: height of the hip, length of a stride, phase at the start, swing of the legs
+#: relative to the default, their offset ahead of the centre; m and rad.
 _HIP, _STRIDE, _PHASE, _SWING, _AHEAD = range(5)
-#: Columns of a thing: whose it is; where it is ahead and to the left; radius, bottom, top; m.
+#: Columns of an object: its owner; position ahead and to the left; radius, bottom, top; m.
 _OWNER, _FORWARD, _LEFT, _RADIUS, _BOTTOM, _TOP = range(6)
-_USUAL_HIP, _USUAL_STRIDE = 0.53, 0.83  # of the height
+_USUAL_HIP, _USUAL_STRIDE = 0.53, 0.83  # share of the height
 _USUAL_SWING, _FULL_SWING_SPEED, _USUAL_DISC = 0.19, 0.6, 0.33  # m, m/s, m
-_APART = 0.5 * 0.191 * 0.9  # of the height
+_APART = 0.5 * 0.191 * 0.9  # share of the height
 
-#: Things of each look: ahead, to the left, radius, bottom, top; m.
+#: Objects of each look: ahead, to the left, radius, bottom, top; m.
 _THINGS: dict[str, tuple[tuple[float, float, float, float, float], ...]] = {
     "wheelchair_user": ((0.0, 0.0, 0.31, 0.0, 0.60),),
     "stroller": ((0.75, 0.0, 0.27, 0.05, 1.00),),
     "suitcase": ((-0.55, -0.15, 0.18, 0.0, 0.60),),
 }
-#: Swing and offset ahead of legs that do not walk as usual.
+#: Swing and forward offset of legs that do not walk normally.
 _LEGS = {"wheelchair_user": (0.0, 0.38), "elderly": (0.8, 0.0)}
-_SEAT = 0.50  # m: where the trunk of somebody begins who sits
+_SEAT = 0.50  # m: bottom of a sitting person's trunk
 
 
 def heights(appearance: Appearance, usual: float) -> Array:
@@ -82,12 +82,12 @@ def place_looks(
     gait: Array,
     out: Array,
 ) -> None:
-    """As `place_people`, for people with gaits of their own.
+    """As `place_people`, for people with individual gaits.
 
     Args:
         people, present, direction, walked, radius, height: as there.
         gait: (M, 5), see `gaits`.
-        out: (M * 3 + ..., 5) two legs and a trunk each; further rows stay as they are.
+        out: (M * 3 + ..., 5) two legs and a trunk each; further rows are unchanged.
     """
     place_people(people, present, direction, walked, radius, height, out)
     for i in range(people.shape[0]):
@@ -117,11 +117,11 @@ def place_things(
     first: int,
     out: Array,
 ) -> None:
-    """Write what people have with them; what belongs to the absent lies at infinity.
+    """Write people's objects; those of absent people are at infinity.
 
     Args:
         owned: (T, 6), see `things`.
-        first: row of ``out`` at which they begin.
+        first: first row of ``out`` for them.
     """
     for t in range(owned.shape[0]):
         i, row = int(owned[t, _OWNER]), first + t

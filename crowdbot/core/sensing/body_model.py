@@ -1,9 +1,9 @@
-"""People as sensors see them: two legs that walk, and a trunk; all upright cylinders.
+"""People as sensors see them: two walking legs and a trunk, all upright cylinders.
 
-Proportions of an adult of height H after Winter, "Biomechanics and Motor Control of Human
-Movement" (2009), figure 4.1: hip at 0.53 H, hip breadth 0.191 H, shoulder breadth 0.259 H. A leg
-swings as the sine of the way walked, with a stride of 0.83 H (1.41 m for 1.7 m). Bodies thinner
-than the usual disc of 0.33 m are scaled with it, so that legs stay within the disc that touches.
+Proportions of an adult of height H after Winter, "Biomechanics and Motor Control of Human Movement"
+(2009), figure 4.1: hip at 0.53 H, hip breadth 0.191 H, shoulder breadth 0.259 H. A leg swings as
+the sine of the distance walked, with a stride of 0.83 H (1.41 m for 1.7 m). Bodies thinner than the
+default disc of 0.33 m are scaled, so that legs stay within the contact disc.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ PARTS = 3
 X, Y, RADIUS, BOTTOM, TOP = range(5)
 DISC_COLUMNS = 5
 
-_HIP, _STRIDE = 0.53, 0.83  # of the height
-_APART, _TRUNK_RADIUS = 0.5 * 0.191 * 0.9, 0.5 * 0.259  # of the height
+_HIP, _STRIDE = 0.53, 0.83  # share of the height
+_APART, _TRUNK_RADIUS = 0.5 * 0.191 * 0.9, 0.5 * 0.259  # share of the height
 _LEG_RADIUS = 0.07  # m
-_SWING = 0.19  # m, largest way of a leg before and behind the trunk
+_SWING = 0.19  # m, largest distance of a leg before and behind the trunk
 _FULL_SWING_SPEED = 0.6  # m/s; slower people take shorter steps
 _USUAL_DISC = 0.33  # m
 
 
 def trunk_radius(height: Array, radius: Array) -> Array:
-    """Radius of trunks (M,) from heights and discs of people, m."""
+    """Return the radius of trunks (M,) from heights and contact discs, m."""
     radii: Array = _TRUNK_RADIUS * height * np.minimum(1.0, radius / _USUAL_DISC)
     return radii
 
@@ -46,13 +46,13 @@ def place_people(
     height: Array,
     out: Array,
 ) -> None:
-    """Write the discs of everybody; those of absent people lie at infinity.
+    """Write the discs of all people; those of absent people are at infinity.
 
     Args:
         people: (M, 4) x, y, vx, vy; m, m/s.
         present: (M,).
-        direction: (M, 2) unit vectors of the way people face.
-        walked: (M,) way walked so far, m: the phase of the legs.
+        direction: (M, 2) unit vectors of people's facing direction.
+        walked: (M,) distance walked, m, which is the phase of the legs.
         radius, height: (M,) contact disc and height, m.
         out: (M * 3, 5) two legs and a trunk each.
     """

@@ -22,7 +22,7 @@ from crowdbot.core.types.sensor import SensorInfo, SensorMessage
 from crowdbot.dsl.spec.component_specs import NoiseSpec, SensorSpec
 from crowdbot.errors import PluginError, hidden_character
 
-#: Numbers of one reading: 100 images of a million pixels.
+#: Largest number of values in a reading: 100 images of a million pixels.
 _MOST_VALUES = 100_000_000
 _TEXTS = ("category", "frame", "ros_type")
 
@@ -36,7 +36,7 @@ def build_sensor(
         context: the robot that carries it, and the robot's task.
 
     Raises:
-        PluginError: it cannot be built, or its description is unsound.
+        PluginError: it cannot be built, or its description is invalid.
     """
     call = registry.plugin_call(spec)
     return registry.build(spec, lambda sensor: checked_sensor(sensor, call), context, call=call)
@@ -66,11 +66,11 @@ def checked_sensor(sensor: object, call: PluginCall) -> Sensor | SensorWithMemor
     """Wrap a sensor so that its readings are checked.
 
     Args:
-        sensor: what a build function returned.
-        call: the boundary to its plugin.
+        sensor: result of a build function.
+        call: call boundary to its plugin.
 
     Raises:
-        PluginError: it is not a sensor, or its description is unsound.
+        PluginError: it is not a sensor, or its description is invalid.
     """
     missing = [m for m in ("info", "read") if not callable(getattr(sensor, m, None))]
     if missing:
@@ -101,18 +101,18 @@ def _guarded(message: SensorMessage, call: PluginCall) -> SensorMessage:
 
 
 class CheckedSensor:
-    """A sensor whose readings have the shape that it promised and no NaN, or an error says so."""
+    """A sensor whose readings must have the declared shape and no NaN."""
 
     def __init__(self, sensor: Any, info: SensorInfo, call: PluginCall) -> None:
         self._sensor, self._info, self._call = sensor, info, call
         self._shape, self._remembers = tuple(info.shape), bool(info.memory)
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         return self._info
 
     def read(self, *given: Any) -> Array:
-        """What the sensor reads; arguments as those of its contract.
+        """Return the sensor's checked reading; arguments as in its interface.
 
         Raises:
             PluginError: it raised, or returned something that is not a reading.
@@ -121,7 +121,7 @@ class CheckedSensor:
             values = plain_numbers(self._sensor.read(*given))
         if values.shape != self._shape:
             self._call.fail(f"read returned shape {values.shape}; info() says {self._shape}")
-        # A sum of squares is NaN, or not finite, if a number is: by far the quickest look at all.
+        # A sum of squares is NaN or infinite if any number is, which is by far the fastest check.
         if math.isnan(np.vdot(values, values)):
             self._call.fail("read returned NaN; nothing in reach is inf")
         if self._remembers:
@@ -132,10 +132,10 @@ class CheckedSensor:
 
 
 class CheckedCamera(CheckedSensor):
-    """A camera that has images in whole millimetres, which are checked as well."""
+    """A camera with images in whole millimetres, which are also checked."""
 
     def depth_mm(self, *given: Any) -> NDArray[np.uint16]:
-        """What the camera sees, in whole millimetres; copied, for it is written later.
+        """Return the camera's image in whole millimetres, copied, since it is written later.
 
         Raises:
             PluginError: it raised, or returned something that is not an image.

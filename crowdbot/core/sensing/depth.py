@@ -1,9 +1,8 @@
 """Depth images, rendered body by body.
 
-The floor, and tops and bottoms of bodies, have one depth in all columns of a row, an upright face
-has one in all rows of a column. So the image of a body is three shapes, a face, a top and a
-bottom, each of which reaches in every column from one row to another, and of all that covers a
-pixel the least depth counts.
+The floor and the tops and bottoms of bodies have a constant depth per row, an upright face has a
+constant depth per column. So the image of a body consists of a face, a top and a bottom, each a
+range of rows in every column, and the smallest depth wins in each pixel.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ from crowdbot.core.types.arrays import Array
 
 @kernel
 def _range(edge: Edges, rows: int) -> tuple[int, int]:
-    """The least and the greatest row of an edge, in columns in which the body shows."""
+    """Return the smallest and largest row of an edge, in columns where the body is visible."""
     least, greatest = np.float32(rows), np.float32(0.0)
     for row in edge:
         if np.float32(0.0) <= row <= np.float32(rows):
@@ -48,7 +47,7 @@ def _range(edge: Edges, rows: int) -> tuple[int, int]:
 
 @kernel
 def _render_face(rows: tuple[int, int], columns: tuple[int, int], target: RenderPass) -> None:
-    """Render a face into rows, not all of which it covers in every column."""
+    """Render a face into rows, some of which it covers only in some columns."""
     left, right = columns
     face = target.faces[left:right]
     begin, end = target.edges[BEGIN, left:right], target.edges[END, left:right]
@@ -61,7 +60,7 @@ def _render_face(rows: tuple[int, int], columns: tuple[int, int], target: Render
 
 @kernel
 def _render_full_face(rows: tuple[int, int], columns: tuple[int, int], target: RenderPass) -> None:
-    """Render a face into rows that it covers in every column in which it shows."""
+    """Render a face into rows that it covers in all its columns."""
     left, right = columns
     face = target.faces[left:right]
     for r in range(*rows):
@@ -78,7 +77,7 @@ def _render_level(
     columns: tuple[int, int],
     target: RenderPass,
 ) -> None:
-    """Render a top or a bottom at a height, which reaches from one edge to another."""
+    """Render a top or a bottom at a height, from one edge to another."""
     left, right = columns
     image = target.image
     begin, end = target.edges[between[0], left:right], target.edges[between[1], left:right]
@@ -92,14 +91,14 @@ def _render_level(
 
 @kernel
 def _render_body(low: float, high: float, first: int, last: int, target: RenderPass) -> None:
-    """Render what was found of a body in the columns [first, last), where nothing nearer is."""
+    """Render a body in the columns [first, last), where nothing nearer is."""
     project_body(low, high, first, last, target)
     columns, edges, rows = (first, last), target.edges, target.slope.shape[0]
     first_begin, last_begin = _range(edges[BEGIN, first:last], rows)
     first_end, last_end = _range(edges[END, first:last], rows)
-    if first_begin > last_begin:  # it shows nowhere
+    if first_begin > last_begin:  # it is not visible
         return
-    if high < 0.0:  # else the camera does not see the top
+    if high < 0.0:  # otherwise the camera does not see the top
         top, _ = _range(edges[UP, first:last], rows)
         _render_level(high, (UP, BEGIN), (top, last_begin), columns, target)
     if low > 0.0:
@@ -115,7 +114,7 @@ def _render_body(low: float, high: float, first: int, last: int, target: RenderP
 
 @kernel
 def _in_view(low: float, high: float, slope: Array, farthest: float) -> bool:
-    """Whether a body reaches into the heights between which rays run."""
+    """Return True if a body intersects the range of heights of the rays."""
     lowest, highest = min(0.0, slope[slope.shape[0] - 1]), max(0.0, slope[0])
     return bool(low <= highest * farthest and high >= lowest * farthest)
 
@@ -150,7 +149,7 @@ def _render_discs(
     for i in range(discs.shape[0]):
         px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
         forward = cos_yaw * px + sin_yaw * py
-        # Most of them are not in view, and the absent are at infinity.
+        # Most are out of view, and absent people are at infinity.
         if not -r < forward < lens.farthest + r:
             continue
         low, high = discs[i, BOTTOM] - z, discs[i, TOP] - z
@@ -165,7 +164,7 @@ def _render_discs(
 
 @kernel
 def _finish(image: Image) -> None:
-    """Say 0 where nothing is in reach."""
+    """Replace the marker for nothing in range by 0."""
     nothing, zero = image.dtype.type(NOTHING), image.dtype.type(0)
     for r in range(image.shape[0]):
         line = image[r]
@@ -181,9 +180,9 @@ def render_depth(
     walls: Array, wall_heights: Array, discs: Array,
     rays: Array, edges: Edges, faces: Image, image: Image,
 ) -> None:  # fmt: skip
-    """Depth along the axis of a level camera; 0 for too near, inf for nothing in reach.
+    """Render depth along the axis of a level camera: 0 if too near, inf if nothing is in range.
 
-    The floor z = 0 is seen. Of whole numbers 0 stands for both.
+    The floor z = 0 is visible. In images of whole numbers, 0 stands for both.
 
     Args:
         x, y, z, yaw: camera in the world frame, m and rad.
@@ -193,7 +192,7 @@ def render_depth(
         walls, wall_heights, discs: (S, 4), (S, 2), (D, 5) as in
             `crowdbot.core.sensing.raycast_columns.Obstacles`.
         rays, edges, faces: scratch as in `RenderPass`.
-        image: (H, W) result; of whole numbers only if the lens has steps.
+        image: (H, W) result; whole numbers only if the lens has steps.
     """
     lens = Lens(focal, column, row, nearest, farthest, steps)
     target = RenderPass(lens, slope, cos_azimuth, rays, edges, faces, image)

@@ -1,4 +1,4 @@
-"""Depth in m as the whole millimetres of ROS' ``16UC1``, compiled."""
+"""Convert depth in m to whole millimetres of ROS's ``16UC1``; compiled."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PER_METRE = np.float32(1000.0)
 
 @array_kernel
 def depth_mm(depth: NDArray[np.floating[Any]]) -> NDArray[np.uint16]:
-    """Millimetres (H, W) of depths in m, rounded to even; 0 for too far and for NaN."""
+    """Return millimetres (H, W) of depths in m, rounded to even; 0 if too far or NaN."""
     found = np.empty(depth.shape, np.uint16)
     for r in range(depth.shape[0]):
         for c in range(depth.shape[1]):

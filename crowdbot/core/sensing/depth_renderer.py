@@ -9,22 +9,22 @@ from crowdbot.core.sensing.projection import EDGE_ROWS, RAY_ROWS, Image, Lens
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import Pinhole
 
-#: 65535 mm are needed for what is too far, m.
+#: Depths beyond 65535 mm cannot be represented, m.
 MOST_MILLIMETRES = 65.534
 
 
 class DepthRenderer:
-    """Renders depth with a camera that looks along a level axis.
+    """Renders depth for a camera with a horizontal axis.
 
     Attributes:
         shape: rows H and columns W.
-        slope: (H,) by how much rays rise per metre of depth; the first row is on top.
-        left: (W,) by how much they go to the left; the first column is on the left.
+        slope: (H,) rise of the rays per metre of depth; the first row is on top.
+        left: (W,) leftward shift of the rays per metre of depth; the first column is on the left.
         cos_azimuth: (W,) cosines of the columns' azimuths: depth per metre over the floor.
     """
 
     def __init__(self, pinhole: Pinhole, nearest: float, farthest: float) -> None:
-        """Take a camera that measures depths from ``nearest`` to ``farthest``, m."""
+        """Build a renderer for depths from ``nearest`` to ``farthest``, m."""
         self.shape = pinhole.height, pinhole.width
         column, row = pinhole.centre
         self.slope = (row - np.arange(pinhole.height, dtype=np.float64)) / pinhole.focal
@@ -46,14 +46,14 @@ class DepthRenderer:
         wall_heights: Array,
         discs: Array,
     ) -> None:
-        """Write what the camera sees of walls, upright cylinders and the floor z = 0.
+        """Write the camera's view of walls, upright cylinders and the floor z = 0.
 
         Args:
-            image: (H, W) depth along the axis. As float32 in m: 0 for too near, inf for nothing
-                in reach. As uint16 that of `crowdbot.core.sensing.depth_mm`, 0 for both; only
-                for a camera that measures less than `MOST_MILLIMETRES`.
-            at: where it is, world frame, m.
-            yaw: where it looks, world frame, rad.
+            image: (H, W) depth along the axis. float32 in m: 0 if too near, inf if nothing is in
+                range. uint16 as in `crowdbot.core.sensing.depth_mm`, 0 for both; only for a camera
+                with a range below `MOST_MILLIMETRES`.
+            at: its position, world frame, m.
+            yaw: its heading, world frame, rad.
             walls, wall_heights: (S, 4), (S, 2), m, as in `crowdbot.core.sensing.scene.Scene`.
             discs: (D, 5) cylinders, as in `crowdbot.core.sensing.body_model`.
         """

@@ -1,8 +1,8 @@
 """Counter-based random numbers for sensors.
 
-Philox (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011): the
-key names the sensor, the counter the tick. A reading therefore depends neither on other sensors
-nor on whether earlier readings were taken.
+Philox (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011): the key
+names the sensor, the counter the tick. A reading therefore depends neither on other sensors nor on
+earlier readings.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 
 class _Key(ISeedSequence):
-    """Hands Philox its key; a key given to its constructor would cost fresh entropy each time."""
+    """Passes Philox its key; a key given to its constructor would cost fresh entropy each time."""
 
     def __init__(self, key: NDArray[np.uint64]) -> None:
         self.key = key
@@ -45,18 +45,18 @@ class SensorStream:
         self._generator, self._state = np.random.Generator(philox), philox.state
 
     def at(self, tick: int) -> np.random.Generator:
-        """Numbers of the reading at a tick of 1/128 s, not negative.
+        """Return the generator for the reading at a tick of 1/128 s, not negative.
 
         Returns:
             the one generator of the stream, moved there; equal arguments give equal numbers,
             ticks never share any.
         """
-        # The tick is the second of four counter words: 2^64 blocks lie between two ticks.
+        # The tick is the second of four counter words: there are 2^64 blocks between two ticks.
         self._state["state"]["counter"][1] = tick
         self._generator.bit_generator.state = self._state
         return self._generator
 
 
 def sensor_rng(run_seed: int, robot: str, sensor: str, tick: int) -> np.random.Generator:
-    """Random numbers of one reading: a new generator; arguments as of `SensorStream`."""
+    """Return a new generator for one reading; arguments as in `SensorStream`."""
     return SensorStream(run_seed, robot, sensor).at(tick)

@@ -1,4 +1,4 @@
-"""The robots that the sensors of another one see: upright bodies over their outlines."""
+"""Other robots, as seen by a robot's sensors: upright bodies over their outlines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 
-#: Where what has left is, m: out of the reach of every sensor, and still a number.
+#: Position of robots that have left, m: out of range of every sensor, but finite.
 FAR = 1e6
 
 
@@ -25,11 +25,11 @@ class OtherRobot:
 
 
 class OtherRobots:
-    """Where the sides of several robots are: a disc is a cylinder, all else are plates.
+    """Surfaces of several robots: a disc is a cylinder, others are plates.
 
     Attributes:
-        robots: what they are.
-        poses: where they are.
+        robots: the robots.
+        poses: their poses.
         plates, plate_heights: (S, 4), (S, 2), m, as walls of a scene.
         discs, disc_heights: (D, 3), (D, 2), m, as pillars of a scene.
     """
@@ -51,7 +51,7 @@ class OtherRobots:
         return len(self.robots)
 
     def place(self, poses: Sequence[Pose | None]) -> None:
-        """Put them where they are; None has left."""
+        """Move the robots to their poses; None: has left."""
         self.poses = tuple(poses)
         plates, discs = self.plates.copy(), self.discs.copy()
         side = disc = 0

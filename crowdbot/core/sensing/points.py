@@ -13,12 +13,12 @@ from crowdbot.core.support.immutable import immutable
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import Reading, SensorInfo
 
-#: What a tilted lidar sees lower than this, seen from base_link, is taken for the floor, m.
+#: Points of a tilted lidar below this height over base_link count as floor, m.
 CLEARANCE = 0.05
 
 
 class LidarPoints:
-    """Turns the scans of all of a robot's lidars into points in the base frame.
+    """Converts the scans of all of a robot's lidars to points in the base frame.
 
     Args:
         sensors: description of every sensor the planner sees; only planar lidars are used.
@@ -37,24 +37,24 @@ class LidarPoints:
                     longest = np.full(len(rays), math.inf)
                 self._beams[name] = x, y, np.ascontiguousarray(rays), longest
         self._most = sum(len(longest) for _, _, _, longest in self._beams.values())
-        # Compiles what is not compiled yet, for what a planner is given: read-only readings.
+        # Compile kernels that are not compiled yet, for read-only readings as planners get them.
         nothing = {n: Reading(0.0, immutable(b[3])) for n, b in self._beams.items()}
         self(nothing, 0.0, (0.0, 0.0))
 
     def __len__(self) -> int:
-        """Number of lidars."""
+        """Return the number of lidars."""
         return len(self._beams)
 
     def __call__(
         self, readings: Mapping[str, Reading], t: float, twist: tuple[float, float], vy: float = 0.0
     ) -> Array:
-        """Points where something was hit.
+        """Return the points of all hits.
 
         A scan that is older than ``t`` is moved by the robot's own motion since.
 
         Args:
-            readings: by sensor name; a lidar that has not read yet is left out.
-            t: now, s.
+            readings: by sensor name; lidars without a reading are ignored.
+            t: current time, s.
             twist: the robot's v (m/s) and w (rad/s).
             vy: its speed to the left, m/s.
 
@@ -80,10 +80,10 @@ class LidarPoints:
 def _add_points(
     ranges: Array, longest: Array, rays: Array, x: float, y: float, out: Array, count: int
 ) -> int:
-    """Add where the beams of a lidar at (x, y) hit something to ``count`` points in ``out``.
+    """Append the hits of a lidar at (x, y) to ``count`` points in ``out``.
 
     Returns:
-        how many points there are now.
+        the new number of points.
     """
     for k in range(ranges.shape[0]):
         if -math.inf < ranges[k] < longest[k]:
@@ -94,23 +94,23 @@ def _add_points(
 
 
 def _tilted(info: SensorInfo) -> tuple[Array, Array]:
-    """Beams of a tilted lidar seen from above (R, 2), and how far each goes to the floor, m.
+    """Return beams of a tilted lidar from above (R, 2), and their distance to the floor, m.
 
-    Readings from `CLEARANCE` above the floor on are the floor, not obstacles. base_link is taken
-    to lie on the floor; of one that is higher, less of the floor is left out.
+    Readings from `CLEARANCE` above the floor on are the floor, not obstacles. base_link is assumed
+    to lie on the floor; if it is higher, less of the floor is removed.
     """
     assert info.angles is not None  # by __init__
     fan = np.column_stack([np.cos(info.angles), np.sin(info.angles), np.zeros_like(info.angles)])
     rays = fan @ rotation(*info.tilt, info.mount[3]).T
     room, down = info.mount[2] - CLEARANCE, -rays[:, 2]
     longest = np.full(len(rays), math.inf)
-    if room > 0.0:  # else nobody can tell where the floor is
+    if room > 0.0:  # otherwise the floor is unknown
         np.divide(room, down, out=longest, where=down > 0.0)
     return rays[:, :2], longest
 
 
 def _moved(points: Array, age: float, twist: tuple[float, float], vy: float) -> Array:
-    """Points seen ``age`` seconds ago, in the frame of a robot that has moved on since."""
+    """Return points seen ``age`` seconds ago, in the frame of a robot that has moved since."""
     v, w = twist
     if v == 0.0 and w == 0.0 and vy == 0.0:
         return points

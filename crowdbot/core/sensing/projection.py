@@ -1,8 +1,8 @@
-"""Where bodies show in the image of a level pinhole camera.
+"""Project bodies to the image of a level pinhole camera.
 
 Depth is measured along the optical axis: an upright face has one depth in all rows of a column.
-Heights are here those over the camera, and rays to the left and up have positive slopes. What is
-hit is what `crowdbot.core.sensing.raycast_columns.cast_columns` hits, pixel by pixel.
+Heights are here those over the camera, and rays to the left and up have positive slopes. Hits equal
+those of `crowdbot.core.sensing.raycast_columns.cast_columns`, pixel by pixel.
 """
 
 from __future__ import annotations
@@ -21,28 +21,27 @@ Edges = NDArray[np.float32]
 #: Depths in m, or whole millimetres.
 Image = NDArray[np.float32] | NDArray[np.uint16]
 
-#: What is known of a body in a column: its top shows in the rows [UP, BEGIN), its face in
-#: [BEGIN, END) and its bottom in [END, DOWN); as float32, which the processor compares several at
-#: once.
+#: Rows of a body in a column: its top is visible in the rows [UP, BEGIN), its face in [BEGIN, END)
+#: and its bottom in [END, DOWN); as float32, which vectorises well.
 UP, BEGIN, END, DOWN = range(4)
 EDGE_ROWS = 4
-#: Rows of `RenderPass.rays`, a column for each of the image: direction in the world frame; depths
+#: Rows of `RenderPass.rays`, with a column per image column: direction in the world frame; depths
 #: at which the ray enters and leaves a body, m.
 RAY_X, RAY_Y, NEAR, FAR = range(4)
 RAY_ROWS = 4
-_ROOM = 1e-6  # m; what is so close before the camera has no projection
-_TOUCH = 1e-12  # m; depths of bodies around the camera
-#: Whole millimetres that stand for nothing in reach, until an image is finished.
+_ROOM = 1e-6  # m; closer points have no projection
+_TOUCH = 1e-12  # m; depth of bodies around the camera
+#: Whole millimetres that mark nothing in range, until an image is finished.
 NOTHING = np.float32(65535.0)
 
 
 class Lens(NamedTuple):
-    """A pinhole camera and what it can measure.
+    """A pinhole camera and its measuring range.
 
     Attributes:
         focal: focal length, pixels.
-        column, row: where the optical axis meets the image, pixels.
-        nearest, farthest: depths that are measured, m.
+        column, row: position of the optical axis in the image, pixels.
+        nearest, farthest: measured depths, m.
         steps: steps per metre to which depth is rounded, or 0.
     """
 
@@ -55,11 +54,11 @@ class Lens(NamedTuple):
 
 
 class RenderPass(NamedTuple):
-    """One image of H rows and W columns that is being rendered.
+    """One image of H rows and W columns during rendering.
 
     Attributes:
-        lens: of the camera.
-        slope: (H,) rise of the rows' rays per metre of depth, falling evenly.
+        lens: the camera's lens.
+        slope: (H,) rise of the rows' rays per metre of depth, decreasing evenly.
         cos_azimuth: (W,) depth per metre over the floor, along each column.
         rays: (`RAY_ROWS`, W) directions of the columns, and scratch for one body.
         edges: (`EDGE_ROWS`, W) scratch: the rows of one body.
@@ -78,7 +77,7 @@ class RenderPass(NamedTuple):
 
 @kernel
 def depth_reading(depth: float, lens: Lens) -> np.float32:
-    """A depth as the camera gives it: 0 for too near, inf, or `NOTHING`, for too far."""
+    """Return the camera's reading of a depth: 0 if too near; inf, or `NOTHING`, if too far."""
     if lens.steps > 0.0:
         rounded = np.rint(np.float32(depth) * np.float32(lens.steps))
         if depth < lens.nearest:
@@ -91,7 +90,10 @@ def depth_reading(depth: float, lens: Lens) -> np.float32:
 
 @kernel
 def _between(right: float, left: float, lens: Lens, columns: int) -> tuple[int, int]:
-    """Columns whose rays go to the left by ``right`` to ``left`` per metre, one more a side."""
+    """Return columns whose rays go left by ``right`` to ``left`` per metre.
+
+    One more on each side is included.
+    """
     first = max(0.0, lens.column - lens.focal * left)
     last = min(columns - 1.0, lens.column - lens.focal * right + 1.0)
     return (int(first), int(last) + 1) if first <= last else (0, 0)
@@ -101,10 +103,10 @@ def _between(right: float, left: float, lens: Lens, columns: int) -> tuple[int, 
 def columns_of_disc(
     forward: float, left: float, r: float, lens: Lens, columns: int
 ) -> tuple[int, int]:
-    """First column that may meet an upright cylinder, and the one after the last.
+    """Return the first column that may hit an upright cylinder, and the one after the last.
 
     Args:
-        forward, left: of its axis, seen by the camera, m.
+        forward, left: position of its axis from the camera, m.
     """
     if forward <= r + _ROOM:  # beside or around the camera
         return 0, columns
@@ -117,7 +119,7 @@ def columns_of_disc(
 def columns_of_wall(
     forward0: float, left0: float, forward1: float, left1: float, lens: Lens, columns: int
 ) -> tuple[int, int]:
-    """As `columns_of_disc`, of an upright plate with two ends."""
+    """As `columns_of_disc`, for an upright plate with two ends."""
     if forward0 <= _ROOM or forward1 <= _ROOM:
         return 0, columns
     slope0, slope1 = left0 / forward0, left1 / forward1
@@ -128,12 +130,12 @@ def columns_of_wall(
 def cross_disc(
     px: float, py: float, r: float, first: int, last: int, rays: Array, cosines: Array
 ) -> None:
-    """Write depths at which rays of columns enter and leave a cylinder; inf for a miss.
+    """Write the depths at which the columns' rays enter and leave a cylinder; inf for a miss.
 
     Args:
-        px, py: its axis, seen from the camera in the directions of the world, m.
+        px, py: its axis, relative to the camera in world directions, m.
         first, last: first column, and the one after the last.
-        rays, cosines: of `RenderPass`.
+        rays, cosines: as in `RenderPass`.
     """
     cosine, dx, dy = cosines[first:last], rays[RAY_X, first:last], rays[RAY_Y, first:last]
     near, far = rays[NEAR, first:last], rays[FAR, first:last]
@@ -151,7 +153,7 @@ def cross_disc(
 def cross_wall(
     px: float, py: float, ex: float, ey: float, first: int, last: int, rays: Array, cosines: Array
 ) -> None:
-    """As `cross_disc`, of an upright plate from p to p + e."""
+    """As `cross_disc`, for an upright plate from p to p + e."""
     cosine, dx, dy = cosines[first:last], rays[RAY_X, first:last], rays[RAY_Y, first:last]
     near, far = rays[NEAR, first:last], rays[FAR, first:last]
     for c in range(cosine.shape[0]):
@@ -164,13 +166,13 @@ def cross_wall(
 
 @kernel
 def project_body(low: float, high: float, first: int, last: int, target: RenderPass) -> None:
-    """Work out in which rows of the columns [first, last) a body shows, and how its face reads.
+    """Compute the rows of the columns [first, last) that show a body, and its face's depths.
 
     A ray of row r is at the depth d over a height h if r < horizon - h focal / d.
 
     Args:
         low, high: heights of the body, m.
-        target: `rays` say where it begins and ends; `edges` and `faces` are written.
+        target: `rays` give its start and end; `edges` and `faces` are written.
     """
     lens, rays, edges = target.lens, target.rays, target.edges
     focal, horizon, rows = lens.focal, lens.row, float(target.slope.shape[0])

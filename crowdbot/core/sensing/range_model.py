@@ -1,7 +1,7 @@
-"""From true distances to readings: what all sensors that measure distances share.
+"""Convert true distances to readings, for all range sensors.
 
-A hit nearer than ``range_min`` reads ``range_min``: inf would tell a planner that the way is free
-while something touches the sensor.
+A hit nearer than ``range_min`` reads ``range_min``: inf would mean a free path while something
+touches the sensor.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from crowdbot.core.types.motion import Pose
 from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 
 _KEPT = np.zeros(0, dtype=np.bool_)
-#: Of the range: errors beyond it leave nothing of a distance. Readings are recorded and published
-#: as single floats of 24 bits, so that the sum would be the error.
+#: Largest error relative to the range. Readings are recorded as single floats of 24 bits, so that a
+#: larger error would remove all digits of the distance.
 _LARGEST = 2.0**24
 
 
@@ -37,9 +37,9 @@ class RangeModel:
     """Pose, incidence limit, noise, range, bits and dropouts of one range sensor.
 
     Attributes:
-        drops_slanted: whether surfaces struck at a slant are not seen, so that angles are wanted.
-        random: whether `measure` draws random numbers.
-        tilted: whether the mount has roll or pitch; then `cast_tilted` is what its rays meet.
+        drops_slanted: True if slanted surfaces are not seen, so that angles are needed.
+        random: True if `measure` draws random numbers.
+        tilted: True if the mount has roll or pitch; then use `cast_tilted`.
     """
 
     def __init__(self, spec: RangeSensorSpec, noise: Sequence[NoiseGenerator]) -> None:
@@ -51,22 +51,22 @@ class RangeModel:
 
     @property
     def mount(self) -> tuple[float, float, float, float]:
-        """x, y, z, yaw from base_link, m and rad."""
+        """Return x, y, z, yaw from base_link, m and rad."""
         return mount_pose(self._spec.mount)
 
     def pose_in_world(self, scene: Scene, pose: Pose) -> tuple[tuple[float, float, float], float]:
-        """Position and heading of the sensor in the world frame, m and rad."""
+        """Return position and heading of the sensor in the world frame, m and rad."""
         return sensor_pose_in_world(self._spec.mount, scene, pose)
 
     @property
     def tilt(self) -> tuple[float, float]:
-        """Roll and pitch of the mount, rad."""
+        """Return roll and pitch of the mount, rad."""
         return mount_tilt(self._spec.mount)
 
     def cast_tilted(self, scene: Scene, pose: Pose, rays: Array) -> Array:
-        """Distances (N,) that rays of a tilted sensor go, m; inf for no return.
+        """Return the distances (N,) of a tilted sensor's rays, m; inf for no return.
 
-        The floor is seen, and surfaces struck at too large an angle are not.
+        The floor is visible; surfaces hit at too large an angle are not.
 
         Args:
             rays: (N, 3) directions of length 1, sensor frame.
@@ -78,14 +78,14 @@ class RangeModel:
         return distance
 
     def drop_slanted(self, distance: Array, incidence: Array) -> None:
-        """Set to inf, in place, what is struck at too large an angle; both (N,), m and rad."""
+        """Set hits at too large an angle to inf, in place; both (N,), m and rad."""
         if self.drops_slanted:
             distance[incidence > self._spec.max_incidence] = np.inf
 
     def measure(self, distance: Array, rng: np.random.Generator) -> Array:
-        """Turn true distances (N,) into readings, in place; inf where nothing returns.
+        """Convert true distances (N,) to readings, in place; inf without a return.
 
-        Numbers are drawn in the order of the generators, then for dropouts.
+        Random numbers are drawn by the generators in order, then for dropouts.
         """
         spec, lost = self._spec, _KEPT
         for generator in self._noise:
@@ -99,10 +99,10 @@ class RangeModel:
 def _errors(
     generator: NoiseGenerator, distance: Array, rng: np.random.Generator, largest: float
 ) -> Array:
-    """Errors (N,) of one generator, m; of what was not hit they may be anything.
+    """Return the errors (N,) of one generator, m; arbitrary for beams without a hit.
 
     Raises:
-        ValueError: they are not one number of at most ``largest`` for each beam; named after the
+        ValueError: they are not one number of at most ``largest`` per beam; the message names the
             generator's class.
     """
     answer = generator.errors(immutable(distance), rng)
@@ -113,7 +113,7 @@ def _errors(
     if found.shape != distance.shape:
         shapes = f"{found.shape} for {distance.shape}"
         raise ValueError(f"{_who(generator)}: errors returned shape {shapes}")
-    # The sum of squares is no less than that of the largest, and quicker.
+    # The sum of squares is at least the largest square, and faster.
     if not np.vdot(found, found) < largest * largest:  # or NaN
         _check_hits(found[distance < np.inf], largest, _who(generator))
     return found
@@ -124,10 +124,10 @@ def _who(generator: NoiseGenerator) -> str:
 
 
 def _check_hits(errors: Array, largest: float, who: str) -> None:
-    """Refuse errors (hits,) of what was hit.
+    """Refuse invalid errors (hits,) of hits.
 
     Raises:
-        ValueError: one is not finite, or larger than any error can be.
+        ValueError: an error is not finite, or too large.
     """
     if not np.isfinite(errors).all():
         raise ValueError(f"{who}: errors returned something that is not finite for what was hit")
@@ -143,7 +143,7 @@ def _check_hits(errors: Array, largest: float, who: str) -> None:
 def _finish(
     distance: Array, lost: NDArray[np.bool_], shortest: float, longest: float, step: float
 ) -> None:
-    """Keep hits within range, round them down to whole steps, lose some; in place."""
+    """Keep hits within range, round them down to whole steps, drop some; in place."""
     for k in range(len(distance)):
         if distance[k] < math.inf:
             distance[k] = min(max(distance[k], shortest), longest)

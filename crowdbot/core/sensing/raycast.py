@@ -1,9 +1,8 @@
 """Ray casting against vertical walls and solid upright cylinders, compiled.
 
-Legs, trunks and pillars are solid cylinders: side, top and bottom can be hit. A wall is a
-vertical plate without thickness, between its two heights. An origin inside a cylinder hits it at
-distance 0 with incidence 0, so that a body that touches or swallows a sensor never becomes
-invisible to it.
+Legs, trunks and pillars are solid cylinders: side, top and bottom can be hit. A wall is a vertical
+plate without thickness, between its two heights. An origin inside a cylinder hits it at distance 0
+with incidence 0, so that a body that touches or contains a sensor is never invisible.
 """
 
 from __future__ import annotations
@@ -17,13 +16,13 @@ from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
-#: Ends of a wall are longer by this fraction, so that no ray slips through a corner.
+#: Ends of a wall are extended by this fraction, so that no ray passes through a corner.
 _OVERLAP = 1e-9
 
 
 @array_kernel
 def segment_gap(wall: Array, x: float, y: float) -> float:
-    """Distance from a point to a segment, m."""
+    """Return the distance from a point to a segment, m."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     px, py = x - wall[0], y - wall[1]
     square = ex * ex + ey * ey
@@ -35,7 +34,7 @@ def segment_gap(wall: Array, x: float, y: float) -> float:
 
 @array_kernel
 def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray[np.int64]) -> int:
-    """Write the indices of the walls within range; return how many there are."""
+    """Write the indices of the walls within range; return their number."""
     count = 0
     for i in range(walls.shape[0]):
         if segment_gap(walls[i], x, y) <= max_range:
@@ -48,7 +47,7 @@ def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray
 def _near_discs(
     discs: Array, x: float, y: float, max_range: float, gap: Array, out: NDArray[np.int64]
 ) -> int:
-    """Write the cylinders within range, nearest surface first; return how many there are."""
+    """Write the cylinders within range, nearest surface first; return their number."""
     count = 0
     for i in range(discs.shape[0]):
         g = math.hypot(discs[i, X] - x, discs[i, Y] - y) - discs[i, RADIUS]
@@ -56,7 +55,7 @@ def _near_discs(
             gap[count] = g
             out[count] = i
             count += 1
-    # Equal gaps are ordered by index, so that the sort needs not be stable.
+    # Equal gaps are ordered by index, so the sort need not be stable.
     for at in range(1, count):
         g, i = gap[at], out[at]
         j = at
@@ -69,7 +68,7 @@ def _near_discs(
 
 @array_kernel
 def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: float) -> float:
-    """Distance of one ray to one wall; inf if it misses."""
+    """Return the distance of one ray to one wall; inf if it misses."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     px, py = wall[0] - o[0], wall[1] - o[1]
     across = dx * ey - dy * ex
@@ -85,7 +84,7 @@ def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: fl
 
 @array_kernel
 def wall_incidence(wall: Array, dx: float, dy: float) -> float:
-    """Angle between a ray and the normal of a wall that it hits."""
+    """Return the angle between a ray and the normal of a wall that it hits."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     return math.acos(min(1.0, abs(dx * ey - dy * ex) / math.hypot(ex, ey)))
 
@@ -102,7 +101,9 @@ def hit_cylinder(
     dy: float,
     dz: float,
 ) -> tuple[float, bool]:
-    """Distance of one ray to one solid cylinder, whether on its side; inf if it misses.
+    """Return the distance of one ray to one solid cylinder, and True for its side.
+
+    Inf if it misses.
 
     The axis is at (px, py) from the origin of the ray, which is ``oz`` above the floor.
     """
@@ -135,7 +136,7 @@ def hit_cylinder(
 def cylinder_incidence(
     px: float, py: float, r: float, t: float, lateral: bool, dx: float, dy: float, dz: float
 ) -> float:
-    """Angle between a ray and the normal of a cylinder that it hits at distance ``t``."""
+    """Return the angle between a ray and the normal of a cylinder hit at distance ``t``."""
     if t <= 0.0:
         return 0.0
     cosine = abs(dz)
@@ -154,11 +155,11 @@ def cast_rays(
     discs: Array,
     owner: NDArray[np.int64],
 ) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Nearest hit of each ray; see `crowdbot.core.sensing.scene.Scene.cast`.
+    """Return the nearest hit of each ray; see `crowdbot.core.sensing.scene.Scene.cast`.
 
-    Bodies out of range are sorted out once per run of equal origins, and cylinders are tried from
-    the nearest to the farthest, so that a ray stops at the first that no later one can beat.
-    Angles are computed for the nearest hit alone.
+    Bodies out of range are excluded once per sequence of equal origins, and cylinders are tried
+    nearest first, so that a ray stops once no later one can be nearer. Angles are computed for the
+    nearest hit alone.
     """
     rays = origins.shape[0]
     distance = np.full(rays, np.inf)
@@ -167,13 +168,13 @@ def cast_rays(
     near_wall = np.empty(walls.shape[0], dtype=np.int64)
     near = np.empty(discs.shape[0], dtype=np.int64)
     gap = np.empty(discs.shape[0])
-    disc = np.empty((discs.shape[0], 3))  # of those near: position from the origin, radius
+    disc = np.empty((discs.shape[0], 3))  # of near ones: position from the origin, radius
     wall_count = disc_count = 0
     for k in range(rays):
         o = origins[k]
         if k == 0 or (
             o[0] != origins[k - 1, 0] or o[1] != origins[k - 1, 1]
-        ):  # heights do not matter to what is near
+        ):  # heights do not matter here
             wall_count = _near_walls(walls, o[0], o[1], max_range, near_wall)
             disc_count = _near_discs(discs, o[0], o[1], max_range, gap, near)
             for j in range(disc_count):
@@ -189,13 +190,13 @@ def cast_rays(
             t = hit_wall(walls[i], wall_heights[i], o, dx, dy, dz)
             if t < best:
                 best, hit = t, -(2 + i)
-        winner = -1  # place of a cylinder among those near
+        winner = -1  # index among the near cylinders
         for j in range(disc_count):
             if gap[j] > best:
                 break
             px, py, r = disc[j, 0], disc[j, 1], disc[j, 2]
             side = dx * py - dy * px
-            if side * side > r * r:  # quick: passes beside it
+            if side * side > r * r:  # quick test: passes beside it
                 continue
             i = near[j]
             t, lateral = hit_cylinder(px, py, r, discs[i, BOTTOM], discs[i, TOP], o[2], dx, dy, dz)

@@ -18,27 +18,27 @@ from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Bodies that one column may hold; the farthest are dropped when there are more.
+#: Largest number of bodies per column; the farthest are dropped.
 DEEPEST = 32
-#: What is known of a body in a column: where it begins and ends (m over the floor), cosine of the
-#: level angle between ray and normal, bottom and top (m), whose body it is.
+#: Data of a body in a column: its start and end (m over the floor), cosine of the level angle
+#: between ray and normal, bottom and top (m), its owner.
 NEAR, FAR, FACING, LOW, HIGH, WHO = range(6)
 WORK_COLUMNS = 6
 _TURN = 2.0 * math.pi
-_MARGIN = 1e-9  # rad; columns at the very edge are left to the exact test
-_WIDE_MARGIN = 3e-5  # rad; more than `rough_angle` and `rough_half` are off
-_BAND = 1e-9  # of a squared distance; nearer to a limit than that, the exact distance decides
-#: Ends of a wall are longer by this fraction, so that no ray slips through a corner.
+_MARGIN = 1e-9  # rad; columns at the very edge use the exact test
+_WIDE_MARGIN = 3e-5  # rad; larger than the errors of `rough_angle` and `rough_half`
+_BAND = 1e-9  # relative, of squared distances; nearer to a limit the exact distance decides
+#: Ends of a wall are extended by this fraction, so that no ray passes through a corner.
 OVERLAP = 1e-9
 
 
 class Obstacles(NamedTuple):
-    """What rays can hit, in the form that compiled code takes; see `Scene.obstacles`.
+    """Everything that rays can hit, for compiled code; see `Scene.obstacles`.
 
     Attributes:
         walls, wall_heights: (S, 4), (S, 2) upright plates: x0, y0, x1, y1; bottom and top, m.
         discs: (D, 5) upright cylinders, columns as in `crowdbot.core.sensing.body_model`, m.
-        owner: (D,) whose each cylinder is: a person's index, -(2 + S + index) of a pillar.
+        owner: (D,) owner of each cylinder: a person's index, or -(2 + S + index) for a pillar.
     """
 
     walls: Array
@@ -48,13 +48,13 @@ class Obstacles(NamedTuple):
 
 
 class GridArrays(NamedTuple):
-    """A `RayGrid` in the form that compiled code takes, with R rows and C columns.
+    """A `RayGrid` for compiled code, with R rows and C columns.
 
     Attributes:
         azimuth, cos, sin: (C,) rising, within one turn, rad; 0 is straight ahead.
         slope, slope_scale: (R,), (C,).
         work: (C, K, `WORK_COLUMNS`) scratch: the K nearest bodies of each column, nearest first.
-        filled: (C,) scratch: how many bodies each column holds.
+        filled: (C,) scratch: number of bodies per column.
         directions: (2, C) scratch: the columns' directions in the world frame.
         runs: (3, 2) scratch.
     """
@@ -71,7 +71,7 @@ class GridArrays(NamedTuple):
 
 
 class RayGrid:
-    """Directions of a grid of rays that stays as it is, seen from the sensor.
+    """Directions of a constant grid of rays, relative to the sensor.
 
     The ray of row r and column c goes along ``azimuth[c]`` and rises by
     ``slope[r] * slope_scale[c]`` per metre over the floor.
@@ -79,8 +79,8 @@ class RayGrid:
     Attributes:
         azimuth: (C,) rising, within one turn, rad; 0 is straight ahead.
         slope: (R,).
-        slope_scale: (C,) 1 by default; of a pinhole camera the cosine of the azimuth.
-        arrays: all of these, and scratch.
+        slope_scale: (C,) 1 by default; for a pinhole camera the cosine of the azimuth.
+        arrays: all of these, and scratch space.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class RayGrid:
         self.slope = np.array(slope, dtype=np.float64)
         given = np.ones_like(self.azimuth) if slope_scale is None else slope_scale
         self.slope_scale = np.array(given, np.float64)
-        # What a level ray meets hides all behind it.
+        # What a level ray hits hides everything behind it.
         deepest = DEEPEST if np.any(self.slope) else 1
         columns = len(self.azimuth)
         self.arrays = GridArrays(
@@ -101,12 +101,12 @@ class RayGrid:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
+        """Return rows and columns."""
         return len(self.slope), len(self.azimuth)
 
 
 class _Columns(NamedTuple):
-    """Columns that are being filled: their azimuths, directions in the world, and `GridArrays`."""
+    """Columns being filled: their azimuths, directions in the world, and `GridArrays`."""
 
     azimuth: Array
     cos: Array
@@ -118,14 +118,14 @@ class _Columns(NamedTuple):
 
 @kernel
 def rough_half(sine: float) -> float:
-    """At least the arc sine of a number from 0 to 1, rad, and hardly more."""
-    # (asin(s) - s) / s^3 rises with s, to 0.18880 at 0.5.
+    """Return a tight upper bound of the arc sine of a number from 0 to 1, rad."""
+    # (asin(s) - s) / s^3 increases with s, to 0.18880 at 0.5.
     return sine + 0.1889 * sine * sine * sine if sine <= 0.5 else math.asin(sine)
 
 
 @kernel
 def _reached(px: float, py: float, r: float, reach: float) -> bool:
-    """Whether a disc is within reach of the origin, as ``hypot`` says, but quicker."""
+    """Return True if a disc is within reach of the origin, like ``hypot`` but faster."""
     square, most = px * px + py * py, (reach + r) * (reach + r)
     if abs(square - most) <= _BAND * most:
         return math.hypot(px, py) - r <= reach
@@ -134,10 +134,10 @@ def _reached(px: float, py: float, r: float, reach: float) -> bool:
 
 @kernel
 def _first_from(azimuth: Array, value: float) -> int:
-    """Index of the first column at or after an azimuth."""
+    """Return the index of the first column at or after an azimuth."""
     low, high = 0, azimuth.shape[0]
     guess = (value - azimuth[0]) / (azimuth[high - 1] - azimuth[0]) * (high - 1)
-    if 0.0 < guess < high - 1:  # columns mostly lie evenly; NaN where there is but one
+    if 0.0 < guess < high - 1:  # columns are usually evenly spaced; NaN with a single column
         k = int(guess)
         if azimuth[k] < value <= azimuth[k + 1]:
             return k + 1
@@ -152,10 +152,10 @@ def _first_from(azimuth: Array, value: float) -> int:
 
 @kernel
 def _cover(azimuth: Array, low: float, high: float, runs: Indices) -> int:
-    """Write the runs of columns whose azimuths lie in [low, high], a turn more or less.
+    """Write the runs of columns with azimuths in [low, high], modulo a turn.
 
     Returns:
-        how many runs there are, at most three.
+        the number of runs, at most three.
     """
     count, last = 0, azimuth[azimuth.shape[0] - 1]
     turn = math.floor((azimuth[0] - high) / _TURN) * _TURN
@@ -176,7 +176,7 @@ def _insert(
     columns: _Columns, c: int,
     near: float, far: float, facing: float, low: float, high: float, who: int,
 ) -> None:  # fmt: skip
-    """Put a body into column c, nearest first; equal distances keep the order of insertion."""
+    """Insert a body into column c, nearest first; equal distances keep the insertion order."""
     work, filled = columns.work, columns.filled
     n = filled[c]
     if n == work.shape[1]:
@@ -198,7 +198,7 @@ def _add_disc(
     px: float, py: float, r: float, bottom: float, top: float, yaw: float, who: int,
     columns: _Columns,
 ) -> None:  # fmt: skip
-    """Put an upright cylinder, its axis at (px, py) from the rays' origin, into its columns."""
+    """Insert an upright cylinder, with its axis at (px, py) from the rays' origin."""
     azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
     number = 1
     if _reached(px, py, r, 0.0):
@@ -224,7 +224,7 @@ def _add_disc(
 
 @kernel
 def _gap(px: float, py: float, ex: float, ey: float) -> float:
-    """Distance from the origin to the segment from p to p + e, m."""
+    """Return the distance from the origin to the segment from p to p + e, m."""
     share = min(1.0, max(0.0, -(px * ex + py * ey) / (ex * ex + ey * ey)))
     return math.hypot(px + share * ex, py + share * ey)
 
@@ -234,7 +234,7 @@ def _add_wall(
     ox: float, oy: float, yaw: float, wall: Array, heights: Array, who: int, reach: float,
     columns: _Columns,
 ) -> None:  # fmt: skip
-    """Put an upright plate into every column that meets it within ``reach``."""
+    """Insert an upright plate into every column that meets it within ``reach``."""
     azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
     px, py = wall[0] - ox, wall[1] - oy
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
@@ -272,13 +272,13 @@ def fill_columns(
     grid: GridArrays,
     obstacles: Obstacles,
 ) -> None:
-    """Put every body between two heights into the columns of a grid that meet it.
+    """Insert every body between two heights into the columns of a grid that meet it.
 
     Args:
         x, y, yaw: origin and direction in the world frame, m and rad.
-        lowest, highest: heights between which rays run, m.
-        max_range: m; what is farther is left out.
-        grid: ``work`` and ``filled`` are the result.
+        lowest, highest: range of the rays' heights, m.
+        max_range: largest distance of bodies, m.
+        grid: ``work`` and ``filled`` hold the result.
     """
     c0, s0 = math.cos(yaw), math.sin(yaw)
     world_cos, world_sin, filled = grid.directions[0], grid.directions[1], grid.filled
@@ -296,14 +296,14 @@ def fill_columns(
         bottom, top = discs[i, BOTTOM], discs[i, TOP]
         if not (bottom <= highest and top >= lowest):
             continue
-        far = max_range + r  # most are: sorted out here, before anything is called
+        far = max_range + r  # most are excluded here, before any call
         if abs(px) <= far and abs(py) <= far and _reached(px, py, r, max_range):
             _add_disc(px, py, r, bottom, top, yaw, obstacles.owner[i], columns)
 
 
 @kernel
 def heights_of(z: float, grid: GridArrays, max_range: float) -> tuple[float, float]:
-    """Heights between which the rays of a grid from a height ``z`` run, m."""
+    """Return the range of heights of a grid's rays from a height ``z``, m."""
     longest = lowest = highest = 0.0
     for k in range(grid.slope_scale.shape[0]):
         longest = max(longest, abs(grid.slope_scale[k]))
@@ -315,7 +315,7 @@ def heights_of(z: float, grid: GridArrays, max_range: float) -> tuple[float, flo
 
 @kernel
 def meet(slope: float, oz: float, near: float, far: float, low: float, high: float) -> float:
-    """Horizontal distance at which a ray meets an upright body; inf if it misses.
+    """Return the horizontal distance at which a ray meets an upright body; inf if it misses.
 
     The ray rises by ``slope`` per metre from the height ``oz``.
     """
@@ -323,7 +323,7 @@ def meet(slope: float, oz: float, near: float, far: float, low: float, high: flo
     if low <= z <= high:
         return near
     face = high if z > high else low
-    if (z > high) == (slope < 0.0) and slope != 0.0:  # comes down on the top, or up from below
+    if (z > high) == (slope < 0.0) and slope != 0.0:  # hits the top from above, or the reverse
         t = (face - oz) / slope
         if t <= far and far > near:
             return t
@@ -338,17 +338,18 @@ def cast_columns(
     walls: Array, wall_heights: Array, discs: Array, owner: Indices,
     distance: Array, incidence: Array, body: Indices,
 ) -> None:  # fmt: skip
-    """Nearest hit of each ray of a grid.
+    """Write the nearest hit of each ray of a grid.
 
     Args:
         x, y, z, yaw: origin and direction in the world frame, m and rad.
-        max_range: m; hits beyond it do not count.
-        floor: whether the floor z = 0 is hit.
+        max_range: m; farther hits do not count.
+        floor: True if the floor z = 0 is hit.
         azimuth to runs: fields of `GridArrays`.
         walls to owner: fields of `Obstacles`.
         distance: (R, C) result, m; inf without a hit.
         incidence: (R, C) result, angle to the normal, rad, 0 without a hit; or (0, 0).
-        body: (R, C) result: owner, -(2 + index) of a wall, -1 for nothing and the floor; or (0, 0).
+        body: (R, C) result: owner, -(2 + index) for a wall, -1 for nothing and the floor; or (0,
+            0).
     """
     grid = GridArrays(azimuth, cos, sin, slope, slope_scale, work, filled, directions, runs)
     lowest, highest = heights_of(z, grid, max_range)

@@ -1,10 +1,10 @@
-"""Rays of sensors that are mounted with roll or pitch; they also see the floor.
+"""Ray casting for sensors with roll or pitch; their rays also hit the floor.
 
-Level sensors have quicker ways, which rely on the rays of a column having one direction seen from
-above (`crowdbot.core.sensing.raycast_columns`, `crowdbot.core.sensing.depth`). Here every ray has a
-direction of its own. Seen from above a body covers a sector; the circle is cut into `_BINS`, each
-of which knows the bodies that reach into it, the nearest first, and a ray tries those of its own.
-What is hit is what `crowdbot.core.sensing.raycast.cast_rays` hits, and the floor.
+Level sensors use faster methods, in which the rays of a column share one direction seen from above
+(`crowdbot.core.sensing.raycast_columns`, `crowdbot.core.sensing.depth`). Here every ray has its own
+direction. Seen from above a body covers a sector; the circle is divided into `_BINS`, each with a
+list of its bodies, nearest first, and a ray tries those of its bin. Hits equal those of
+`crowdbot.core.sensing.raycast.cast_rays`, plus the floor.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 Indices = NDArray[np.int64]
-#: Of a level sensor.
+#: The rotation of a level sensor.
 NO_RAYS: Array = np.zeros((0, 3))
 _BINS = 720
 _WIDTH = 2.0 * math.pi / _BINS
-_ON_IT = 1e-6  # m; a wall that goes through the sensor may be hit in every direction
+_ON_IT = 1e-6  # m; a wall through the sensor may be hit in every direction
 
 
 def grid_rays(grid: RayGrid) -> Array:
-    """Directions (R * C, 3) of the rays of a grid, row by row, in its own frame; length 1."""
+    """Return the directions (R * C, 3) of a grid's rays, row by row, in its own frame; length 1."""
     azimuth, slope, scale = grid.azimuth, grid.slope, grid.slope_scale
     rays = np.empty((*grid.shape, 3))
     rays[..., 0], rays[..., 1] = np.cos(azimuth), np.sin(azimuth)
@@ -47,10 +47,10 @@ def grid_rays(grid: RayGrid) -> Array:
 
 @kernel
 def _bins_of(px: float, py: float, qx: float, qy: float, r: float) -> tuple[int, int]:
-    """First bin and number of bins that a body reaches into; its ends are p and q, seen from above.
+    """Return first bin and number of bins of a body with the ends p and q, seen from above.
 
     Args:
-        r: of a cylinder around p, which is q; -1 of a wall.
+        r: radius of a cylinder around p, which equals q; -1 for a wall.
     """
     if r >= 0.0:
         away = math.hypot(px, py)
@@ -76,7 +76,10 @@ def _bins_of(px: float, py: float, qx: float, qy: float, r: float) -> tuple[int,
 def _sort_bodies(
     x: float, y: float, max_range: float, walls: Array, discs: Array
 ) -> tuple[Indices, Array]:
-    """Bodies in range, the nearest first: walls, then cylinders from ``len(walls)`` on; gaps, m."""
+    """Return bodies in range, nearest first (walls, then cylinders from ``len(walls)`` on).
+
+    Gaps, m.
+    """
     count = walls.shape[0]
     gap = np.full(count + discs.shape[0], math.inf)
     for i in range(count):
@@ -92,7 +95,7 @@ def _sort_bodies(
 def _fill_bins(
     x: float, y: float, walls: Array, discs: Array, order: Indices, gap: Array
 ) -> tuple[Indices, Indices]:
-    """Where the bodies of each bin begin in a list (`_BINS` + 1,), and the list."""
+    """Return the start of each bin's bodies in a list (`_BINS` + 1,), and the list."""
     cover = np.empty((order.shape[0], 2), np.int64)
     begin = np.zeros(_BINS + 1, np.int64)
     for j in range(order.shape[0]):
@@ -127,7 +130,7 @@ def cast_tilted_rays(
 ) -> None:  # fmt: skip
     """Write the nearest hit of each ray, see `crowdbot.core.sensing.scene.Scene.cast_tilted`.
 
-    ``distance`` (N,) begins as inf, ``incidence`` (N,) as 0, ``body`` (N,) as -1.
+    ``distance`` (N,) must start as inf, ``incidence`` (N,) as 0, ``body`` (N,) as -1.
     """
     order, gap = _sort_bodies(x, y, max_range, walls, discs)
     begin, members = _fill_bins(x, y, walls, discs, order, gap)
@@ -151,7 +154,7 @@ def cast_tilted_rays(
                 d = discs[i - many]
                 px, py, r = d[X] - x, d[Y] - y, d[RADIUS]
                 side = dx * py - dy * px
-                if side * side > r * r * (dx * dx + dy * dy):  # quick: passes beside it
+                if side * side > r * r * (dx * dx + dy * dy):  # quick test: passes beside it
                     continue
                 t, lateral = hit_cylinder(px, py, r, d[BOTTOM], d[TOP], z, dx, dy, dz)
             if t < best:

@@ -1,4 +1,4 @@
-"""Scene: what sensors see at one instant."""
+"""Scene: the surroundings of sensors at one instant."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState
 
-#: In place of details that are not wanted.
+#: In place of unneeded details.
 _UNTOUCHED = (0.0, 0.0, 0.0)
 _Shown = TypeVar("_Shown")
 _NO_ANGLES, _NOBODY = np.empty((0, 0)), np.empty((0, 0), dtype=np.int64)
@@ -34,17 +34,16 @@ def _constant(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 class Scene:
     """Walls, pillars, walking people, and the robot; world frame, SI.
 
-    Built once. `update` keeps views, no copies: whoever owns the arrays may go on changing them
-    in place until the first reading. The robot's own body is never hit. Nobody can make the arrays
-    writable that it shows.
+    Built once. `update` keeps views, not copies: the owner may change the arrays in place until the
+    first reading. The robot's own body is never hit. The scene's arrays are permanently read-only.
 
     Attributes:
         wall_heights: (S, 2) bottom and top of `walls`, m.
         people_radius, people_height: (M,) m.
         pillar_heights: (P, 2) bottom and top of `pillars`, m.
-        fixed_walls, fixed_pillars: how many of both never move; those after them are the sides of
-            other robots.
-        looks: what people look like; None: all as usual.
+        fixed_walls, fixed_pillars: number of static ones; those after them are surfaces of other
+            robots.
+        looks: appearance of people; None: all default.
         others: the other robots of a fleet.
         things: (T, 6) what they have with them, see `crowdbot.core.sensing.appearance_model`.
         robot: the robot's state, None before the first update or in a scene without one.
@@ -92,11 +91,11 @@ class Scene:
         self._shown: dict[str, Any] = {}
 
     def _make_room(self) -> None:
-        """For the sides of robots, after walls and pillars."""
+        """Reserve space for the surfaces of robots, after walls and pillars."""
         others = self.others
         self._plates = np.concatenate([self._walls, others.plates])
         self._rounds = np.concatenate([self._pillars, others.discs])
-        # Views that kernels take for constants, as those of scenes without other robots.
+        # Views with the same type for kernels as in scenes without other robots.
         self._walls, self._pillars = self._plates.view(), self._rounds.view()
         for array in (self._walls, self._pillars):
             array.setflags(write=False)
@@ -105,7 +104,7 @@ class Scene:
         self.wall_heights, self.pillar_heights = immutable(plates), immutable(discs)
 
     def show_robots(self, poses: Sequence[Pose | None]) -> None:
-        """Put the other robots where they are now; None has left."""
+        """Move the other robots to their poses; None: has left."""
         self.others.place(poses)
         self._plates[self.fixed_walls :] = self.others.plates
         self._rounds[self.fixed_pillars :] = self.others.discs
@@ -116,7 +115,7 @@ class Scene:
         self._shown.clear()
 
     def _lay_out(self) -> tuple[Array, NDArray[np.int64]]:
-        """Cylinders of everybody, placed later, and of the pillars; whose they are."""
+        """Return cylinders of all people, placed later, and of the pillars; and their owners."""
         people = PARTS * len(self.people_radius)
         fixed = people + len(self._pillars)
         discs = np.zeros((fixed + len(self.things), DISC_COLUMNS))
@@ -136,18 +135,18 @@ class Scene:
         walked: Array | None = None,
         push: tuple[float, float, float] = _UNTOUCHED,
     ) -> None:
-        """Show another instant.
+        """Update the scene to another instant.
 
         Args:
-            robot_state: where the robot is and how it moves.
+            robot_state: the robot's pose and motion.
             people_xyv: (M, 4) float64 x, y (m), vx, vy (m/s); kept as a view.
-            present: (M,) bool, who is in the world; kept as a view.
-            direction: (M, 2) unit vectors of the way people face; as before if left out.
-            walked: (M,) way walked so far, m, the phase of their legs; as before if left out.
+            present: (M,) bool, people in the world; kept as a view.
+            direction: (M, 2) unit vectors of people's facing direction; default: unchanged.
+            walked: (M,) distance walked, m, the phase of their legs; default: unchanged.
             push: force of people on the robot and its torque, N, N, N m.
 
         Raises:
-            ValueError: a shape or a type does not fit.
+            ValueError: a shape or type is wrong.
         """
         count = len(self.people_radius)
         if people_xyv.shape != (count, 4) or people_xyv.dtype != np.float64:
@@ -166,26 +165,26 @@ class Scene:
 
     @property
     def walls(self) -> Array:
-        """Segments (S, 4) x0, y0, x1, y1, m; those of other robots last."""
+        """Return segments (S, 4) x0, y0, x1, y1, m; those of other robots last."""
         return self._show("walls", lambda: immutable(self._walls))
 
     @property
     def pillars(self) -> Array:
-        """Circles (P, 3) x, y, radius, m; those of other robots last."""
+        """Return circles (P, 3) x, y, radius, m; those of other robots last."""
         return self._show("pillars", lambda: immutable(self._pillars))
 
     @property
     def people(self) -> Array:
-        """Position x, y (m) and velocity x, y (m/s) of everybody (M, 4), world frame."""
+        """Return position x, y (m) and velocity x, y (m/s) of all people (M, 4), world frame."""
         return self._show("people", lambda: immutable(self._people))
 
     @property
     def present(self) -> NDArray[np.bool_]:
-        """Who is in the world (M,)."""
+        """Return a mask of people in the world (M,)."""
         return self._show("present", lambda: immutable(self._present))
 
     def _show(self, name: str, copy: Callable[[], _Shown]) -> _Shown:
-        """What is shown of this instant, which nobody can write to; copied once."""
+        """Return read-only data of this instant; copied once."""
         if name not in self._shown:
             self._shown[name] = copy()
         shown: _Shown = self._shown[name]
@@ -193,33 +192,33 @@ class Scene:
 
     @property
     def people_hip(self) -> Array:
-        """Where the legs of people end who have their own (M,), m; 0: where they usually do."""
+        """Return people's individual hip heights (M,), m; 0: default."""
         none = np.zeros(len(self.people_radius))
         return immutable(none if self._gait is None else self._gait[:, 0])
 
     @property
     def headings(self) -> Array:
-        """Way that people face (M,), world frame, rad."""
+        """Return people's facing direction (M,), world frame, rad."""
         yaw: Array = np.arctan2(self._direction[:, 1], self._direction[:, 0])
         return immutable(yaw)
 
     @property
     def cylinders(self) -> Array:
-        """Legs and trunk of everybody, pillars, then what people have with them: (D, 5).
+        """Return legs and trunks of people, pillars, then people's objects: (D, 5).
 
-        Of each person the left leg, the right leg, the trunk.
+        The order per person is left leg, right leg, trunk.
 
-        Columns are x, y, radius, bottom and top, m; the absent are at infinity.
+        Columns are x, y, radius, bottom and top, m; absent people are at infinity.
         """
         return self.obstacles.discs
 
     def move_robot(self, robot_state: RobotState | None) -> None:
-        """Show another instant to those who do not look at people, who stay as they were."""
+        """Update the robot only, for sensors that do not see people; people stay unchanged."""
         self.robot = robot_state
 
     @property
     def obstacles(self) -> Obstacles:
-        """All that rays can hit."""
+        """Return everything that rays can hit."""
         walls, heights, discs, owner = self._everything
         return self._show(
             "obstacles",
@@ -230,7 +229,7 @@ class Scene:
 
     @property
     def _everything(self) -> Obstacles:
-        """As `obstacles`, in arrays used again; people are placed when somebody looks."""
+        """Return `obstacles` in reused arrays; people are placed on demand."""
         if not self._placed:
             self._place()
             self._placed = True
@@ -248,7 +247,7 @@ class Scene:
     def cast(
         self, origins: Array, directions: Array, max_range: float
     ) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Nearest hit of each ray on a wall, a pillar or a person.
+        """Return the nearest hit of each ray on a wall, a pillar or a person.
 
         Fast for consecutive rays with equal origins. An origin inside a body, or on its surface,
         hits it at distance 0 with incidence 0.
@@ -256,28 +255,28 @@ class Scene:
         Args:
             origins: (R, 3) world frame, m.
             directions: (R, 3) world frame; any length but zero.
-            max_range: m; hits beyond it do not count.
+            max_range: m; farther hits do not count.
 
         Returns:
             distance (R,) m, inf without a hit; incidence (R,) angle to the surface normal, rad, 0
-            without a hit; body (R,) int64, a person's index, -(2 + index) of a wall, and on from
-            there of a pillar, -1 for none.
+            without a hit; body (R,) int64, a person's index, -(2 + index) for a wall, and from
+            there on for a pillar, -1 for none.
         """
         return cast_rays(origins, directions, max_range, *self._everything)
 
     def cast_tilted(
         self, at: tuple[float, float, float], turn: Array, rays: Array, max_range: float
     ) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Nearest hit of each of many rays from one point; the floor z = 0 is hit too.
+        """Return the nearest hit of each of many rays from one point; the floor z = 0 is hit too.
 
         Args:
             at: the point, world frame, m.
-            turn: (3, 3) turns vectors of the sensor's frame into those of the world's.
+            turn: (3, 3) rotation from the sensor's frame to the world frame.
             rays: (N, 3) directions of length 1, sensor frame.
-            max_range: m; hits beyond it do not count.
+            max_range: m; farther hits do not count.
 
         Returns:
-            distance, incidence and body (N,) as of `cast`; the body of the floor is -1.
+            distance, incidence and body (N,) as in `cast`; the body of the floor is -1.
         """
         distance, incidence = np.full(len(rays), np.inf), np.zeros(len(rays))
         body = np.full(len(rays), -1, dtype=np.int64)
@@ -298,14 +297,14 @@ class Scene:
         floor: bool = False,
         details: bool = True,
     ) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Nearest hit of each ray of a grid from one point; much faster than ray by ray.
+        """Return the nearest hit of each ray of a grid from one point, much faster than ray by ray.
 
         Args:
             at: the point, world frame, m.
             yaw: direction of the grid's azimuth 0, world frame, rad.
-            max_range: m; hits beyond it do not count.
-            floor: whether the floor is hit; its body is -1.
-            details: whether incidence and body are wanted; they are empty if not.
+            max_range: m; farther hits do not count.
+            floor: True if the floor is hit; its body is -1.
+            details: True to compute incidence and body, otherwise empty.
 
         Returns:
             distance, incidence, body as in `cast`, each (R, C).
@@ -325,15 +324,15 @@ class Scene:
     def render_depth(
         self, renderer: DepthRenderer, at: tuple[float, float, float], yaw: float
     ) -> NDArray[np.float32]:
-        """What a level camera sees; the floor is seen.
+        """Return the depth image of a level camera, including the floor.
 
         Args:
-            renderer: of the camera.
-            at: where it is, world frame, m.
-            yaw: where it looks, world frame, rad.
+            renderer: renderer of the camera.
+            at: its position, world frame, m.
+            yaw: its heading, world frame, rad.
 
         Returns:
-            (H, W) depth along the axis, m: 0 for too near, inf for nothing in reach.
+            (H, W) depth along the axis, m: 0 if too near, inf if nothing is in range.
         """
         image = np.empty(renderer.shape, np.float32)
         self._render(renderer, image, at, yaw)
@@ -342,9 +341,9 @@ class Scene:
     def render_depth_mm(
         self, renderer: DepthRenderer, at: tuple[float, float, float], yaw: float
     ) -> NDArray[np.uint16]:
-        """As `render_depth`, in whole millimetres; 0 also for nothing in reach.
+        """As `render_depth`, in whole millimetres; 0 also if nothing is in range.
 
-        The camera measures less than `crowdbot.core.sensing.depth_renderer.MOST_MILLIMETRES`.
+        The camera's range must be below `crowdbot.core.sensing.depth_renderer.MOST_MILLIMETRES`.
         """
         image = np.empty(renderer.shape, np.uint16)
         self._render(renderer, image, at, yaw)

@@ -1,4 +1,4 @@
-"""The contracts of sensors and of noise generators."""
+"""The interfaces of sensors and of noise generators."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Sensor(Protocol):
     """A sensor without memory."""
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         ...
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
@@ -29,15 +29,15 @@ class Sensor(Protocol):
 
 @runtime_checkable
 class DepthCamera(Protocol):
-    """A camera that makes an image in whole millimetres with less work than a reading in m.
+    """A camera that can make an image in whole millimetres faster than a reading in m.
 
-    A camera need not be one: where it is recorded, its reading is rounded.
+    This is optional: otherwise recordings contain the rounded reading.
     """
 
     def depth_mm(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator
     ) -> NDArray[np.uint16]:
-        """What `Sensor.read` would return, rounded as in `CameraFrame`; a new array."""
+        """Return what `Sensor.read` would return, rounded as in `CameraFrame`; a new array."""
         ...
 
 
@@ -45,7 +45,7 @@ class SensorWithMemory(Protocol):
     """A sensor whose ``info().memory > 0``; it keeps all its state in ``memory``."""
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         ...
 
     def read(
@@ -56,18 +56,18 @@ class SensorWithMemory(Protocol):
 
 
 class NoiseGenerator(Protocol):
-    """One error of a proximity sensor.
+    """One error of a range sensor.
 
     Attributes:
-        random: whether ``errors`` draws from ``rng``; if not, it must leave it alone.
+        random: True if ``errors`` uses ``rng``; otherwise it must not.
     """
 
     random: bool
 
     def errors(self, distance: Array, rng: np.random.Generator) -> Array:
-        """What to add to distances (N,), m, finite; inf is a beam that hit nothing.
+        """Return errors for distances (N,), m, finite; inf marks a beam without a hit.
 
-        As many numbers are drawn whatever the distances are. Errors of generators that come
-        before are in ``distance`` already.
+        The number of draws does not depend on the distances. Errors of earlier generators are
+        already included in ``distance``.
         """
         ...

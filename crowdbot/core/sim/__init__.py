@@ -1,1 +1,1 @@
-"""The only place in core that knows Drake."""
+"""The simulation; the only part of core that imports Drake."""

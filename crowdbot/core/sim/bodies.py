@@ -1,4 +1,4 @@
-"""Robots as rows and outlines, as contacts and people take them."""
+"""Robots as rows and outlines, for contacts and people."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ SEEN = np.array([0, 1, 6, 2, 3, 7])
 
 
 def rows_of(models: Sequence[RobotModel], margin: float = 0.0) -> Array:
-    """(R, 8) rows of robots, but for where they are.
+    """Return (R, 8) rows of robots, without their poses.
 
     Args:
-        margin: how much larger than its body people take a robot for, m.
+        margin: margin around the body that people perceive, m.
     """
     rows = np.zeros((len(models), 8))
     bodies = [footprint_of_model(model) for model in models]
@@ -29,7 +29,7 @@ def rows_of(models: Sequence[RobotModel], margin: float = 0.0) -> Array:
 
 
 def outlines_of(models: Sequence[RobotModel]) -> Array:
-    """(R, K, 2) outlines before rounding, m; those with fewer corners end with NaN."""
+    """Return (R, K, 2) outlines before rounding, m; padded with NaN."""
     corners = [footprint_of_model(model).corners for model in models]
     outlines = np.full((len(models), max(map(len, corners)), 2), np.nan)
     for outline, points in zip(outlines, corners, strict=True):

@@ -1,4 +1,4 @@
-"""From a scenario's words to a crowd engine."""
+"""Build a crowd engine from a scenario."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
 from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.dsl.scenario.steering import SteeringSpec
 
-#: Names of the portals of a stream, from and to.
+#: Names of a stream's portals, from and to.
 Flow = tuple[str, str]
 
 _AT_GOAL = {
@@ -52,7 +52,7 @@ def build_crowd(
 
 
 def in_series(body: float, skin: float) -> float:
-    """Stiffness of two springs that are pressed by one force, N/m."""
+    """Return the stiffness of two springs in series, N/m."""
     return body if math.isinf(skin) else body * skin / (body + skin)
 
 
@@ -62,18 +62,18 @@ def _factory(group: Crowd | NamedPolicy, registry: Registry) -> PolicyFactory:
 
 
 def _flows(drawn: Realisation) -> list[Flow]:
-    """The streams between portals, in the order of the agents."""
+    """Return the streams between portals, in the order of the agents."""
     return list(dict.fromkeys(pair for pair in drawn.portals if any(pair)))
 
 
 def _boxes(flows: Sequence[Flow], parts: EnvironmentParts) -> NDArray[np.float64]:
-    """(F, 2, 4) entrance and exit of each stream, x0, x1, y0, y1, m."""
+    """Return (F, 2, 4) entrance and exit of each stream, x0, x1, y0, y1, m."""
     boxes = [[parts.portals[name] for name in flow] for flow in flows]
     return np.array(boxes, dtype=np.float64).reshape(-1, 2, 4)
 
 
 def _policies(crowd: Crowd, drawn: Realisation) -> dict[str, Crowd | NamedPolicy]:
-    """The policies that somebody follows, by name; the crowd's own is first, without a name."""
+    """Return the policies in use, by name; the crowd's own comes first, without a name."""
     used = {name: crowd.policies[name] for name in sorted(set(drawn.policy) - {""})}
     return {"": crowd, **used}
 
@@ -81,7 +81,7 @@ def _policies(crowd: Crowd, drawn: Realisation) -> dict[str, Crowd | NamedPolicy
 def _agents(
     crowd: Crowd, drawn: Realisation, flows: Sequence[Flow], policies: Sequence[str]
 ) -> Agents:
-    response = crowd.robot_response  # the least attentive ignore robots, the next are late
+    response = crowd.robot_response  # the least attentive ignore robots, the next notice them late
     return Agents.of(
         id=drawn.id,
         x=drawn.x,
@@ -110,7 +110,7 @@ def _agents(
 
 
 def _ahead(queue: NDArray[np.int64]) -> NDArray[np.int64]:
-    """(N,) row of the one before in the same queue, or -1."""
+    """Return (N,) the row of the previous person in the same queue, or -1."""
     last: dict[int, int] = {}
     ahead = np.full(len(queue), -1, np.int64)
     for i, number in enumerate(queue.tolist()):
@@ -130,7 +130,7 @@ def _looks(drawn: Realisation) -> Appearance | None:
 
 
 def _avoided(crowd: Crowd) -> float:
-    """How much larger than its body each person is avoided."""
+    """Return the margin of avoidance around each person's body."""
     avoided = crowd.body.avoided_radius
     return 1.0 if avoided is None else avoided / crowd.body.radius
 

@@ -1,4 +1,4 @@
-"""BuiltRun: what the registry makes of a robot's run, built once for each recording."""
+"""BuiltRun: the objects of a robot's run, built once per recording."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from crowdbot.dsl.scenario.scenario import Robot, Scenario
 class BuiltRun:
     """Environment, robot and sensors of one recording.
 
-    It belongs to that recording: sensors of plugins may keep something between readings, and so a
-    calibration run of the same scenario is built for itself.
+    It belongs to that recording: sensors of plugins may keep state between readings, so a
+    calibration run of the same scenario is built separately.
 
     Attributes:
-        scenario: what is run; ``name`` is that of its robot, ``robot`` its spec.
+        scenario: the scenario; ``name`` is that of its robot, ``robot`` its spec.
         parts: the environment.
-        task: the robot's, with its goal zone as a polygon.
-        sensors: those that are simulated, by name. Readings do not depend on which others are.
-        infos: what they say of themselves, each with its own name as frame but odometry.
-        visible: names of the sensors that the planner gets, in the robot's order.
+        task: the robot's task, with its goal zone as a polygon.
+        sensors: simulated sensors, by name. Their readings are independent of each other.
+        infos: their descriptions, with their names as frames, except odometry.
+        visible: names of the planner's sensors, in the robot's order.
     """
 
     scenario: Scenario
@@ -54,12 +54,12 @@ def build_runs(
     choice: PlannerChoice,
     record: Literal["all", "used", "none"],
 ) -> dict[str, BuiltRun]:
-    """Build what a recording of all robots of a scenario needs, by name; one environment for all.
+    """Build the runs of all robots of a scenario, by name, with one environment.
 
     Args:
         scenario: with one robot or several.
         registry: the installed components.
-        choice: the planners, one of each robot.
+        choice: the planners, one per robot.
         record: as for `build_run`.
 
     Raises:
@@ -81,19 +81,19 @@ def build_run(
     name: str | None = None,
     parts: EnvironmentParts | None = None,
 ) -> BuiltRun:
-    """Build what a recording of a scenario's robot needs.
+    """Build the run of one robot of a scenario.
 
     Args:
         scenario: with one robot or several.
         registry: the installed components.
-        choice: the planner, which says what sensors it needs.
-        record: ``all`` simulates every sensor; otherwise those that the planner gets, and odometry.
-        name: of the robot; may be left out where there is one only.
-        parts: the environment, where it is built already.
+        choice: the planner, with the sensors that it needs.
+        record: ``all`` simulates every sensor; otherwise the planner's, and odometry.
+        name: name of the robot; optional if there is only one.
+        parts: the environment, if already built.
 
     Raises:
         InputError: the robot lacks a sensor that the planner needs, its control mode does not fit
-            its drive, or a sensor has the name of a frame that is not its own.
+            its drive, or a sensor has the name of another frame.
         PluginError: environment, robot or a sensor cannot be built.
     """
     if name is None:
@@ -125,5 +125,5 @@ def build_run(
 
 
 def _with_frame(name: str, info: SensorInfo) -> SensorInfo:
-    """A sensor does not know its own name; its frame is called by it."""
+    """Set a sensor's frame to its name, which the sensor does not know."""
     return info if info.category == "odometry" else replace(info, frame=name)

@@ -1,4 +1,4 @@
-"""Companion: another robot of the same run, as the blocks of one robot know it."""
+"""Other robots of the same run, as used by one robot's blocks."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from crowdbot.core.types.robot import RobotModel
 
 @dataclass(frozen=True, slots=True)
 class Company:
-    """What the blocks of one robot of a fleet know of the fleet.
+    """The fleet, as used by one robot's blocks.
 
     Attributes:
         number: of the robot among all.
         fates: of the robot itself, then of the others.
         others: the others.
-        push: what they exert on the robot.
+        push: force that they exert on the robot.
     """
 
     number: int
@@ -30,7 +30,7 @@ class Company:
 
 @dataclass(frozen=True, slots=True)
 class Companion:
-    """What it is, and the port with its state."""
+    """Another robot's model, and the port with its state."""
 
     model: RobotModel
     port: OutputPort

@@ -1,4 +1,4 @@
-"""A crowd alone, simulated and recorded without Drake."""
+"""Simulate and record a crowd alone, without Drake."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ def run_crowd(
 
     Args:
         log_rate: samples per second, Hz.
-        on_sample: called with the simulated time after each sample.
-        stop: asked at each sample; True ends the run.
+        on_sample: callback with the simulated time after each sample.
+        stop: called at each sample; True ends the run.
 
     Returns:
-        whether it went on to the end.
+        True if it ran to the end.
     """
     flat = engine.initial_state()
     per_sample, last = ticks(log_rate), round(duration * TICKS_PER_SECOND)
     tick = 0
-    while True:  # at each tick at which something may have to be recorded
+    while True:  # at each tick with a possible record
         log.record_events(flat)
         if tick % per_sample == 0:
             log.sample(tick * TICK, None, flat)

@@ -99,7 +99,7 @@ class CrowdSystem(LeafSystem):
         self._take_out(crowd)
         self._advance(crowd)
         news = crowd[self._news].tolist()
-        if news == before:  # at most ticks: nobody touches a robot and nothing ends
+        if news == before:  # at most ticks: nothing touches a robot and nothing ends
             return
         events = values.get_mutable_value(self._events)
         events[0] = news[0]
@@ -128,16 +128,16 @@ class CrowdSystem(LeafSystem):
 
     @property
     def events(self) -> OutputPort:
-        """How many trips, and how many contacts with each robot, have ended."""
+        """Return the port of the numbers of ended trips, and of ended contacts with each robot."""
         return self.GetOutputPort(ports.EVENTS)
 
     @property
     def state(self) -> OutputPort:
-        """The crowd's flat state."""
+        """Return the port of the crowd's flat state."""
         return self.GetOutputPort(ports.CROWD_STATE)
 
     def force_on(self, k: int) -> OutputPort:
-        """What people exert on robot k, as its control mode takes it."""
+        """Return the port of people's force on robot k, in its control mode's layout."""
         return self.GetOutputPort(ports.of_robot(ports.ROBOT_FORCE, k))
 
 

@@ -1,4 +1,4 @@
-"""build_diagram: one straight recipe from a built run and a planner to a Drake diagram."""
+"""build_diagram: build a Drake diagram from a built run and a planner."""
 
 from __future__ import annotations
 
@@ -46,34 +46,34 @@ def build_diagram(
 
     Args:
         built: environment, robot and sensors.
-        engine: the people; None where there are none.
+        engine: the people, or None.
         host: the planner.
-        log: takes whatever is recorded.
-        seed: of the run: noise of the sensors.
-        privileged: whether the planner sees the truth.
-        tick: s, of plant, people and their contacts; another one is for studies of contacts, see
-            `CrowdEngine.advance`.
+        log: log of the recording.
+        seed: seed of the sensors' noise.
+        privileged: True if the planner gets ground truth.
+        tick: s, time step of plant, people and their contacts; other values are for studies of
+            contacts, see `CrowdEngine.advance`.
     """
     builder = DiagramBuilder()
 
-    # Robot: how commands become motion, and the one vector that stands for its state.
+    # Robot: converts commands to motion, and outputs its state as one vector.
     robot = add_robot(builder, built.parts, built.model, built.robot.control, tick)
 
-    # Crowd and contact, one event: force on the robot, reaction on people.
+    # Crowd and contact in one event: force on the robot, reaction on people.
     crowd = add_crowd(builder, [built], [robot], engine, [Fate()], tick)
     if crowd is not None and robot.push_port is not None:
         builder.Connect(crowd.force_on(0), robot.push_port)
 
-    # Sensors, odometry among them.
+    # Sensors, including odometry.
     bank = add_sensors(builder, built, robot, crowd, log.writer, seed=seed)
 
     # Planner, slew limits, control mode.
     planner = add_planner(builder, built, robot, crowd, bank, host, log, privileged=privileged)
 
-    # What ends the run and takes its samples.
+    # End of the run, and samples.
     logger = add_metric_logger(builder, built, robot, crowd, log)
 
-    # What closes the chunks of the recording.
+    # Chunks of the recording.
     add_recorder(builder, log.writer)
 
     return Blocks(

@@ -1,4 +1,4 @@
-"""Fate: what has become of one robot of a fleet."""
+"""The ending of one robot of a fleet."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(slots=True, kw_only=True)
 class Fate:
-    """A robot goes on, or has ended: then it stands where it is, or has left.
+    """A robot is active, or has ended: then it stands where it is, or has left.
 
-    Watched at the beginning of each tick (`crowdbot.core.sim.metric_logger`), so that all blocks
-    agree on it during the tick.
+    Updated at the start of each tick (`crowdbot.core.sim.metric_logger`), so that it is constant
+    for all blocks during the tick.
 
     Attributes:
-        leaves: whether it is out of everybody's way once it has ended.
-        status, reason: how it ended; empty before.
-        goal_time: when it arrived, s, or None.
-        toppled_time: when it toppled, s, or None.
-        until: when it ended, s.
-        failure: what its planner failed with; the robot ends at the next tick.
+        leaves: True if it disappears when it has ended.
+        status, reason: how it ended, or empty.
+        goal_time: time of arrival, s, or None.
+        toppled_time: time of toppling, s, or None.
+        until: time of its end, s.
+        failure: its planner's failure; the robot ends at the next tick.
     """
 
     leaves: bool = False
@@ -31,12 +31,12 @@ class Fate:
 
     @property
     def ended(self) -> bool:
-        """Whether it has arrived, toppled, failed, or run out of time."""
+        """Return True if it has arrived, toppled, failed, or run out of time."""
         return bool(self.status)
 
     @property
     def gone(self) -> bool:
-        """Whether it is not there any more."""
+        """Return True if it has left."""
         return self.leaves and self.ended
 
     def end(
@@ -47,6 +47,6 @@ class Fate:
         goal_time: float | None = None,
         toppled_time: float | None = None,
     ) -> None:
-        """It ends at ``t``, s."""
+        """End the robot at ``t``, s."""
         self.status, self.reason, self.until = status, reason, t
         self.goal_time, self.toppled_time = goal_time, toppled_time

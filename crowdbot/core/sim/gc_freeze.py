@@ -1,4 +1,4 @@
-"""Keeps Python's collector of cycles away from what a run does not throw away."""
+"""Exclude long-lived objects from garbage collection during a run."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from crowdbot.core.support.gc_throttle import collected_as_usual
 
 @contextmanager
 def gc_frozen() -> Iterator[None]:
-    """Within this, the collector looks only at objects that are made within it.
+    """Limit garbage collection to objects created in the context.
 
-    Hundreds of thousands of others belong to libraries: walking them takes a tenth of a second,
-    and finds nothing. Cycles that planners make meanwhile are collected as usual. In the end it
-    collects the cycles that were made within it, such as a run's diagram: by itself it would wait
-    until there are tens of thousands of objects, which some seventy runs leave, and 180 MB.
+    Hundreds of thousands of others belong to libraries: traversing them takes a tenth of a second
+    and finds nothing. Planners' cycles are collected as usual. At the end it collects cycles
+    created in the context, such as a run's diagram; otherwise the collector would wait for tens of
+    thousands of objects, that is some seventy runs or 180 MB.
     """
-    if gc.get_freeze_count():  # whoever did this already has to undo it, too
+    if gc.get_freeze_count():  # the code that froze objects before has to unfreeze them
         with collected_as_usual():
             yield
         return

@@ -1,8 +1,8 @@
-"""Images of cameras: the simulation's state keeps what a camera saw, not the pixels.
+"""Camera images: the simulation's state contains the scene data, not the pixels.
 
-76 800 pixels in the state would be copied at every event of every block. What a camera sees is
-the robot's state and eight numbers for each person; from these an image is computed at its tick
-and, where a context was cloned or put back, again when somebody asks for it (docs/decisions/0009).
+76 800 pixels in the state would be copied at every event of every block. A camera's view depends on
+the robot's state and eight numbers per person; from these an image is computed at its tick and, if
+a context was cloned or restored, again on demand (docs/decisions/0009).
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from crowdbot.core.types.robot import RobotState
 from crowdbot.core.types.sensor import CameraFrame, Reading
 
 _COLUMNS = (s.X, s.Y, s.VX, s.VY, s.DIR_X, s.DIR_Y, s.WALKED, s.WAITING)
-#: Draws what a camera shows: the scene and the robot's pose to (H, W, 3).
+#: A function that draws a camera's image: from the scene and the robot's pose to (H, W, 3).
 ColourRenderer = Callable[[Scene, Pose], NDArray[np.uint8]]
 
 
 def view_size(people: int, robots: int = 0) -> int:
-    """Length of what a camera saw; ``robots``: how many others there are."""
+    """Return the length of a camera's view data; ``robots``: number of others."""
     return ports.ROBOT_STATE_SIZE + len(Pose._fields) * robots + len(_COLUMNS) * people
 
 
 def capture(
     robot: RobotState, people: Array | None, out: Array, others: Sequence[Pose | None] = ()
 ) -> None:
-    """Write what a camera sees: the robot's state, the others' poses, the crowd's rows (N, C)."""
+    """Write a camera's view data: the robot's state, the others' poses, the crowd's rows (N, C)."""
     out[: ports.ROBOT_STATE_SIZE] = robot
     at = ports.ROBOT_STATE_SIZE
     for pose in others:
@@ -49,7 +49,7 @@ def capture(
 
 @kernel
 def _pick(people: Array, out: Array) -> None:
-    """Write `_COLUMNS` of all people, one person after the other."""
+    """Write `_COLUMNS` of all people, one after the other."""
     width = len(_COLUMNS)
     for i in range(people.shape[0]):
         for k in range(width):
@@ -57,7 +57,7 @@ def _pick(people: Array, out: Array) -> None:
 
 
 def show(scene: Scene, view: Array) -> Pose:
-    """Make a scene look as it did when ``view`` was captured; returns the robot's pose."""
+    """Restore a scene from ``view``; return the robot's pose."""
     robot = RobotState(*view[: ports.ROBOT_STATE_SIZE].tolist())
     at = ports.ROBOT_STATE_SIZE + len(Pose._fields) * len(scene.others)
     if scene.others.robots:
@@ -69,7 +69,7 @@ def show(scene: Scene, view: Array) -> Pose:
 
 
 class Images:
-    """The latest image of one camera, kept outside the state for as long as it fits it."""
+    """The latest image of one camera, cached outside the state while it matches it."""
 
     def __init__(
         self,
@@ -77,12 +77,12 @@ class Images:
         rng: Callable[[float], np.random.Generator],
         renderer: ColourRenderer | None,
     ) -> None:
-        """Prepare.
+        """Prepare the images.
 
         Args:
             sensor: the camera.
-            rng: makes the random numbers of the reading at a time (s).
-            renderer: draws the colour image of a camera that takes some.
+            rng: function that returns the random generator for a time (s).
+            renderer: function that draws the colour image, if the camera has one.
         """
         self._sensor, self._rng, self._renderer = sensor, rng, renderer
         self._quick = sensor if isinstance(sensor, DepthCamera) else None
@@ -91,9 +91,9 @@ class Images:
         self._colour: NDArray[np.uint8] | None = None
 
     def frame(self, scene: Scene, pose: Pose, stamp: float, view: Array) -> CameraFrame:
-        """What is recorded of the scene as it is shown now, which is how ``view`` has it.
+        """Return the recorded frame of the current scene, which must match ``view``.
 
-        Depth in m is made only if somebody asks for a reading.
+        Depth in m is computed only for a reading.
         """
         self._begin(stamp, view)
         self._render(scene, pose)
@@ -104,7 +104,7 @@ class Images:
         return CameraFrame(stamp, depth, self._colour)
 
     def reading(self, scene: Scene, stamp: float, view: Array) -> Reading:
-        """The reading of ``view``, made unless it is there; the scene may show it afterwards."""
+        """Return the reading of ``view``, computed if missing; this may change the scene."""
         fits = self._stamp == stamp and np.array_equal(self._view, view)
         if not fits:
             self._begin(stamp, view)
@@ -117,18 +117,18 @@ class Images:
         return Reading(stamp, depth, self._colour)
 
     def _begin(self, stamp: float, view: Array) -> None:
-        """Forget the latest image: its memory is free for the next, and warm."""
+        """Drop the latest image, so that its warm memory is reused."""
         self._stamp, self._view = stamp, view.copy()
         self._depth = self._colour = None
 
     def _render(self, scene: Scene, pose: Pose) -> None:
-        """Draw the colour image, if the camera takes some."""
+        """Draw the colour image, if the camera has one."""
         if self._renderer is not None:
             self._colour = self._renderer(scene, pose)
             self._colour.setflags(write=False)
 
     def _read(self, scene: Scene, pose: Pose) -> Array:
-        """Depth in m, kept."""
+        """Return depth in m, cached."""
         depth = self._sensor.read(scene, pose, self._stamp, self._rng(self._stamp))
         self._depth = depth = depth.astype(np.float32, copy=False)
         depth.setflags(write=False)

@@ -1,4 +1,4 @@
-"""A run in the browser while it goes on, through Drake's Meshcat."""
+"""Show a running simulation in the browser, through Drake's Meshcat."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ _RIM = 24
 
 
 class MeshcatView:
-    """Watches runs and shows walls, goal, people and robot.
+    """A watcher that shows walls, goal, people and robot.
 
     Attributes:
-        url: where a browser finds it.
+        url: address for a browser.
     """
 
     def __init__(self, port: int = 0, host: str = "localhost") -> None:
-        """Start to serve.
+        """Start serving.
 
         Raises:
-            InputError: the port cannot be had.
+            InputError: the port is not available.
         """
         try:
             self._meshcat = Meshcat(
@@ -55,7 +55,7 @@ class MeshcatView:
         self._shown: set[int] = set()
 
     def begin(self, header: RecordingHeader) -> None:
-        """Show what does not move; what was shown before is gone."""
+        """Show static objects, and remove those of an earlier run."""
         show = self._meshcat
         show.Delete("crowdbot")
         for k, row in enumerate(() if header.walls is None else header.walls.tolist()):
@@ -70,7 +70,7 @@ class MeshcatView:
         show.SetCameraPose(np.array([-4.0, 0.0, 9.0]), np.array([6.0, 0.0, 0.0]))
 
     def sample(self, t: float, robot: Sequence[float] | None, agents: Array | None) -> None:
-        """Move everybody; who is absent is hidden."""
+        """Move people and robot; absent people are hidden."""
         show = self._meshcat
         show.SetSimulationTime(t)
         if robot is not None:
@@ -86,7 +86,7 @@ class MeshcatView:
             show.SetTransform(f"crowdbot/people/{k}", _placed(x, y, math.atan2(vy, vx)))
 
     def page(self) -> str:
-        """The scene as it is now: one HTML page, which needs no server."""
+        """Return the current scene as one HTML page without a server."""
         return str(self._meshcat.StaticHtml())
 
 
@@ -122,7 +122,7 @@ def _placed(x: float, y: float, yaw: float, z: float = 0.0) -> RigidTransform:
 
 
 def _prism(outline: Array, low: float, high: float) -> TriangleSurfaceMesh:
-    """A convex outline (K, 2), counter-clockwise, from one height to another, m."""
+    """Return a prism over a convex outline (K, 2), counter-clockwise, between two heights, m."""
     count = len(outline)
     corners = [np.array([x, y, z]) for z in (low, high) for x, y in np.asarray(outline).tolist()]
     faces = []

@@ -1,4 +1,4 @@
-"""MetricLogger: watches the task every tick and logs the state at the log rate.
+"""MetricLogger: monitors the task every tick and logs the state at the log rate.
 
 A publish event at tick k sees the state at k, before any update of that tick.
 """
@@ -35,9 +35,9 @@ from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.robot import RobotState
 from crowdbot.core.types.task import Task
 
-_ROUNDING = 1e-9  # m; of the distance to the goal zone
+_ROUNDING = 1e-9  # m; rounding of the distance to the goal zone
 _TILT = RobotState._fields.index("tilt")
-#: A robot that leans by more than this has toppled, however it comes to lie, rad.
+#: A robot that leans by more than this has toppled, rad.
 LEANS = math.radians(60.0)
 
 
@@ -46,8 +46,8 @@ class MetricLogger(LeafSystem):
 
     Attributes:
         walls: contacts of the robot with walls.
-        goal_time: when the robot arrived, s, or None.
-        toppled_time: when it toppled, s, or None.
+        goal_time: time of arrival, s, or None.
+        toppled_time: time of toppling, s, or None.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -64,18 +64,18 @@ class MetricLogger(LeafSystem):
         fate: Fate | None = None,
         on_end: Callable[[], None] = lambda: None,
     ) -> None:
-        """Watch one robot.
+        """Monitor one robot.
 
         Args:
-            felt: whether the robot's base is one that forces act on.
-            fate: of one robot of a fleet, which ends without ending the run.
-            on_end: called when it has ended.
+            felt: True if forces act on the robot's base.
+            fate: ending of a fleet's robot, which does not end the run.
+            on_end: callback at its end.
         """
         super().__init__()
         self._log, self._task, self.walls = log, task, walls
         self._ticks_per_sample = ticks(rate)
         self._last_tick = -1
-        self._before: Array | None = None  # the robot one tick ago
+        self._before: Array | None = None  # the robot's state one tick ago
         self._clearance = ClearanceCache()
         self.goal_time: float | None = None
         self.toppled_time: float | None = None
@@ -85,7 +85,7 @@ class MetricLogger(LeafSystem):
         if crowd is not None:
             self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd.state.size())
             self._events = self.DeclareVectorInputPort(ports.EVENTS, crowd.events.size())
-        # Asking an input port whether it has a value would compute the forces at every tick.
+        # Checking whether an input port has a value would compute the forces at every tick.
         self._forces = (
             self.DeclareAbstractInputPort(ports.FORCES, Value(ContactResults())) if felt else None
         )
@@ -123,22 +123,22 @@ class MetricLogger(LeafSystem):
         return None
 
     def _feel(self, context: Context, _values: DiscreteValues | None = None) -> None:
-        """Ask for the forces of walls while the plant takes its step, which needs them as well.
+        """Read the walls' forces during the plant's step, which needs them too.
 
-        Asked for in ``_publish``, they would be computed once more: the people's update in between
-        makes Drake forget them.
+        Read in ``_publish``, they would be computed again, since the people's update invalidates
+        Drake's cache.
         """
         if self._forces is not None and self.walls.near:
             self.walls.feel(wall_force(self._forces.Eval(context)))
 
     def fate_without_arrival(self) -> tuple[Ending, str]:
-        """Status of a robot that has not arrived, and why, if no planner is to blame."""
+        """Return status and reason of a robot that has not arrived, if its planner did not fail."""
         if self.toppled_time is not None:
             return TOPPLED, f"toppled at {self.toppled_time:.1f} s"
         return TIMEOUT, f"time limit of {self._task.time_limit:g} s"
 
     def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
-        """The robot has ended, and with it the run, but for that of a fleet."""
+        """End the robot, and the run unless it is a fleet's."""
         self._feel(context)  # there is no further step
         if self._fate is None:
             return EventStatus.ReachedTermination(self, reason)
@@ -147,13 +147,13 @@ class MetricLogger(LeafSystem):
         return None
 
     def finish(self, context: Context, t: float) -> None:
-        """Record what is still going on; ``context`` is this system's own."""
+        """Record active contacts at the end; ``context`` is this system's own."""
         self.walls.finish()
         self._log.finish(t, None if self._crowd is None else self._crowd.Eval(context))
         self._on_end()
 
     def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
-        """The crowd, where there is something to log: it is copied each time it is looked at."""
+        """Return the crowd if there is something to log, since every access copies it."""
         if self._crowd is None or self._events is None:
             return None
         if not always and self._log.has_recorded(self._events.Eval(context)):
@@ -162,7 +162,7 @@ class MetricLogger(LeafSystem):
         return crowd
 
     def _look(self, t: float, robot: RobotState, before: Array | None) -> bool:
-        """Watch walls and goal, one of which may be near; returns whether the robot is there."""
+        """Check near walls and the goal; return True if the robot has arrived."""
         was = robot if before is None else RobotState(*before.tolist())
         speed = 0.0 if before is None else math.hypot(was.vx, was.vy)
         free = self.walls.watch(t, robot, speed)
@@ -187,7 +187,7 @@ def add_metric_logger(
     fate: Fate | None = None,
     on_end: Callable[[], None] = lambda: None,
 ) -> MetricLogger:
-    """Add what watches the task and takes samples to a diagram; the last two as it takes them."""
+    """Add the task monitor and sampler to a diagram."""
     logger = MetricLogger(
         log,
         built.task,

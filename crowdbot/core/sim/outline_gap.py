@@ -1,4 +1,4 @@
-"""How far a robot's outline is from walls and pillars, and where it is nearest to them."""
+"""Distance of a robot's outline from walls and pillars, and its nearest point."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from crowdbot.core.crowd.contact.robot_contact import from_outline
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
-#: Points that touch at once belong to one contact: the side of a box flush with a wall, m.
+#: Points that touch within this distance are one contact, such as a box side along a wall, m.
 _AT_ONCE = 1e-3
 
 
 @array_kernel
 def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
-    """Distance from a point to the nearest wall or pillar's surface, m; inf without any."""
+    """Return the distance from a point to the nearest wall or pillar surface, m.
+
+    Inf without any.
+    """
     nearest = math.inf
     for i in range(walls.shape[0]):
         ex, ey = walls[i, 2] - walls[i, 0], walls[i, 3] - walls[i, 1]
@@ -34,13 +37,13 @@ def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
 def outline_gap(
     walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
 ) -> float:
-    """Distance from an outline to the nearest wall or pillar's surface, m; inf without any.
+    """Return the distance of an outline to the nearest wall or pillar surface, m; inf without any.
 
     Args:
         walls: (S, 4), pillars: (P, 3), as in `EnvironmentParts`.
-        outline: (K, 2) in the robot's frame, m, before rounding: none (its origin), the ends of
-            a segment, or a convex polygon, counter-clockwise; a wall within it is 0 m away.
-        x, y, yaw: pose of the robot.
+        outline: (K, 2) in the robot's frame, m, before rounding: empty (its origin), a segment, or
+            a convex polygon, counter-clockwise; a wall inside it has distance 0.
+        x, y, yaw: the robot's pose.
     """
     if outline.shape[0] == 0:
         return float(gap_to_walls(walls, pillars, x, y))
@@ -59,10 +62,10 @@ def outline_gap(
 def touched_at(
     walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
 ) -> tuple[float, float]:
-    """Where walls and pillars are nearest to an outline, in the robot's frame, m.
+    """Return the outline's point nearest to walls and pillars, in the robot's frame, m.
 
-    Several places that are as near, such as both corners of a side, give their middle. Arguments
-    as in `outline_gap`.
+    Of several equally near points, such as both corners of a side, it is the middle. Arguments as
+    in `outline_gap`.
     """
     limit = outline_gap(walls, pillars, outline, x, y, yaw) + _AT_ONCE
     sum_x, sum_y, count = 0.0, 0.0, 0
@@ -92,14 +95,17 @@ def touched_at(
 
 @array_kernel
 def _into(px: float, py: float, x: float, y: float, yaw: float) -> tuple[float, float]:
-    """A point of the world in the frame of a pose."""
+    """Return a world point in the frame of a pose."""
     c, s = math.cos(yaw), math.sin(yaw)
     return c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
 
 
 @array_kernel
 def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> float:
-    """Distance from an outline of at least two points to segment a-b, m; 0 where they overlap."""
+    """Return the distance from an outline with at least two points to segment a-b, m.
+
+    0 if overlapping.
+    """
     nearest = min(from_outline(outline, ax, ay)[0], from_outline(outline, bx, by)[0])
     count = outline.shape[0]
     for k in range(count):
@@ -116,7 +122,7 @@ def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> f
 def _cross(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> bool:
-    """Whether segments a-b and c-d cross, ends left out."""
+    """Return True if segments a-b and c-d cross, ends excluded."""
     c = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     d = (bx - ax) * (dy - ay) - (by - ay) * (dx - ax)
     a = (dx - cx) * (ay - cy) - (dy - cy) * (ax - cx)

@@ -1,8 +1,8 @@
-"""How the outlines of two robots overlap, compiled.
+"""Overlap of two robots' outlines, compiled.
 
-An outline is a point, a segment or a convex polygon, rounded by a radius. Each corner of one that
-lies within reach of the other touches it; depth, direction and place of the contact are the means
-over these corners, weighed by their depths, so that nothing jumps where a corner begins to touch.
+An outline is a point, a segment or a convex polygon, rounded by a radius. Each corner within reach
+of the other outline touches it; depth, direction and position of the contact are averages over
+these corners, weighted by depth, so that they change continuously.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from crowdbot.core.types.arrays import Array, Mask
 
 @kernel
 def mark_within_reach(robots: Array, reach: Array, marks: Mask) -> int:
-    """Mark the pairs of robots that are near enough to touch, however they are turned.
+    """Mark the pairs of robots that are near enough to touch, in any orientation.
 
     Args:
         robots: (N, 8) rows as in `crowdbot.core.crowd.contact.robot_contact`.
-        reach: (N,) of the farthest point of each from its origin, m.
-        marks: (N, N) written for i < j.
+        reach: (N,) distance of each robot's farthest point from its origin, m.
+        marks: (N, N) output for i < j.
 
     Returns:
-        how many are marked.
+        the number of marked pairs.
     """
     found = 0
     for i in range(robots.shape[0]):
@@ -40,15 +40,15 @@ def mark_within_reach(robots: Array, reach: Array, marks: Mask) -> int:
 def overlap_of_robots(
     a: Array, outline_a: Array, b: Array, outline_b: Array
 ) -> tuple[float, float, float, float, float]:
-    """How robot a and robot b overlap.
+    """Return the overlap of robot a and robot b.
 
     Args:
         a, b: (8,) rows as in `crowdbot.core.crowd.contact.robot_contact`.
         outline_a, outline_b: (K, 2) in their frames, before rounding, m.
 
     Returns:
-        depth (m), 0 where they do not touch; unit normal from a to b; the point where they meet
-        (m). World frame.
+        depth (m), 0 without contact; unit normal from a to b; the point where they meet (m). World
+        frame.
     """
     reach = a[R_BODY] + b[R_BODY]
     around = extent_of(outline_a) + extent_of(outline_b) + reach
@@ -73,11 +73,11 @@ def overlap_of_robots(
 def _corners_within(
     a: Array, outline_a: Array, b: Array, outline_b: Array, reach: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Corners of a that are within reach of b's outline.
+    """Return data on corners of a that are within reach of b's outline.
 
     Returns:
-        the largest depth (m); the sum of all depths; of all normals towards b and of all places,
-        each times its depth. World frame.
+        the largest depth (m); the sum of depths; and depth-weighted sums of normals towards b and
+        of positions. World frame.
     """
     deepest = weight = nx = ny = px = py = 0.0
     for k in range(max(1, outline_a.shape[0])):
@@ -100,7 +100,7 @@ def _corners_within(
 
 @kernel
 def _away(robot: Array, outline: Array, x: float, y: float) -> tuple[float, float, float]:
-    """Distance of a point from an outline before rounding (m), and the direction away from it."""
+    """Return a point's distance from an outline before rounding (m), and direction away from it."""
     dx, dy = x - robot[RX], y - robot[RY]
     if outline.shape[0] == 0:
         distance = math.hypot(dx, dy)

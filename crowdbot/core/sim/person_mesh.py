@@ -1,4 +1,4 @@
-"""A low-poly person for pictures, in parts: a prism for each leg, one for the trunk, and a head.
+"""A low-poly person for images: a prism per leg, one for the trunk, and a head.
 
 The proportions are those that sensors see (`crowdbot.core.sensing.body_model`); the head is added.
 """
@@ -14,17 +14,17 @@ from crowdbot.core.sensing.body_model import BOTTOM, PARTS, RADIUS, TOP, X, Y, p
 from crowdbot.core.types.arrays import Array
 
 _SIDES = 8
-_SHOULDER = 0.82  # of the height: where the trunk ends that is drawn
-_HEAD = 0.055  # of the height: radius of the head
+_SHOULDER = 0.82  # share of the height: top of the drawn trunk
+_HEAD = 0.055  # share of the height: radius of the head
 
 
 def leg_obj(height: float, radius: float, hip: float = 0.0) -> str:
-    """Wavefront OBJ text of an upright leg at the origin.
+    """Return Wavefront OBJ text of an upright leg at the origin.
 
     Args:
-        height: of the person, m.
-        radius: of the disc that touches, m.
-        hip: where the legs end, m; 0: where they usually do.
+        height: height of the person, m.
+        radius: radius of the contact disc, m.
+        hip: height of the hip, m; 0: default.
     """
     leg, _, _ = _discs(height, radius)
     leg[X] = leg[Y] = 0.0
@@ -33,7 +33,7 @@ def leg_obj(height: float, radius: float, hip: float = 0.0) -> str:
 
 
 def trunk_obj(height: float, radius: float, hip: float = 0.0) -> str:
-    """The same of trunk and head of a person who stands at the origin."""
+    """Return the same for trunk and head of a person who stands at the origin."""
     *_, trunk = _discs(height, radius)
     trunk[TOP] = _SHOULDER * height
     trunk[BOTTOM] = hip or trunk[BOTTOM]
@@ -42,7 +42,7 @@ def trunk_obj(height: float, radius: float, hip: float = 0.0) -> str:
 
 
 def _discs(height: float, radius: float) -> Array:
-    """Legs and trunk as sensors see them."""
+    """Return legs and trunk as sensors see them."""
     discs = np.zeros((PARTS, 5))
     place_people(
         np.zeros((1, 4)), np.ones(1, np.bool_), np.array([[1.0, 0.0]]), np.zeros(1),
@@ -63,7 +63,7 @@ def _obj(discs: Iterable[Array]) -> str:
 
 
 def _prism(disc: Array, vertices: list[Array], normals: list[Array], faces: list[str]) -> None:
-    """Add an upright prism with a flat top; sides are shaded round."""
+    """Add an upright prism with a flat top; its sides have round shading."""
     first, normal = len(vertices) + 1, len(normals) + 1
     turns = 2.0 * math.pi * np.arange(_SIDES) / _SIDES
     for turn in turns:

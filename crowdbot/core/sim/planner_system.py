@@ -1,4 +1,4 @@
-"""PlannerSystem: the planner, then command timeout and slew limits, then what the base wants.
+"""PlannerSystem: the planner, then command timeout and slew limits, then the control mode's input.
 
 Discrete events run after unrestricted ones, so a planner step sees the readings of its own tick.
 """
@@ -44,11 +44,11 @@ from crowdbot.errors import PlannerError
 
 @dataclass(frozen=True, slots=True)
 class People:
-    """Who may be met: number and radius of everybody, also of those who are not there yet.
+    """All people who may be met, with number and radius, including those not present yet.
 
     Attributes:
-        robots: (R,) how far the other robots of a fleet reach, m; they stand among the people,
-            numbered -2, -3, ….
+        robots: (R,) reach of a fleet's other robots, m; they are listed as people with the numbers
+            -2, -3, ….
     """
 
     id: NDArray[np.int64]
@@ -58,12 +58,12 @@ class People:
     def truth(
         self, robot: RobotState, crowd: Array, others: Sequence[RobotState | None] = ()
     ) -> Truth:
-        """The robot and all who are present.
+        """Return the ground truth: the robot and all people present.
 
         Args:
             robot: its state.
-            crowd: the flat state of the crowd; empty where there is none.
-            others: states of the other robots; None of one that has left.
+            crowd: the flat state of the crowd, or empty.
+            others: states of the other robots; None for one that has left.
         """
         rows = np.zeros((0, 4))
         there = np.zeros(len(self.id), dtype=bool)
@@ -91,7 +91,7 @@ class People:
 class PlannerSystem(LeafSystem):
     """Input: readings; robot and crowd for a privileged planner. Outputs: command, desired state.
 
-    The command is the planner's; the desired state is what the control mode makes of it.
+    The command is the planner's; the desired state is the control mode's input.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -112,9 +112,9 @@ class PlannerSystem(LeafSystem):
         crowd_size: int = 0,
         fates: Sequence[Fate] = (),
     ) -> None:
-        """``people``: who they are, for a planner that may know; None hides the truth.
+        """Build the system. ``people``: for a privileged planner; None hides the truth.
 
-        ``fates``: of the robot and of all others, in a fleet.
+        ``fates``: endings of the robot and of all others, in a fleet.
         """
         super().__init__()
         self._host, self._desire, self._task = host, robot.desire, task
@@ -152,10 +152,10 @@ class PlannerSystem(LeafSystem):
         due = since == 0
         if self._fates and (self._fates[0].ended or self._fates[0].failure):
             due, v, w, vy = False, 0.0, 0.0, 0.0
-        if since == self._timeout:  # a driver that hears nothing stops the robot
+        if since == self._timeout:  # without commands, the driver stops the robot
             v = w = vy = 0.0
         if not due and slewed_v == v and slewed_w == w and slewed_vy == vy:
-            state[0] = tick + 1.0  # all the rest stays as it is
+            state[0] = tick + 1.0  # everything else is unchanged
             return
         if due:
             t = tick * TICK
@@ -166,7 +166,7 @@ class PlannerSystem(LeafSystem):
         values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w, slewed_vy)
 
     def _ask(self, context: Context, t: float) -> Command:
-        """The planner's command; one that fails in a fleet ends its own robot only."""
+        """Return the planner's command; a failure in a fleet ends only its own robot."""
         seen = self._observe(self._port.Eval(context), t, self._truth(context))
         try:
             hosted = self._host.step(seen)
@@ -179,7 +179,7 @@ class PlannerSystem(LeafSystem):
         return hosted.command
 
     def _truth(self, context: Context) -> Truth | None:
-        """What is at this instant, if the planner may know."""
+        """Return the ground truth, if the planner is privileged."""
         if self._people is None or self._robot is None:
             return None
         robot = RobotState(*self._robot.Eval(context).tolist())
@@ -215,7 +215,7 @@ class PlannerSystem(LeafSystem):
 def _slew_planar(
     v: float, vy: float, wanted_v: float, wanted_vy: float, step: float
 ) -> tuple[float, float]:
-    """One step of a vector towards another, no longer than ``step``."""
+    """Move a vector towards another by at most ``step``."""
     if vy == wanted_vy:
         return _slew(v, wanted_v, step), vy
     ahead, aside = wanted_v - v, wanted_vy - vy

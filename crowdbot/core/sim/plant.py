@@ -38,12 +38,12 @@ _WALL_THICKNESS = 0.2  # m
 
 @dataclass(frozen=True, slots=True)
 class RobotPlant:
-    """The finished plant and its one robot.
+    """The finished plant and its only robot.
 
     Attributes:
-        root: the body that floats; the base hangs from it.
+        root: the floating body, parent of the base.
         rise: height of the base's frame above the root's, m.
-        wheels: the driven joints, left and right; none of a holonomic drive.
+        wheels: the driven joints, left and right; empty for a holonomic drive.
     """
 
     plant: MultibodyPlant
@@ -61,13 +61,13 @@ def add_plant(
     gains: PdControllerGains | None,
     tick: float = TICK,
 ) -> RobotPlant:
-    """Add the plant to a diagram, ready to be wired; without gains the wheels roll freely.
+    """Add the plant to a diagram, ready for wiring; without gains the wheels roll freely.
 
     Args:
         tick: its time step, s.
 
     Raises:
-        PluginError: Drake cannot make a robot of its description.
+        PluginError: Drake cannot parse the robot's description.
     """
     config = MultibodyPlantConfig(
         time_step=tick, discrete_contact_approximation="lagged", contact_model="point"
@@ -97,7 +97,7 @@ def add_plant(
     if gains is not None:
         for joint in wheels:
             motor_of(plant, joint).set_controller_gains(gains)
-    # With sampled ports the crowd would see the plant already advanced: action != reaction.
+    # With sampled ports the crowd would see the plant after its update: action != reaction.
     plant.SetUseSampledOutputPorts(False)
     try:
         plant.Finalize()
@@ -109,9 +109,9 @@ def add_plant(
 
 
 def floor_of(friction: float) -> CoulombFriction:
-    """The floor on which a tyre, whose own coefficient is 1, has a friction coefficient.
+    """Return the floor that gives this friction with a tyre, whose own coefficient is 1.
 
-    Drake joins the coefficients a and b of two surfaces as 2 a b / (a + b).
+    Drake combines the coefficients a and b of two surfaces as 2 a b / (a + b).
     """
     own = friction / (2.0 - friction)
     return CoulombFriction(own, own)
@@ -134,7 +134,7 @@ def _motorised(
     described: Description,
     names: tuple[str, ...],
 ) -> tuple[Joint, ...]:
-    """The driven wheels' joints; there is a motor on each of them, and on nothing else."""
+    """Return the driven wheels' joints, which have the only motors."""
     joints = tuple(plant.GetJointByName(name, model) for name in names)
     moved = set()
     for index in plant.GetJointActuatorIndices():  # that of one model is empty here
@@ -149,7 +149,7 @@ def _motorised(
 
 
 def motor_of(plant: MultibodyPlant, joint: Joint) -> JointActuator:
-    """The actuator of a driven wheel's joint."""
+    """Return the actuator of a driven wheel's joint."""
     motors = (plant.get_joint_actuator(i) for i in plant.GetJointActuatorIndices())
     return next(m for m in motors if m.joint().index() == joint.index())
 
@@ -157,7 +157,7 @@ def motor_of(plant: MultibodyPlant, joint: Joint) -> JointActuator:
 def wall_box(
     segment: NDArray[np.float64], heights: NDArray[np.float64]
 ) -> tuple[RigidTransform, Box]:
-    """A box behind a wall segment: its face is the segment, seen from the left of it."""
+    """Return a box behind a wall segment: its face is the segment, seen from the left."""
     x0, y0, x1, y1 = segment
     low, high = heights
     length = float(np.hypot(x1 - x0, y1 - y0))
@@ -169,7 +169,7 @@ def wall_box(
 
 
 def solid_prism(outline: NDArray[np.float64], heights: NDArray[np.float64], name: str) -> Convex:
-    """The upright prism over a convex outline (K, 2), between two heights."""
+    """Return the upright prism over a convex outline (K, 2), between two heights."""
     corners = [(x, y, z) for x, y in outline for z in heights]
     return Convex(points=np.array(corners).T, label=name)
 

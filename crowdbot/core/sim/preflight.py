@@ -1,4 +1,4 @@
-"""What a run needs from the robot and from the machine."""
+"""Check the robot and the machine before a run."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from crowdbot.errors import InputError
 
 
 def preflight(request: Request) -> dict[str, BuiltRun]:
-    """Build the run of each robot; what it, or this machine, cannot give is refused now.
+    """Build the run of each robot, and refuse what the robot or this machine does not support.
 
     Raises:
         InputError: a robot has no planner, or lacks a sensor that it needs; its control mode does
-            not fit its drive, or a sensor has the name of a frame that is not its own.
+            not fit its drive, or a sensor has the name of another frame.
         PluginError: environment, robot or a sensor cannot be built.
-        MissingLibraryError: colour images are wanted where they cannot be drawn.
+        MissingLibraryError: this machine cannot draw the requested colour images.
     """
     robots = tuple(request.scenario.robots)
     check_robots(request.choice, robots)

@@ -1,4 +1,4 @@
-"""Records one run of a robot into one file: among people, or alone."""
+"""Record one run of a robot to one file, with or without people."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ from crowdbot.errors import PlannerError, PlannerHungError
 
 
 def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = None) -> Outcome:
-    """Simulate the scenario's robot with the planner; people too if the scenario has any.
+    """Simulate the scenario's robot with the planner, and its people if any.
 
     Args:
-        setup: what to record, and where.
-        built: from `build_run`, of the same scenario; used up by this.
-        host: asks a planner that has been reset; None builds the one that ``setup`` chose.
+        setup: setup of the recording.
+        built: from `build_run`, of the same scenario; not reusable.
+        host: host of a planner that has been reset; None: the planner in ``setup``.
 
     Raises:
         InputError: the robot would start in a wall, an obstacle or a person.
-        PlannerHungError: a planner step never returned; the recording is closed all the same.
+        PlannerHungError: a planner step never returned; the recording is closed anyway.
     """
     engine = build_crowd(built.scenario, setup.agents, built.parts, setup.registry)
     check_start(built.parts, built.model, built.task.start, engine, built.name)
@@ -70,7 +70,7 @@ def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = No
 
 
 def header_of(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
-    """The constants of a robot's run."""
+    """Return the constants of a robot's run."""
     model, task = built.model, built.task
     return RecordingHeader(
         scenario=built.scenario.id,
@@ -96,7 +96,10 @@ def description_of(setup: RunSetup, built: BuiltRun) -> str:
 
 @contextmanager
 def watchdog_of(setup: RunSetup) -> Iterator[Watchdog | None]:
-    """Over a planner in this process; one in a process of its own is simply ended."""
+    """Yield a watchdog for a planner in this process.
+
+    One in a separate process is simply killed.
+    """
     if not setup.choice.in_process:
         yield None
         return
@@ -111,9 +114,9 @@ def watchdog_of(setup: RunSetup) -> Iterator[Watchdog | None]:
 
 @contextmanager
 def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Iterator[PlannerHost]:
-    """The planner, built and reset; one that fails in this fails again in its first step.
+    """Yield the host of a planner, built and reset; if that fails, its first step fails again.
 
-    A process of its own is ended afterwards; what it does too long, it does within that.
+    A separate process is ended afterwards.
     """
     choice, limits = setup.choice, built.model.limits
     sensors = {n: built.infos[n] for n in built.visible}
@@ -126,7 +129,7 @@ def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Itera
             budget=setup.options.step_budget, watchdog=watchdog, origin=choice.origin,
             copies=not isinstance(planner, ProcessPlanner),
         )  # fmt: skip
-        # Halved, so that planners may hand the seed to generators of signed integers.
+        # Halved, so that planners can use the seed in generators of signed integers.
         host.reset(built.task, sensors, stream_seed(setup.seed, built.name, "planner") >> 1)
     except PlannerError as error:
         host = _FailedHost(error, choice.name, limits)
@@ -138,7 +141,7 @@ def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Itera
 
 
 def _build(choice: PlannerChoice, watchdog: Watchdog | None) -> Planner:
-    """The planner itself; its constructor may load models, but not for ever."""
+    """Build the planner; its constructor may load models, within a time limit."""
     if watchdog is None:
         return choice.build()
     try:
@@ -150,13 +153,13 @@ def _build(choice: PlannerChoice, watchdog: Watchdog | None) -> Planner:
 
 
 class _FailedHost(PlannerHost):
-    """Stands for a planner that did not survive its reset: the run ends at its first step."""
+    """Host of a planner that failed in its reset: the run ends at its first step."""
 
     def __init__(self, error: PlannerError, name: str, limits: RobotLimits) -> None:
         super().__init__(cast(Planner, None), name, limits)
         self._error = error
 
     def step(self, obs: Observation) -> HostedCommand:
-        """Raise what the planner raised."""
+        """Raise the planner's error."""
         del obs
         raise self._error

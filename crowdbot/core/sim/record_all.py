@@ -1,4 +1,4 @@
-"""Records one run, of one robot or of several."""
+"""Record one run, with one robot or several."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.sim.run_setup import RunSetup
 
 
 def record_all(setup: RunSetup, builts: Mapping[str, BuiltRun]) -> Outcome:
-    """Simulate the scenario's robots: one as `record_robot` does, several as `record_fleet`."""
+    """Simulate the scenario's robots: one with `record_robot`, several with `record_fleet`."""
     if len(builts) == 1:
         return record_robot(setup, next(iter(builts.values())))
     return record_fleet(setup, builts)

@@ -1,6 +1,6 @@
 """Recorder: closes a chunk of the recording each simulated second.
 
-The blocks hand their rows to the writer themselves, at the tick to which they belong.
+The blocks pass their rows to the writer themselves, at the tick to which they belong.
 """
 
 from __future__ import annotations
@@ -29,5 +29,5 @@ class Recorder(LeafSystem):
 
 
 def add_recorder(builder: DiagramBuilder, writer: RecordingWriter) -> None:
-    """Add the recorder to a diagram; nothing is connected to it."""
+    """Add the recorder to a diagram; it needs no connections."""
     builder.AddNamedSystem("recorder", Recorder(writer))

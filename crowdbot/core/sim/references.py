@@ -1,4 +1,4 @@
-"""Makes the calibration runs that scores compare with, each once for all runs that need it."""
+"""Run the calibration runs for scores, once for all runs that need them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LOG = logging.getLogger("crowdbot")
 
 
 def make_references(request: Request, references: Sequence[Reference]) -> dict[str, Path]:
-    """Recordings of the calibration runs by name, simulated where they are missing."""
+    """Return recordings of the calibration runs by name, simulated if missing."""
     for reference in references:
         present = reference.finished if request.references_finished else reference.complete
         if not present:
@@ -37,7 +37,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
 
     Raises:
         PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
-        Interrupted: ``request.stop`` said so; a ``.partial`` directory is left.
+        Interrupted: ``request.stop`` returned True; a ``.partial`` directory is left.
     """
     with gc_frozen(), partial(reference.directory) as folder:
         setup = setup_of(request, reference, folder)
@@ -60,7 +60,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
 
 
 def _record_alone(setup: RunSetup) -> Outcome:
-    """A run of its own: what sensors and planner remember is not that of the run with people."""
+    """Run separately, without the memory of sensors and planner from the run with people."""
     from crowdbot.core.sim.record_all import record_all  # imports Drake
 
     builts = build_runs(setup.scenario, setup.registry, setup.choice, setup.options.record)
@@ -68,7 +68,7 @@ def _record_alone(setup: RunSetup) -> Outcome:
 
 
 def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
-    """What recording a calibration run needs; only what scores read is recorded."""
+    """Return the setup of a calibration run; only data for scores is recorded."""
     return RunSetup(
         scenario=reference.trial.scenario,
         agents=reference.trial.people.agents,
@@ -87,7 +87,7 @@ def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
 
 @contextmanager
 def partial(final: Path) -> Iterator[Path]:
-    """A directory aside; a plugin that fails in it is told together with what is left."""
+    """Yield a temporary directory; errors of plugins mention it."""
     with files.partial(final) as folder:
         try:
             yield folder
@@ -98,10 +98,10 @@ def partial(final: Path) -> Iterator[Path]:
 
 
 def check_interrupted(outcome: Outcome, folder: Path) -> None:
-    """Leave the directory as it is when the user stopped the run.
+    """Keep the directory if the user stopped the run.
 
     Raises:
-        Interrupted: he did.
+        Interrupted: the user stopped the run.
     """
     if outcome.status == INTERRUPTED:
         raise Interrupted(f"interrupted at {outcome.sim_time:.2f} s; what was recorded: {folder}")

@@ -1,7 +1,7 @@
 """Colour images, drawn by VTK through EGL: floor, walls, pillars, low-poly people, robots.
 
-The pictures live in a SceneGraph of their own, so that they cost the plant nothing. What VTK
-draws may differ from machine to machine: colour is outside of crowdbot's determinism.
+The images use a separate SceneGraph, so they do not slow the plant. VTK's images may differ between
+machines: colour is not deterministic.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ _PROBE = "from crowdbot.core.sim.rendering import probe; probe()"
 
 
 class Renderer:
-    """Draws what one camera sees."""
+    """Draws one camera's view."""
 
     def __init__(
         self,
@@ -79,14 +79,14 @@ class Renderer:
         tilt: tuple[float, float] = (0.0, 0.0),
         robots: Sequence[RobotModel] = (),
     ) -> None:
-        """Set the stage.
+        """Build the scene for VTK.
 
         Args:
-            scene: walls, pillars and sizes of people; these stay as they are.
-            camera: whose pictures are wanted.
+            scene: walls, pillars and sizes of people; these do not change.
+            camera: the camera.
             mount: x, y, z, yaw from base_link, m and rad.
             tilt: roll and pitch of the mount, rad.
-            robots: what the other robots of the scene look like.
+            robots: appearance of the other robots in the scene.
 
         Raises:
             MissingLibraryError: this machine cannot draw.
@@ -105,7 +105,7 @@ class Renderer:
         self._camera = _render_camera(camera)
 
     def __call__(self, scene: Scene, pose: Pose) -> NDArray[np.uint8]:
-        """The picture (H, W, 3), first row on top."""
+        """Return the image (H, W, 3), first row on top."""
         poses = FramePoseVector()
         for frame, place in zip(self._people, _places(scene), strict=True):
             poses.set_value(frame, place)
@@ -139,7 +139,7 @@ class Renderer:
             self._add(Cylinder(radius, high - low), pose, _PILLAR, f"pillar{k}")
 
     def _fleet(self, scene: Scene, models: Sequence[RobotModel]) -> list[FrameId]:
-        """Frames of the other robots: what is seen of each, else a body over its outline."""
+        """Return frames of the other robots: their visible shapes, else their outline's body."""
         frames = []
         for k, robot in enumerate(scene.others.robots):
             frame = self._graph.RegisterFrame(self._source, GeometryFrame(f"robot{k}"))
@@ -154,7 +154,7 @@ class Renderer:
         return frames
 
     def _upright(self, robot: OtherRobot, name: str, frame: FrameId) -> None:
-        """A robot of which nothing but its outline and height is known."""
+        """Add a robot of which only outline and height are known."""
         outline, lift = robot.footprint.outline(0.0, 0.0, 0.0), 0.0
         shape: Shape
         if len(outline):
@@ -165,9 +165,9 @@ class Renderer:
         self._add(shape, RigidTransform([0.0, 0.0, lift]), _ROBOT, name, frame)
 
     def _crowd(self, scene: Scene) -> list[FrameId]:
-        """Frames of legs and trunk for everybody, then of what they have with them.
+        """Return frames of everyone's legs and trunk, then of their objects.
 
-        Those of one size share meshes.
+        Equal sizes share meshes.
         """
         frames, meshes = [], dict[tuple[float, float, float], tuple[Mesh, ...]]()
         sizes = zip(
@@ -214,7 +214,7 @@ def _turned(roll: float, pitch: float, yaw: float) -> RotationMatrix:
 
 
 def _rgb(colour: str) -> tuple[float, float, float]:
-    """Of ``#rrggbb``, each from 0 to 1."""
+    """Return ``#rrggbb`` as numbers from 0 to 1."""
     red, green, blue = (int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
     return red, green, blue
 
@@ -234,7 +234,7 @@ def _parameters() -> RenderEngineVtkParams:
     lamp = LightParameter(
         type="directional", frame="camera", direction=[0.0, 0.3, 1.0], intensity=0.5
     )
-    # Walls that neither reaches would be black.
+    # Walls that neither light reaches would be black.
     sky = LightParameter(
         type="directional", frame="world", direction=[-0.5, -0.7, -0.3], intensity=0.35
     )
@@ -243,14 +243,14 @@ def _parameters() -> RenderEngineVtkParams:
 
 def _render_camera(camera: Pinhole) -> ColorRenderCamera:
     focal, (cx, cy) = camera.focal, camera.centre
-    # Drake counts from the corner of the first pixel, ROS from its centre.
+    # Drake measures from the corner of the first pixel, ROS from its centre.
     about = CameraInfo(camera.width, camera.height, focal, focal, cx + 0.5, cy + 0.5)
     core = RenderCameraCore(_NAME, about, ClippingRange(0.01, 200.0), RigidTransform())
     return ColorRenderCamera(core, False)
 
 
 def _places(scene: Scene) -> list[RigidTransform]:
-    """Where legs and trunks are, person by person; those of the absent lie under the floor."""
+    """Return poses of legs and trunks, person by person; absent ones are under the floor."""
     turns = [RotationMatrix.MakeZRotation(yaw) for yaw in scene.headings.tolist()]
     centres = scene.cylinders[: PARTS * len(turns), :2].reshape(-1, PARTS, 2).tolist()
     bodies = [
@@ -267,10 +267,10 @@ def _places(scene: Scene) -> list[RigidTransform]:
 # ------------------------------------------------------------------------------- EGL
 @cache
 def check_egl() -> None:
-    """Try in another process whether pictures can be drawn: a failed try kills its process.
+    """Check in another process if images can be drawn, since a failure kills the process.
 
     Raises:
-        MissingLibraryError: they cannot; the message names what to install.
+        MissingLibraryError: they cannot; the message names packages to install.
     """
     done = subprocess.run(
         [sys.executable, "-c", _PROBE], capture_output=True, text=True, timeout=60, check=False
@@ -284,7 +284,7 @@ def check_egl() -> None:
 
 
 def probe() -> None:
-    """Draw one small picture; may crash where libraries are missing."""
+    """Draw one small image; may crash if libraries are missing."""
     graph = SceneGraph()
     graph.AddRenderer(_NAME, MakeRenderEngineVtk(_parameters()))
     query = graph.get_query_output_port().Eval(graph.CreateDefaultContext())

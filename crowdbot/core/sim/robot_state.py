@@ -1,4 +1,4 @@
-"""RobotStateSystem: the plant's state as the one vector that everything downstream reads."""
+"""RobotStateSystem: the plant's state as the vector read by everything downstream."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ class RobotStateSystem(LeafSystem):
         )
 
     def _kept(self) -> set[DependencyTicket]:
-        """What else the output depends on."""
+        """Return further dependencies of the output."""
         return set()
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         _convert(self._port.Eval(context), *self._where, output.get_mutable_value())
 
     def convert(self, state: Array) -> RobotState:
-        """Plant state (quaternion w, x, y, z; position; …) as a `RobotState`."""
+        """Convert a plant state (quaternion w, x, y, z; position; …) to a `RobotState`."""
         found = np.zeros(ports.ROBOT_STATE_SIZE)
         _convert(state, *self._where, found)
         return RobotState(*found.tolist())
@@ -64,10 +64,10 @@ class RobotStateSystem(LeafSystem):
 def _convert(
     state: Array, quaternion: int, angular: int, left: int, right: int, rise: float, out: Array
 ) -> None:
-    """Write the fields of a `RobotState` in their order; wheels at -1 are not there."""
+    """Write the fields of a `RobotState` in order; wheels at -1 do not exist."""
     q, v = quaternion, angular
     w, x, y, z = state[q], state[q + 1], state[q + 2], state[q + 3]
-    up = 1.0 - 2.0 * (x * x + y * y)  # cosine of the angle between body and world z
+    up = 1.0 - 2.0 * (x * x + y * y)  # cosine of the tilt
     out[0], out[1] = state[q + 4], state[q + 5]
     out[2] = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
     out[3], out[4], out[5] = state[v + 3], state[v + 4], state[v + 2]
@@ -78,9 +78,9 @@ def _convert(
 
 
 class MeasuredRobotState(RobotStateSystem):
-    """The same for a base without driven wheels: three measuring wheels roll along with it.
+    """The same for a base without driven wheels, with three virtual measuring wheels.
 
-    State: pose at the last tick, and the three angles then.
+    State: pose and the three angles at the last tick.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -97,7 +97,7 @@ class MeasuredRobotState(RobotStateSystem):
         return {self.discrete_state_ticket(self._memory)}
 
     def place(self, context: object, start: Pose) -> None:
-        """Let the wheels begin to count at a pose."""
+        """Start counting the wheels at a pose."""
         mine = self.GetMyMutableContextFromRoot(context)
         mine.SetDiscreteState(self._memory, [*start, 0.0, 0.0, 0.0])
 
@@ -124,7 +124,7 @@ class MeasuredRobotState(RobotStateSystem):
 
 
 def add_robot_state(builder: DiagramBuilder, rig: RobotPlant) -> RobotStateSystem:
-    """Add the adaptor to a diagram and connect it to the plant."""
+    """Add the system to a diagram and connect it to the plant."""
     state = RobotStateSystem(rig) if rig.wheels else MeasuredRobotState(rig)
     builder.AddNamedSystem("robot_state", state)
     builder.Connect(rig.plant.get_state_output_port(rig.model), state.GetInputPort("plant_state"))

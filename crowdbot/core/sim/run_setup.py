@@ -1,4 +1,4 @@
-"""Records people alone, without Drake; and what both kinds of recordings share."""
+"""Record people alone, without Drake; and shared parts of all recordings."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSetup:
-    """What one recording needs; ``hashes`` say whose it is, and stand in its header."""
+    """The setup of one recording; ``hashes`` identify its run in its header."""
 
     scenario: Scenario
     agents: Realisation
@@ -54,7 +54,7 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
     """Simulate the scenario's people without a robot.
 
     Raises:
-        InputError: nobody walks there.
+        InputError: there are no people.
     """
     scenario, registry = setup.scenario, setup.registry
     parts = build_environment(registry, scenario.environment)
@@ -95,7 +95,7 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
 def recording(
     setup: RunSetup, header: RecordingHeader, engine: CrowdEngine | None, description: str = ""
 ) -> Iterator[tuple[RecordingWriter, list[Outcome]]]:
-    """A writer that is closed whatever happens; the body appends how the run ended."""
+    """Yield a writer that is always closed; the context appends the outcome."""
     writer = RecordingWriter(
         setup.recording,
         header,
@@ -114,12 +114,12 @@ def recording(
 
 
 def ids(engine: CrowdEngine | None) -> NDArray[np.int64]:
-    """(N,) numbers of the people; none without an engine."""
+    """Return (N,) ids of the people; empty without an engine."""
     return np.zeros(0, np.int64) if engine is None else engine.agents.id
 
 
 def agents(engine: CrowdEngine | None) -> AgentsHeader | None:
-    """What a recording says about the people; None without an engine."""
+    """Return a recording's data about people; None without an engine."""
     if engine is None:
         return None
     a = engine.agents
@@ -127,7 +127,7 @@ def agents(engine: CrowdEngine | None) -> AgentsHeader | None:
 
 
 def choosers(engine: CrowdEngine | None) -> list[Choosers]:
-    """Those whose policy says among which velocities they choose; none without an engine."""
+    """Return people with known candidate velocities; empty without an engine."""
     if engine is None:
         return []
     a, found = engine.agents, list[Choosers]()
@@ -148,5 +148,5 @@ def choosers(engine: CrowdEngine | None) -> list[Choosers]:
 
 
 def aim_of(engine: CrowdEngine | None) -> int:
-    """Column of the crowd's state where the point begins to which people walk."""
+    """Return the first column of people's waypoints in the crowd's state."""
     return crowd_state.GOAL_X if engine is None else engine.aim

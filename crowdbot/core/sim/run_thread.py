@@ -1,4 +1,4 @@
-"""The thread of a run that is stepped from outside, and what passes between it and its session."""
+"""The thread of a run that is stepped from outside, and its exchange with the session."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from crowdbot.core.types.task import Task
 
 
 class Exchange:
-    """Hands observations out of the run's thread and commands into it."""
+    """Passes observations out of the run's thread and commands into it."""
 
     def __init__(self) -> None:
         self._out: queue.SimpleQueue[Observation | Outcome | BaseException] = queue.SimpleQueue()
@@ -32,10 +32,10 @@ class Exchange:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Nothing: whoever holds the session knows all that already."""
+        """Do nothing: the session's owner has this data already."""
 
     def step(self, obs: Observation) -> Command:
-        """The planner's side: show what is seen, wait for the answer."""
+        """Planner's side: pass the observation and wait for the command."""
         if self.closed:
             return STOP
         self._out.put(obs)
@@ -43,24 +43,24 @@ class Exchange:
         return STOP if answer is None else answer
 
     def put(self, end: Outcome | BaseException) -> None:
-        """The run's side: it is over."""
+        """Run's side: report the end."""
         self._out.put(end)
 
     def next(self) -> Observation | Outcome | BaseException:
-        """The session's side: what comes next."""
+        """Session's side: return the next observation or the end."""
         return self._out.get()
 
     def answer(self, command: Command) -> None:
-        """The session's side: go on."""
+        """Session's side: send the command."""
         self._in.put(command)
 
     def close(self) -> None:
-        """The session's side: end the run at its next look."""
+        """Session's side: end the run at its next check."""
         self.closed = True
         self._in.put(None)
 
 
-#: Runs that go on, with their threads: at its exit Python must not cut one off inside Drake.
+#: Active runs with their threads: Python must not kill one inside Drake at exit.
 _GOING_ON: dict[Exchange, threading.Thread] = {}
 
 
@@ -74,11 +74,11 @@ def _end_all() -> None:
 def start_run(
     exchange: Exchange, setup: RunSetup, built: BuiltRun, host: PlannerHost
 ) -> threading.Thread:
-    """Simulate in a thread of its own, whose end the exchange tells.
+    """Simulate in a separate thread, whose end the exchange reports.
 
     Args:
         exchange: the planner behind ``host``.
-        setup, built, host: as `record_robot` takes them.
+        setup, built, host: arguments of `record_robot`.
     """
     thread = threading.Thread(
         target=_simulate, args=(exchange, setup, built, host), name="session", daemon=True
@@ -89,10 +89,10 @@ def start_run(
 
 
 def _simulate(exchange: Exchange, setup: RunSetup, built: BuiltRun, host: PlannerHost) -> None:
-    """The run's thread."""
+    """Run the thread."""
     try:
         exchange.put(record_robot(setup, built, host))
-    except BaseException as error:  # raised again where the session is stepped
+    except BaseException as error:  # raised again in the session's step
         exchange.put(error)
     finally:
         _GOING_ON.pop(exchange, None)
@@ -100,7 +100,7 @@ def _simulate(exchange: Exchange, setup: RunSetup, built: BuiltRun, host: Planne
 
 @contextmanager
 def own_stdout() -> Iterator[None]:
-    """Undo that the run sends what a planner prints to stderr: the planner waits in its step."""
+    """Restore stdout, which the run redirects while the planner waits in its step."""
     mine = sys.stdout
     try:
         yield

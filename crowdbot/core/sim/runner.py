@@ -1,4 +1,4 @@
-"""Runner: advances a diagram until arrival, toppling, time limit, planner failure, interruption."""
+"""Runner: advances a diagram to arrival, toppling, time limit, planner failure, interruption."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from crowdbot.core.types.robot import RobotState
 from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerError
 
-#: Simulated time between looks at progress and interruption, s.
+#: Simulated time between checks of progress and interruption, s.
 LOOK = 0.125
 
 
@@ -37,10 +37,10 @@ def run(
     progress: Callable[[Progress], None] | None,
     stop: Callable[[], bool],
 ) -> Outcome:
-    """Simulate one run; everything is in the log afterwards, whatever happened.
+    """Simulate one run; afterwards everything is in the log, even after an error.
 
     Raises:
-        PlannerHungError: a planner step never returned; what came before is in the log.
+        PlannerHungError: a planner step never returned; earlier data is in the log.
     """
     simulator = Simulator(blocks.diagram)
     context = simulator.get_mutable_context()
@@ -79,7 +79,7 @@ def run(
 
 
 def has_ended(status: SimulatorStatus) -> bool:
-    """Whether a block has ended the run."""
+    """Return True if a block has ended the run."""
     return bool(status.reason() == SimulatorStatus.ReturnReason.kReachedTerminationCondition)
 
 

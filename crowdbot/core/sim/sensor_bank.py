@@ -1,6 +1,6 @@
-"""SensorBank: all sensors of one robot, each at its own rate, by integer tick arithmetic.
+"""SensorBank: all sensors of one robot, each at its own rate, in integer ticks.
 
-Its event is unrestricted like the crowd's, so that robot and crowd are seen at the same instant.
+Its event is unrestricted like the crowd's, so that robot and crowd are seen at the same time.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ from crowdbot.core.types.sensor import Reading, SensorInfo
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Where a sensor's stamp, values and memory lie in the bank's state vector.
+    """Offsets of a sensor's stamp, values and memory in the bank's state vector.
 
-    Of a camera, ``values`` is what it saw (`crowdbot.core.sim.images`).
+    For a camera, ``values`` is its view data (`crowdbot.core.sim.images`).
     """
 
     info: SensorInfo
@@ -51,14 +51,14 @@ class Slot:
     memory: slice
 
     def reading(self, state: Array) -> Reading:
-        """The latest reading, as a part of the state that is read-only."""
+        """Return the latest reading, as a read-only part of the state."""
         values = state[self.values].reshape(self.info.shape)
         values.setflags(write=False)
         return Reading(float(state[self.stamp]), values)
 
 
 class _Way(NamedTuple):
-    """How a reading is taken: where it goes, what takes it, whose random numbers it draws."""
+    """Data for taking a reading: its slot, its sensor, its random numbers."""
 
     slot: Slot
     read: Callable[..., Array]
@@ -68,7 +68,7 @@ class _Way(NamedTuple):
 def lay_out(
     infos: Mapping[str, SensorInfo], people: int, robots: int = 0
 ) -> tuple[dict[str, Slot], int]:
-    """Slots by sensor name and the length of the state vector; entry 0 is the tick."""
+    """Return slots by sensor name and the length of the state vector; entry 0 is the tick."""
     slots, end = {}, 1
     for name, info in infos.items():
         size = view_size(people, robots) if info.camera else int(np.prod(info.shape))
@@ -80,7 +80,7 @@ def lay_out(
 
 
 def ticks_between(rates: Iterable[float]) -> int:
-    """The largest power of two, up to 128, of which every sample of every rate is a multiple."""
+    """Return the largest power of two, up to 128, that divides every sample time of every rate."""
     periods = [TICKS_PER_SECOND / rate for rate in rates]
     if not all(p.is_integer() for p in periods):
         return 1
@@ -88,9 +88,9 @@ def ticks_between(rates: Iterable[float]) -> int:
 
 
 class Timetable:
-    """Which sensors are due at a tick; worked out once where their turns repeat."""
+    """Sensors due at each tick; cached if the schedule is periodic."""
 
-    _LONGEST = 1024  # ticks after which turns must repeat to be kept
+    _LONGEST = 1024  # largest period in ticks that is cached
 
     def __init__(self, rates: Mapping[str, float]) -> None:
         self._rates = dict(rates)
@@ -102,7 +102,7 @@ class Timetable:
                 self._turns = [self._at(tick) for tick in range(cycle)]
 
     def __call__(self, tick: int) -> tuple[str, ...]:
-        """Names of the sensors, in their order."""
+        """Return the names of the sensors, in order."""
         return self._turns[tick % len(self._turns)] if self._turns else self._at(tick)
 
     def _at(self, tick: int) -> tuple[str, ...]:
@@ -112,7 +112,7 @@ class Timetable:
 class SensorBank(LeafSystem):
     """Inputs: robot and crowd state. Output: latest readings of all sensors.
 
-    Entry 0 of the output is the next tick at which a sensor may be due.
+    Entry 0 of the output is the next tick with a due sensor.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -129,7 +129,7 @@ class SensorBank(LeafSystem):
         writer: RecordingWriter,
         renderers: Mapping[str, ColourRenderer] = MappingProxyType({}),
     ) -> None:
-        """Take the sensors.
+        """Build the bank.
 
         Args:
             crowd: the people, if there are any.
@@ -181,18 +181,18 @@ class SensorBank(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._step * TICK, 0.0, self._update)
 
     def take_part(self, fates: Sequence[Fate]) -> None:
-        """Take the fates of a fleet: of the robot itself, then of the others."""
+        """Set the endings of a fleet: of the robot itself, then of the others."""
         self._fates = tuple(fates)
 
     def reading(self, name: str, bank: Array) -> Reading:
-        """The latest reading in a state of the bank, read-only."""
+        """Return the latest reading in a state of the bank, read-only."""
         slot = self.slots[name]
         if name not in self._images:
             return slot.reading(bank)
         return self._images[name].reading(self._scene, float(bank[slot.stamp]), bank[slot.values])
 
     def _rng(self, name: str, t: float) -> np.random.Generator:
-        """Random numbers of one reading; who draws none gets a generator all the same."""
+        """Return the random generator of one reading, even if it is not used."""
         stream = self._ways[name].stream
         return self._idle if stream is None else stream.at(round(t * TICKS_PER_SECOND))
 
@@ -227,7 +227,7 @@ class SensorBank(LeafSystem):
             self._writer.frame(name, image)
 
     def _see(self, context: Context, robot: RobotState) -> Array | None:
-        """Show the scene as it is now; returns the crowd's rows, if any."""
+        """Update the scene; return the crowd's rows, if any."""
         push = (0.0, 0.0, 0.0)
         if self._pushed is not None:
             self._show_others(context)
@@ -249,7 +249,7 @@ class SensorBank(LeafSystem):
         return rows
 
     def _show_others(self, context: Context) -> None:
-        """Show where the other robots of the fleet are."""
+        """Update the poses of the fleet's other robots."""
         states = (port.Eval(context)[:3].tolist() for port in self._others)
         fates = self._fates[1:]
         self._poses = [None if f.gone else Pose(*p) for f, p in zip(fates, states, strict=True)]
@@ -277,10 +277,10 @@ def add_sensors(
     seed: int,
     company: Company | None = None,
 ) -> SensorBank:
-    """Add the sensors of a run to a diagram; they see the robot and the people of the same tick.
+    """Add the sensors of a run to a diagram; they see robot and people of the same tick.
 
     Args:
-        company: the rest of a fleet, which sensors see and feel.
+        company: the rest of a fleet, which sensors sense.
     """
     others = () if company is None else company.others
     scene = _scene(built, None if crowd is None else crowd.engine, others)
@@ -321,7 +321,7 @@ def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[Compani
 def _renderers(
     infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[Companion]
 ) -> dict[str, ColourRenderer]:
-    """What draws the pictures of cameras with colour; VTK is loaded for these only."""
+    """Return renderers of cameras with colour, for which VTK is loaded."""
     cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
     if not cameras:
         return {}

@@ -1,8 +1,8 @@
 """Session: a run that is stepped from outside, command by command.
 
-The simulation is the very one of `simulate`, with a planner that asks whoever holds the session.
-Sensors and planner act in one and the same event, so the run has a thread of its own, which rests
-in the planner's step while the session waits for a command: only one of the two ever runs.
+The simulation is that of `simulate`, with a planner that gets its commands from the session's
+owner. Sensors and planner act in the same event, so the run has its own thread, which waits in the
+planner's step while the session waits for a command: only one of the two ever runs.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.errors import InputError, kind_of
 
-#: What a session takes as a command: v, w, and vy for a robot that can move sideways; m/s, rad/s.
+#: Types of a session's command: v, w, and vy for a robot that can move sideways; m/s, rad/s.
 CommandLike = Command | tuple[float, ...] | Sequence[float]
 
 
@@ -50,12 +50,12 @@ class Session:
                 obs = session.step((0.4, 0.0))
         print(session.status, session.t)
 
-    The same commands give the same trajectories, bit by bit, as a planner that returns them.
-    Nothing is written unless ``recording`` names a file.
+    The same commands give exactly the same trajectories as a planner that returns them. Nothing is
+    written unless ``recording`` names a file.
 
     Args:
         scenario: with exactly one robot, from `crowdbot.load`.
-        seed: of the run: noise of the sensors.
+        seed: seed of the sensors' noise.
         sensors: names or categories of the sensors to read, as in a planner's ``needs``; None: all
             that a robot may have. Only these are simulated.
         privileged: whether observations hold the truth (``obs.truth``).
@@ -104,10 +104,10 @@ class Session:
         self._describe(self._built)
 
     def reset(self, seed: int | None = None) -> Observation:
-        """Begin the run; a run that has begun already begins again.
+        """Start the run, again if it has started already.
 
         Args:
-            seed: a new seed from now on; None keeps the present one.
+            seed: a new seed from now on; None keeps the current one.
 
         Returns:
             The observation at t = 0.
@@ -118,7 +118,7 @@ class Session:
         """
         self.close()
         self._seed = self._seed if seed is None else whole_number_of("seed", seed)
-        built, self._built = self._built or self._build(), None  # sensors remember: for one run
+        built, self._built = self._built or self._build(), None  # for one run only
         self._describe(built)
         self._outcome = self._observation = None
         exchange = self._exchange = Exchange()
@@ -140,14 +140,14 @@ class Session:
         return self._take()
 
     def step(self, command: CommandLike) -> Observation:
-        """Give a command, which is applied for one period of the planner.
+        """Apply a command for one period of the planner.
 
         Args:
             command: v, w, and vy for a robot that can move sideways; m/s, rad/s.
 
         Returns:
-            What is seen when the next command is due. When the run has ended, ``done`` is true
-            and it is what was seen last.
+            The observation for the next command. At the end of the run, ``done`` is true and it is
+            the last observation.
 
         Raises:
             InputError: it is not a command, `reset` was not called, or the run has ended.
@@ -160,7 +160,7 @@ class Session:
         return self._take()
 
     def observe(self) -> Observation:
-        """The current observation; it stays the same until the next step.
+        """Return the current observation, which is constant until the next step.
 
         Raises:
             InputError: `reset` was not called.
@@ -183,34 +183,34 @@ class Session:
 
     @property
     def done(self) -> bool:
-        """Whether the run has ended."""
+        """Return True if the run has ended."""
         return self._outcome is not None
 
     @property
     def status(self) -> str:
-        """``running``, and in the end ``arrived``, ``timeout``, ``toppled`` or ``interrupted``."""
+        """Return ``running``, finally ``arrived``, ``timeout``, ``toppled`` or ``interrupted``."""
         return "running" if self._outcome is None else self._outcome.status
 
     @property
     def reason(self) -> str:
-        """Why the run ended; empty while it goes on."""
+        """Return why the run ended; empty while it is running."""
         return "" if self._outcome is None else self._outcome.reason
 
     @property
     def t(self) -> float:
-        """Simulated time, s."""
+        """Return the simulated time, s."""
         if self._outcome is not None:
             return self._outcome.sim_time
         return 0.0 if self._observation is None else self._observation.t
 
     @property
     def goal_time(self) -> float | None:
-        """When the robot arrived, s; None if it has not."""
+        """Return the robot's time of arrival, s; None before."""
         return None if self._outcome is None else self._outcome.goal_time
 
     @property
     def trajectories(self) -> Trajectories:
-        """The run itself, for `crowdbot.score`.
+        """Return the run's trajectories, for `crowdbot.score`.
 
         Raises:
             InputError: the run was not recorded, or has not ended.
@@ -246,7 +246,7 @@ class Session:
         self.planner_seed = stream_seed(self._seed, built.name, "planner") >> 1
 
     def _take(self) -> Observation:
-        """What the run says next; errors of the run are raised here."""
+        """Return the run's next observation or end; raise its errors."""
         assert self._exchange is not None
         with own_stdout():
             answer = self._exchange.next()
@@ -277,10 +277,10 @@ def _checked_recording(recording: str | Path) -> Path:
 
 
 def _checked_command(command: CommandLike) -> Command:
-    """The command as finite floats.
+    """Return the command as finite floats.
 
     Raises:
-        InputError: it is something else.
+        InputError: it is not a command.
     """
     try:
         numbers: tuple[Any, ...] = tuple(command)
@@ -294,7 +294,7 @@ def _checked_command(command: CommandLike) -> Command:
 
 def _choice(sensors: Sequence[str] | None, *, privileged: bool) -> PlannerChoice:
     def build() -> Planner:
-        raise InputError("the planner of a session is whoever steps it")
+        raise InputError("a session has no planner: its commands come from `step`")
 
     return PlannerChoice(
         name="session",

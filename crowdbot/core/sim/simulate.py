@@ -1,4 +1,4 @@
-"""simulate: one scenario, one planner, one seed: references, recording, scores, replay."""
+"""simulate: run one scenario with one planner and seed: references, recording, scores, replay."""
 
 from __future__ import annotations
 
@@ -75,8 +75,8 @@ def simulate(
     Args:
         scenario: from an expanded suite.
         registry: the installed components.
-        planner, planner_settings: as `choose_planner` takes them; the runs of an object or
-            function are never reused.
+        planner, planner_settings: arguments of `choose_planner`; runs of an object or function are
+            never reused.
         seed: run seed: sensor noise and planner.
         out: root of the run directories; None uses a temporary one that lives as long as the
             result.
@@ -84,12 +84,12 @@ def simulate(
         progress, stop, on_hang, watchers: as in `Request`.
 
     Raises:
-        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or
-            the lock of the suite does not fit it any more.
-        UnknownNameError: no metric answers to a pattern.
+        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or the
+            suite's lock is out of date.
+        UnknownNameError: no metric matches a pattern.
         PlannerHungError: a step of a planner in this process never returned; a ``.partial``
             directory is left.
-        Interrupted: ``stop`` said so; a ``.partial`` directory is left.
+        Interrupted: ``stop`` returned True; a ``.partial`` directory is left.
     """
     seed = whole_number_of("seed", seed)
     _check_suite(suite)
@@ -122,10 +122,10 @@ def simulate(
 
 
 def _check_callbacks(progress: object, stop: object) -> None:
-    """Refuse what cannot be called.
+    """Refuse callbacks that are not callable.
 
     Raises:
-        InputError: one cannot.
+        InputError: one is not callable.
     """
     if progress is not None:
         expect_function("progress", progress)
@@ -149,14 +149,13 @@ def make_run(
     keep: object = None,
     builts: Mapping[str, BuiltRun] | None = None,
 ) -> Run:
-    """Simulate and score one run whose scenario is prepared; see `simulate`.
+    """Simulate and score one run of a prepared scenario; see `simulate`.
 
     Args:
-        request: what is wanted.
+        request: the request.
         prepared: its scenario.
-        keep: lives as long as the result.
-        builts: what `preflight` made of the request, where the caller had to look at it; no other
-            run may use it.
+        keep: object kept alive with the result.
+        builts: result of `preflight` for the request, if the caller has it; not reusable.
     """
     builts = preflight(request) if builts is None else builts
     identity = run_identity(request, prepared.run)
@@ -207,7 +206,7 @@ def _record_run(
 def _images(
     request: Request, builts: Mapping[str, BuiltRun], recording: Path
 ) -> ImageCollector | None:
-    """For the images that the page shows; None where it shows none."""
+    """Return a collector of images for the page; None if it shows none."""
     infos = [info for built in builts.values() for info in built.infos.values()]
     options = request.options
     shows = options.replay and options.record != "none" and any(info.camera for info in infos)

@@ -1,4 +1,4 @@
-"""Refuses a start at which the robot stands in a wall, an obstacle or a person."""
+"""Refuse a start at which the robot overlaps a wall, an obstacle or a person."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.errors import InputError
 
-#: Less than this is rounding of the document's numbers, m.
+#: Tolerance for rounding of the document's numbers, m.
 _TOLERANCE = 1e-6
 
 
 def check_start(
     parts: EnvironmentParts, robot: RobotModel, start: Pose, engine: CrowdEngine | None, name: str
 ) -> None:
-    """Look at the robot's whole outline; who touches only may start.
+    """Check the robot's whole outline; touching is allowed.
 
     Args:
-        engine: people, of whom those count who are there at the start.
-        name: the robot's, for the message.
+        engine: engine with the people; those present at the start are checked.
+        name: the robot's name, for the message.
 
     Raises:
         InputError: the robot overlaps something, or is inside a solid.

@@ -1,8 +1,8 @@
-"""WallContacts: the book of the robot's contacts with walls and pillars.
+"""WallContacts: the robot's contacts with walls and pillars.
 
-A contact begins with the first force (a kinematic robot feels none: where it touches) and ends
-when the gap exceeds the release gap, as contacts with people do. Its impulse is the sum of the
-horizontal contact force over the ticks, its speed that of the robot one tick before it began.
+A contact starts with the first force (for a kinematic robot without forces, when it touches) and
+ends when the gap exceeds the release gap, as with people. Its impulse is the sum of the horizontal
+contact force over the ticks, its speed that of the robot one tick before it began.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel, RobotState
 
-#: Nearer than this the plant is asked for forces, m.
+#: Distance below which the plant's forces are read, m.
 _NEAR = 0.01
-#: A normal steeper than this belongs to the floor.
+#: A steeper normal belongs to the floor.
 _LEVEL = 0.5
-#: What a robot without forces counts as touching, m.
+#: Distance at which a robot without forces touches, m.
 _TOUCH = 1e-6
 _WALL = -1
 
@@ -44,7 +44,7 @@ class _Contact:
 
 
 class _Near(NamedTuple):
-    """A tick at which the robot was near a wall: when, its state, speed before and gap (m)."""
+    """A tick at which the robot was near a wall: time, its state, earlier speed and gap (m)."""
 
     t: float
     robot: RobotState
@@ -53,24 +53,24 @@ class _Near(NamedTuple):
 
 
 class WallContacts:
-    """Watches one robot; to be told its state at every tick at which it may be near."""
+    """Monitors one robot; needs its state at every tick at which it may be near a wall."""
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel, log: RunLog) -> None:
         self._walls, self._pillars = obstacles(parts, robot.height)
         self._body, self._log = footprint_of_model(robot), log
-        # A disc has the same gap whatever its heading; corners swing.
+        # A disc's gap does not depend on its heading; corners swing.
         self._swing = 2.0 * float(np.max(np.hypot(*self._body.corners.T), initial=0.0))
         self._contact: _Contact | None = None
         self._near: _Near | None = None
 
     def watch(self, t: float, robot: RobotState, speed: float) -> float:
-        """One tick; where something is ``near`` afterwards, `feel` has to be called, too.
+        """Process one tick; afterwards call `feel` if something is ``near``.
 
         Args:
-            speed: of the robot one tick ago, m/s.
+            speed: the robot's speed one tick ago, m/s.
 
         Returns:
-            how far the robot may go before this has to be called again, m; maybe negative.
+            distance that the robot may move before the next call, m; possibly negative.
         """
         at = (self._walls, self._pillars, self._body.corners, robot.x, robot.y, robot.yaw)
         gap = outline_gap(*at) - self._body.radius
@@ -81,14 +81,14 @@ class WallContacts:
 
     @property
     def near(self) -> bool:
-        """Whether the last tick waits for `feel`."""
+        """Return True if the last tick needs a call of `feel`."""
         return self._near is not None
 
     def feel(self, force: float | None) -> None:
-        """What walls do to the robot at the tick that was watched last.
+        """Set the walls' force on the robot at the last tick.
 
         Args:
-            force: their horizontal force on the robot, N; None where it feels none.
+            force: their horizontal force on the robot, N; None for a robot without forces.
         """
         near, self._near = self._near, None
         if near is None or not self._touches(near.gap, force):
@@ -108,7 +108,7 @@ class WallContacts:
         return gap <= _TOUCH if force is None else force > 0.0
 
     def finish(self) -> None:
-        """End the contact that is going on, if any."""
+        """End the active contact, if any."""
         if self._contact is not None:
             c, self._contact = self._contact, None
             self._log.writer.contact(
@@ -118,7 +118,7 @@ class WallContacts:
 
 
 def wall_force(results: ContactResults) -> float:
-    """Norm of the sum of all contact forces on the robot but the floor's, N."""
+    """Return the norm of the sum of all contact forces on the robot except the floor's, N."""
     total = np.zeros(2)
     for k in range(results.num_point_pair_contacts()):
         info = results.point_pair_contact_info(k)

@@ -1,4 +1,4 @@
-"""An atlas of scores: what moves each, whether it tells floors from planners, what repeats it."""
+"""An atlas of scores: what drives each metric, and which metrics are redundant."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.table import Name, Table
 from crowdbot.errors import UnknownNameError
 
-#: Scores whose ranks agree so well say the same.
+#: Scores with at least this rank correlation are redundant.
 SAME = 0.8
-#: Fewer runs have no correlation that means anything.
+#: Smallest number of runs for a meaningful correlation.
 _LEAST_RUNS = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AtlasEntry:
-    """One score.
+    """One score in the atlas.
 
     Attributes:
-        runs: how many have a value.
-        moves: axis -> share of the spread between a planner's runs that goes with it (omega
-            squared, mean over planners), the largest first.
-        duration: rank correlation with how long the run lasted; None without spread.
+        runs: number of runs with a value.
+        moves: axis -> share of the variance between a planner's runs that it explains (omega
+            squared, mean over planners), largest first.
+        duration: rank correlation with the run's duration; None without spread.
         separation: least and greatest probability, over all pairs, that a planner does better than
-            a floor: 0.5 tells nothing apart; None without floors or direction.
-        repeats: other scores whose ranks agree, with the correlation, the closest first.
+            a floor: 0.5 means no separation; None without floors or direction.
+        repeats: other scores with correlated ranks and the correlation, highest first.
     """
 
     metric: str
@@ -47,12 +47,11 @@ class AtlasEntry:
 
 
 def atlas(results: Results, floors: Sequence[str] = ()) -> tuple[AtlasEntry, ...]:
-    """One entry for each headline score; the four scores come first.
+    """Return one entry per headline score; the four main scores come first.
 
     Args:
         results: runs of one suite, of floors and of planners.
-        floors: labels of planners that any other one ought to beat; default: those whose role it
-            is.
+        floors: labels of planners that every other should beat; default: planners with that role.
 
     Raises:
         UnknownNameError: a floor is not among the planners.
@@ -83,7 +82,7 @@ def atlas(results: Results, floors: Sequence[str] = ()) -> tuple[AtlasEntry, ...
 
 
 def rank_correlation(a: Floats, b: Floats) -> float | None:
-    """Spearman's, over what both know (NaN: unknown); None for few or equal values."""
+    """Return Spearman's correlation over common known values; None for few or constant values."""
     known = np.isfinite(a) & np.isfinite(b)
     if known.sum() < _LEAST_RUNS:
         return None
@@ -94,14 +93,14 @@ def rank_correlation(a: Floats, b: Floats) -> float | None:
 
 
 def _ranks(values: Floats) -> Floats:
-    """Ranks from 0; equal values have their mean rank."""
+    """Return ranks from 0; equal values share their mean rank."""
     _, group, count = np.unique(values, return_inverse=True, return_counts=True)
     first = np.cumsum(count) - count
     return np.asarray((first + (count - 1) / 2.0)[group])
 
 
 def _values(table: Table, name: Name) -> Floats:
-    """Of all planners and keys, one after another; NaN where there is none."""
+    """Return the values of all planners and keys in a row; NaN for missing values."""
     columns = [table.column(name, planner) for planner in table.planners]
     return np.concatenate([np.where(c.known, c.low, np.nan) for c in columns] or [np.empty(0)])
 

@@ -1,4 +1,4 @@
-"""Audit of a suite: whether its runs tell floors from baselines, and what the ceiling leaves."""
+"""Audit of a suite: do its runs separate floors from baselines, and how far is the ceiling?"""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from crowdbot.core.statistics.table import Table
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError
 
-#: Format of the file.
+#: Format version of the file.
 FORMAT = 1
 AUDIT = "audit.json"
 _LEVEL = 0.95
@@ -27,12 +27,13 @@ class _Model(BaseModel):
 
 
 class AuditedPair(_Model):
-    """One planner that should be ahead of another.
+    """A planner that should beat another.
 
     Attributes:
         better, worse: labels, and their roles.
-        required: whether the suite fails if it is not: whoever sees, over floors that do not.
-            Baselines over floors that see, and the ceiling over baselines, are only told.
+        required: True if the suite fails otherwise: planners with sensors against blind floors.
+            Baselines against floors with sensors, and the ceiling against baselines, are only
+            reported.
         by, low, high: mean lead and its interval, in the score's unit.
     """
 
@@ -49,7 +50,7 @@ class AuditedPair(_Model):
 
     @property
     def text(self) -> str:
-        """For people."""
+        """Return the pair as a readable line."""
         why = f" ({self.reason})" if self.reason else ""
         value = "no value" if self.by is None else f"{self.by:+.3g}"
         ends = (
@@ -59,17 +60,17 @@ class AuditedPair(_Model):
 
 
 class Audit(_Model):
-    """What was found.
+    """The result of an audit.
 
     Attributes:
-        suite: its id.
-        tells_apart: whether whoever sees is ahead of every floor that does not, for certain.
-        reason: why not, where that is not for the pairs to say.
+        suite: the suite's id.
+        tells_apart: True if every planner with sensors is significantly ahead of every blind floor.
+        reason: why not, if the pairs do not show it.
         metric, variant: the score that decides.
         roles: planner -> floor, baseline or ceiling.
-        seeds: of the runs.
-        scenarios: those that were run -> hash of their specification.
-        versions: of the software.
+        seeds: seeds of the runs.
+        scenarios: scenarios that were run -> hash of their specification.
+        versions: versions of the software.
     """
 
     format: int = FORMAT
@@ -87,12 +88,12 @@ class Audit(_Model):
 
     @property
     def failing(self) -> tuple[AuditedPair, ...]:
-        """Required pairs that could not be told apart, or the wrong way round."""
+        """Return required pairs that were not separated, or in the wrong order."""
         return tuple(p for p in self.pairs if p.required and p.verdict != "ahead")
 
     @property
     def text(self) -> str:
-        """One sentence."""
+        """Return the result as one sentence."""
         if self.tells_apart:
             return f"{self.suite} tells floors from baselines in {_plain(self.metric)}"
         pairs = [pair.text for pair in self.failing]
@@ -101,18 +102,18 @@ class Audit(_Model):
         return f"{self.suite} cannot tell floors from baselines: {why}"
 
     def fits(self, runs: Sequence[RunRow]) -> bool:
-        """Whether runs are of the suite as it was audited."""
+        """Return True if the runs are of the suite as audited."""
         audited = [r for r in runs if r.scenario in self.scenarios]
         return bool(audited) and all(r.spec_hash == self.scenarios[r.scenario] for r in audited)
 
 
 def audit(results: Results, seeing: Collection[str] = ()) -> Audit:
-    """Judge a suite by the runs of floors, baselines and ceilings; others are left out.
+    """Judge a suite by the runs of floors, baselines and ceilings; other runs are ignored.
 
     Args:
         results: of one suite.
-        seeing: labels of the floors that read sensors. They have to be ahead of the blind ones, as
-            baselines have; a baseline that is not ahead of them says nothing of the suite.
+        seeing: labels of the floors that read sensors. Like baselines, they must beat the blind
+            floors; a baseline that does not beat them proves nothing about the suite.
 
     Raises:
         InputError: there is no such run.
@@ -174,11 +175,11 @@ def _reason(roles: Mapping[str, str], scored: bool, pairs: Sequence[AuditedPair]
 
 
 def suspicion(found: Audit | None, runs: Sequence[RunRow]) -> str:
-    """What a reader of runs must be told of their suite; empty if nothing is known.
+    """Return a warning about the suite for readers of runs; empty if nothing is known.
 
     Args:
-        found: the audit that is at hand.
-        runs: of the suite.
+        found: the available audit.
+        runs: runs of the suite.
     """
     if found is None:
         return ""
@@ -188,7 +189,7 @@ def suspicion(found: Audit | None, runs: Sequence[RunRow]) -> str:
 
 
 def write_audit(path: Path, found: Audit) -> None:
-    """Write an audit; equal input gives equal bytes.
+    """Write an audit file; equal input gives equal bytes.
 
     Raises:
         InputError: it cannot be written there.
@@ -197,7 +198,7 @@ def write_audit(path: Path, found: Audit) -> None:
 
 
 def read_audit(path: Path) -> Audit:
-    """An audit from its file.
+    """Read an audit from its file.
 
     Raises:
         InputError: it cannot be read, or holds something else.

@@ -1,4 +1,4 @@
-"""How much each axis of a suite moves a score, and how dense the crowds really were."""
+"""Effect of each axis of a suite on a score, and the realised crowd densities."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.table import Name, Table
 
-#: Stands for an axis: the density that a run really had, as a straight line.
+#: Name of an extra axis: the realised density, as a linear effect.
 REALISED_DENSITY = "realised density"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Level:
-    """The runs of one label of an axis; ``mean`` of those that have a value, or None."""
+    """The runs with one label of an axis; ``mean`` of those with a value, or None."""
 
     label: str
     runs: int
@@ -26,14 +26,14 @@ class Level:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisEffect:
-    """How much of a score's spread goes with one axis, for one planner.
+    """Share of a score's variance that one axis explains, for one planner.
 
     Attributes:
         levels: in the order of the suite; empty for `REALISED_DENSITY`.
-        eta_squared: between-label over total sum of squares, 0 to 1; None without spread.
-            Of `REALISED_DENSITY` the squared correlation.
-        omega_squared: the same without what chance alone would give (Hays 1963), not below 0.
-        reason: why there is none.
+        eta_squared: between-label over total sum of squares, 0 to 1; None without spread. For
+            `REALISED_DENSITY`, the squared correlation.
+        omega_squared: the same, corrected for chance (Hays 1963), not below 0.
+        reason: why there is no value.
     """
 
     planner: str
@@ -48,7 +48,7 @@ class AxisEffect:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DensityLevel:
-    """Realised density of the runs of one label of the axis ``density``, 1/m².
+    """Realised density of the runs with one label of the axis ``density``, 1/m².
 
     ``label`` is empty where the suite has no such axis.
     """
@@ -61,7 +61,7 @@ class DensityLevel:
 
 
 def axis_effects(table: Table, name: Name, planner: str) -> list[AxisEffect]:
-    """Effects of all axes on one score of one planner; values that do not exist are counted."""
+    """Return the effects of all axes on one score of one planner; missing values are counted."""
     column = table.column(name, planner)
     runs = [table.runs.get((planner, key)) for key in table.keys]
     there = [(i, run) for i, run in enumerate(runs) if run is not None]
@@ -116,7 +116,7 @@ def _effect(labels: Sequence[str], values: Floats) -> _Effect:
 def _shares(
     values: Floats, index: NDArray[np.intp], labels: int
 ) -> tuple[float | None, float | None, str]:
-    """Eta squared and omega squared of a one-way layout."""
+    """Return eta squared and omega squared of a one-way layout."""
     count = np.bincount(index, minlength=labels)
     used = int(np.count_nonzero(count))
     if used < 2:
@@ -138,7 +138,7 @@ def _shares(
 
 
 def _line(x: Floats, y: Floats) -> tuple[float | None, float | None, str]:
-    """Squared correlation, and the adjusted one."""
+    """Return the squared correlation, raw and adjusted."""
     known = np.isfinite(x) & np.isfinite(y)
     x, y, n = x[known], y[known], int(known.sum())
     if n < 2 or np.ptp(x) == 0 or np.ptp(y) <= 1e-12 * float(np.abs(y).max()):

@@ -1,12 +1,12 @@
-"""Intervals for runs that share crowd draws: the draw is what is repeated, not the run.
+"""Intervals for runs that share crowd draws: the sample unit is the draw, not the run.
 
-The 162 scenarios of the challenge walk 18 drawn crowds. Runs with the same crowd rise and fall
-together, so the sample has 18 independent parts and no more; see
-docs/decisions/0014-statistics.md for what was tried and how well it covers.
+The 162 scenarios of the challenge use 18 drawn crowds. Runs with the same crowd are correlated, so
+the sample has only 18 independent parts; docs/decisions/0014-statistics.md compares methods and
+their coverage.
 
-Where each condition of a suite was tried with several draws, conditions are strata: they are what
-the suite says, and only people are left to chance. An interval then tells what other people would
-change. Where they were not, conditions and people cannot be told apart, and both are chance.
+If each condition of a suite was run with several draws, conditions are strata: they are fixed by
+the suite, and only people are random. An interval then shows the variation between people.
+Otherwise conditions and people cannot be separated, and both count as random.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.dsl.scenario.seeds import stream_seed
 
 Floats = NDArray[np.float64]
-#: Statistic of many weighted samples at once: weights (B, n) -> values (B,).
+#: A statistic for many weighted samples at once: weights (B, n) -> values (B,).
 Statistic = Callable[[Floats], Floats]
 
-#: What no value can leave: least and greatest.
+#: Smallest and largest possible value.
 Bounds = tuple[float, float]
 UNBOUNDED: Bounds = (-math.inf, math.inf)
 
-#: Resamples of a bootstrap.
+#: Number of bootstrap resamples.
 RESAMPLES = 2000
 _ROUNDING = 1e-12
-_AT_ONCE = 2_000_000  # weights that are held in memory at a time
+_AT_ONCE = 2_000_000  # number of weights kept in memory at a time
 
 ONE_DRAW = "one crowd draw: its chance cannot be told from a difference"
 NO_RUNS = "no run has a value"
@@ -44,13 +44,13 @@ NO_SPREAD = "no variation between crowd draws: the interval has no width"
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """Which crowd draw each run belongs to.
+    """The crowd draw of each run.
 
     Attributes:
-        index: (n,) number of the draw, its place in ``names``.
-        names: of the draws, sorted.
-        stratum: (count,) number of the stratum of each draw: conditions that are tied together
-            by draws in which all of them were tried.
+        index: (n,) index of the draw in ``names``.
+        names: names of the draws, sorted.
+        stratum: (count,) index of each draw's stratum: conditions linked by draws in which all of
+            them were run.
     """
 
     index: NDArray[np.intp]
@@ -59,49 +59,49 @@ class Clusters:
 
     @staticmethod
     def of(names: Sequence[str], conditions: Sequence[str] | None = None) -> Clusters:
-        """From the name of each run's draw, and of its condition.
+        """Build clusters from the draw and the condition of each run.
 
-        Without conditions, or where a stratum has but one draw, all draws are one stratum.
+        Without conditions, or if a stratum has only one draw, all draws form one stratum.
         """
         different, index = np.unique(np.asarray(names, dtype=str), return_inverse=True)
         return Clusters(index, tuple(different.tolist()), _strata(index, conditions))
 
     @property
     def count(self) -> int:
-        """How many draws there are."""
+        """Return the number of draws."""
         return len(self.names)
 
     @cached_property
     def strata(self) -> int:
-        """How many strata there are."""
+        """Return the number of strata."""
         return len(np.unique(self.stratum))
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom: draws without one for each stratum."""
+        """Return the degrees of freedom: the number of draws minus the number of strata."""
         return self.count - self.strata
 
     @cached_property
     def alike(self) -> NDArray[np.float64]:
-        """(count,) draws in the stratum of each draw."""
+        """Return, for each draw, the number of draws in its stratum (count,)."""
         return np.bincount(self.stratum)[self.stratum].astype(np.float64)
 
     def part(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> Clusters:
-        """Of some of the runs, by mask or place; draws without any of them are gone."""
+        """Return the clusters of some runs, by mask or index; draws without runs are removed."""
         left, index = np.unique(self.index[chosen], return_inverse=True)
         kept = self.stratum[left]
-        if len(kept) and np.bincount(kept)[kept].min() < 2:  # one draw tells nothing of chance
+        if len(kept) and np.bincount(kept)[kept].min() < 2:  # one draw gives no variance
             kept = np.zeros_like(kept)
         return Clusters(index, tuple(self.names[i] for i in left), kept)
 
     def sums(self, values: Floats) -> Floats:
-        """Sum of each draw's values, (count,)."""
+        """Return the sum of each draw's values, (count,)."""
         found = np.bincount(self.index, weights=values, minlength=self.count)
         return found.astype(np.float64, copy=False)
 
 
 def _strata(index: NDArray[np.intp], conditions: Sequence[str] | None) -> NDArray[np.intp]:
-    """(draws,) number of each draw's stratum; zeros where one of them has a single draw."""
+    """Return each draw's stratum (draws,); zeros if a stratum has a single draw."""
     draws = int(index.max()) + 1 if len(index) else 0
     together = np.zeros(draws, np.intp)
     if conditions is None or not draws:
@@ -125,14 +125,14 @@ def mean(
     bounds: Bounds = UNBOUNDED,
     step: float = 0.0,
 ) -> Estimate:
-    """Mean of all runs; Student's t over the draws, within bounds.
+    """Return the mean of all runs, with Student's t over the draws, within bounds.
 
     Args:
         values: (n,).
-        clusters: of the same runs.
-        level: of the interval.
-        bounds: what no value can leave.
-        step: of counts, 1.
+        clusters: clusters of the same runs.
+        level: confidence level of the interval.
+        bounds: smallest and largest possible value.
+        step: 1 for counts.
     """
     return ratio(values, np.ones_like(values), clusters, level, bounds, step)
 
@@ -145,11 +145,11 @@ def ratio(
     bounds: Bounds = UNBOUNDED,
     step: float = 0.0,
 ) -> Estimate:
-    """Sum over sum, with the linearised variance between draws and t of ``count`` - 1.
+    """Return sum over sum, with the linearised variance between draws and t of ``count`` - 1.
 
-    With equal draws and ``below`` = 1 it is the t interval of the draws' means (Cochran,
-    Sampling Techniques, 3rd ed., 6.3 and 9A). In strata, what draws of one stratum have in common
-    is not chance (5A). The interval stays within ``bounds`` of the quotient, see `interval`.
+    With equal draws and ``below`` = 1 it is the t interval of the draws' means (Cochran, Sampling
+    Techniques, 3rd ed., 6.3 and 9A). Within strata, the common part of a stratum's draws is not
+    random (5A). The interval stays within ``bounds`` of the quotient, see `interval`.
     """
     if not len(above) or not below.sum():
         return Estimate(reason=NO_RUNS)
@@ -172,7 +172,7 @@ def _of_counts(one: float, below: Floats, step: float) -> float:
 
 
 def _at_a_bound(value: float, bounds: Bounds, width: float) -> tuple[float, float]:
-    """Ends of the interval where all runs are equal; no width where that is not at a bound."""
+    """Return the interval if all runs are equal; it has zero width unless at a bound."""
     least, most = bounds
     near = _ROUNDING * max(1.0, abs(value))
     if math.isfinite(width) and value <= least + near:
@@ -183,23 +183,23 @@ def _at_a_bound(value: float, bounds: Bounds, width: float) -> tuple[float, floa
 
 
 def interval(value: float, error: float, t: float, bounds: Bounds) -> tuple[float, float]:
-    """Ends of an interval that does not leave the bounds.
+    """Return the ends of an interval within the bounds.
 
-    The means m for which ``(value - m)**2 <= t**2 V(m)``, where the variance V is that of the
-    sample, and goes to 0 towards each bound in proportion to the distance from it, as that of
-    every proportion and count does. Between 0 and 1 it is Wilson's score interval (1927) with as
-    many independent runs as the variance between draws is worth (Korn & Graubard 1998, Survey
-    Methodology 24:193), above 0 the score interval of a Poisson rate with the dispersion of the
-    sample; far from the bounds it is Student's.
+    The means m for which ``(value - m)**2 <= t**2 V(m)``, where V is the sample's variance scaled
+    to go to 0 linearly towards each bound, as for proportions and counts. Between 0 and 1 it is
+    Wilson's score interval (1927) with the effective number of independent runs given by the
+    variance between draws (Korn & Graubard 1998, Survey Methodology 24:193), above 0 the score
+    interval of a Poisson rate with the dispersion of the sample; far from the bounds it is
+    Student's.
 
     Args:
         value: the mean.
         error: its standard error, above 0.
         t: quantile.
-        bounds: of the mean.
+        bounds: bounds of the mean.
     """
     below, above = value - bounds[0], bounds[1] - value
-    if below <= 0.0 or above <= 0.0:  # the bounds do not hold
+    if below <= 0.0 or above <= 0.0:  # the bounds do not apply
         return value - t * error, value + t * error
     one, other = error / below, error / above
     tilt, damping = t**2 * (one - other), 1.0 + t**2 * one * other
@@ -209,7 +209,7 @@ def interval(value: float, error: float, t: float, bounds: Bounds) -> tuple[floa
 
 
 def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | None:
-    """Standard error of `ratio`; None with fewer than two draws."""
+    """Return the standard error of `ratio`; None with fewer than two draws."""
     total = float(below.sum())
     if clusters.count < 2:
         return None
@@ -224,7 +224,7 @@ def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | Non
 
 
 def quantile_t(p: float, freedom: float) -> float:
-    """Quantile of Student's t."""
+    """Return a quantile of Student's t."""
     from scipy.special import stdtrit
 
     return float(stdtrit(freedom, p))
@@ -234,18 +234,18 @@ def quantile_t(p: float, freedom: float) -> float:
 def bootstrap(
     statistic: Statistic, clusters: Clusters, level: float = 0.95, *, studentised: bool = True
 ) -> Estimate:
-    """BCa interval of a statistic; whole draws are resampled, each stratum for itself.
+    """Return the BCa interval of a statistic, resampling whole draws within each stratum.
 
-    Bias and acceleration as in Efron (1987), the acceleration from leaving out one draw at a
-    time. ``studentised`` takes quantiles of t with the degrees of freedom of the draws, stretched
-    by the root of draws by degrees of freedom, in place of normal ones (Hesterberg 2015,
-    "expanded"): with few draws the plain interval is too narrow.
+    Bias and acceleration as in Efron (1987), the acceleration from a jackknife over draws.
+    ``studentised`` takes quantiles of t with the degrees of freedom of the draws, stretched by
+    sqrt(draws / degrees of freedom), instead of normal quantiles (Hesterberg 2015, "expanded"):
+    with few draws the plain interval is too narrow.
 
     Args:
-        statistic: of weighted samples; a weight is how often a run is in the sample.
-        clusters: of the n runs.
-        level: of the interval.
-        studentised: whether to correct for few draws.
+        statistic: a function of weighted samples; a weight is how often a run is in the sample.
+        clusters: clusters of the n runs.
+        level: confidence level of the interval.
+        studentised: True to correct for few draws.
     """
     value = float(statistic(np.ones((1, len(clusters.index))))[0])
     if clusters.count < 2:
@@ -270,9 +270,9 @@ def _resampled(statistic: Statistic, clusters: Clusters) -> Floats:
 
 @lru_cache(maxsize=64)
 def _times(names: tuple[str, ...], stratum: tuple[int, ...]) -> Floats:
-    """How often each draw is in each resample, (RESAMPLES, count).
+    """Return how often each draw is in each resample, (RESAMPLES, count).
 
-    The stream is named by the draws alone: neither the order of the runs nor other scores matter.
+    The random stream depends only on the draws' names, not on the order of runs or other scores.
     """
     key = hashlib.sha256("\0".join(names).encode()).hexdigest()
     rng = np.random.Generator(np.random.PCG64(stream_seed(0, key, "statistics.bootstrap")))
@@ -285,7 +285,7 @@ def _times(names: tuple[str, ...], stratum: tuple[int, ...]) -> Floats:
 
 
 def _without_one(clusters: Clusters) -> Floats:
-    """(count, count) weights of draws when one is left out: others of its stratum stand for it."""
+    """Return (count, count) weights with one draw left out. Others of its stratum replace it."""
     same = clusters.stratum[:, np.newaxis] == clusters.stratum
     if clusters.strata == 1:
         return 1.0 - np.eye(clusters.count)
@@ -312,7 +312,7 @@ def _bca_tail(
 
 
 def weighted(function: Callable[..., Any], *arrays: Floats) -> Statistic:
-    """A statistic that depends on nothing but weighted sums of some arrays."""
+    """Build a statistic that depends only on weighted sums of some arrays."""
     stacked = np.column_stack([*arrays, np.ones(len(arrays[0]))])
 
     def statistic(weights: Floats) -> Floats:

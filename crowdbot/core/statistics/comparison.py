@@ -1,4 +1,4 @@
-"""One planner against another in one score."""
+"""Comparison of two planners in one score."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Verdict = Literal["better", "worse", "not distinguishable", "not ranked"]
 NO_DIRECTION = "nothing says which values are better"
 NO_REFERENCE = "the value to be near to is not among the scores"
 _POWER = 0.8
-_ROUNDING = 1e-12  # values that are nearer to each other, relatively, are equal
+_ROUNDING = 1e-12  # values with a smaller relative difference are equal
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,24 +29,25 @@ class Comparison:
     """Planner ``a`` against planner ``b``; effects are positive where ``a`` is better.
 
     Attributes:
-        metric, variant, unit, better: which score.
-        pairs: scenarios and seeds that both have tried.
+        metric, variant, unit, better: the score.
+        pairs: scenarios and seeds that both have run.
         draws: independent crowd draws among them.
-        counts_a, counts_b: how the runs ended; ``missing`` ones are not among the pairs.
-        wins, losses, ties, undecided: pairs that ``a`` is better or worse in, is equal in, and
-            those that undefined scores or overlapping bounds leave open.
+        counts_a, counts_b: how the runs ended; ``missing`` runs are not among the pairs.
+        wins, losses, ties, undecided: pairs in which ``a`` is better, worse or equal, and pairs
+            left open by undefined scores or overlapping bounds.
         difference: mean of a - b over pairs where both have a value; distances to the reference
             where ``better`` is ``reference``. In ``unit``.
-        bounds: of the same mean over all pairs, if undefined and censored values are anywhere
-            within their bounds; None on a side where there is no bound.
+        bounds: of the same mean over all pairs, with undefined and censored values anywhere within
+            their bounds; None for an open side.
         standardised: ``difference`` in standard deviations of the pairs' differences.
         rank_biserial: share of the ranks for ``a`` minus share for ``b``, -1 to 1.
         improvement: probability that ``a`` is better in a pair; ties and undecided count half.
-        improvement_bounds: the same if all undecided pairs were lost, or won.
-        detectable: the smallest mean difference that would be found with probability 0.8 by this
-            many draws at this level; None where it cannot be told.
-        p: of the signed ranks of whole draws; ``p_holm`` corrected for all tests of the summary.
-        verdict: of ``a``: never more than ``p_holm`` bears out. ``reason`` says why no other.
+        improvement_bounds: the same with all undecided pairs lost, or won.
+        detectable: the smallest mean difference that this many draws detect with probability 0.8 at
+            this level; None if unknown.
+        p: p value of the signed ranks of whole draws; ``p_holm`` is corrected for all tests of the
+            summary.
+        verdict: verdict on ``a``, never stronger than ``p_holm`` supports; ``reason`` explains it.
     """
 
     metric: str
@@ -77,10 +78,10 @@ class Comparison:
 
 
 class Leaning(NamedTuple):
-    """Which way a comparison points, before it is known how surely.
+    """The direction of a comparison, before its significance is known.
 
-    ``ranks``: sign of their sum, 1 where ``a`` looks better. ``means``: the difference without
-    runs that failed: who fails before anything can happen must not gain by it.
+    ``ranks``: sign of their sum, 1 if ``a`` looks better. ``means``: the difference without failed
+    runs, so that failing early brings no advantage.
     """
 
     ranks: int = 0
@@ -90,7 +91,7 @@ class Leaning(NamedTuple):
 def compare(
     table: Table, name: Name, a: str, b: str, *, level: float = 0.95
 ) -> tuple[Comparison, Leaning]:
-    """Compare two planners; the verdict is given by `with_verdict`, when all p values are known."""
+    """Compare two planners; `with_verdict` adds the verdict once all p values are known."""
     label = table.label(name)
     sides = table.column(name, a), table.column(name, b)
     there = (sides[0].outcome != MISSING) & (sides[1].outcome != MISSING)
@@ -120,9 +121,9 @@ def compare(
 def with_verdict(
     found: Comparison, leaning: Leaning, p_holm: float | None, alpha: float
 ) -> Comparison:
-    """The comparison with its verdict.
+    """Return the comparison with its verdict.
 
-    A verdict takes ranks that chance does not explain and a mean that does not contradict them.
+    A verdict needs significant ranks and a mean that does not contradict them.
     """
     if found.verdict == "not ranked" or found.p is None:
         return found
@@ -142,7 +143,7 @@ def with_verdict(
 # ----------------------------------------------------------------------- one pair
 @dataclass(frozen=True, slots=True, eq=False)
 class _Side:
-    """One planner's values turned so that more is better; failed ones are below all others."""
+    """One planner's values with higher as better; failed runs rank below all others."""
 
     low: Floats
     high: Floats
@@ -187,9 +188,9 @@ class _Pair:
         return self.a.high - self.b.low
 
     def contrasts(self) -> tuple[Floats, NDArray[np.bool_]]:
-        """By how much ``a`` is better for certain, (n,), and which pairs are undecided.
+        """Return the certain advantage of ``a`` (n,), and a mask of undecided pairs.
 
-        Exchanging the planners changes nothing but the sign: what the test's level rests on.
+        Exchanging the planners only changes the sign, on which the test's level depends.
         """
         certain = np.maximum(self.least, 0.0) + np.minimum(self.most, 0.0)
         size = np.maximum(np.abs(self.a.low), np.abs(self.b.low))
@@ -202,14 +203,14 @@ class _Pair:
 
 
 def _chosen(there: NDArray[np.bool_], known: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Rows of the table in which both have a value."""
+    """Return a mask of rows in which both have a value."""
     chosen = there.copy()
     chosen[there] = known
     return chosen
 
 
 def _bounds(table: Table, head: Comparison) -> Bounds:
-    """Of differences; distances to a reference have others than the values."""
+    """Return the bounds of differences; distances to a reference have other bounds than values."""
     name = head.metric, head.variant
     return c.UNBOUNDED if head.better == "reference" else bounds_of_difference(table, name)
 
@@ -217,7 +218,7 @@ def _bounds(table: Table, head: Comparison) -> Bounds:
 def _with_rates(
     found: Comparison, difference: Estimate, error: float | None, groups: Clusters, level: float
 ) -> Comparison:
-    """A comparison of rates: those of all runs together take the place of means of pairs."""
+    """Return a comparison of rates: rates of all runs together replace the means of pairs."""
     ends = (difference.value, difference.value)
     return replace(
         found,
@@ -230,7 +231,7 @@ def _with_rates(
 def _differences(
     head: Comparison, pair: _Pair, groups: Clusters, bounds: Bounds, level: float
 ) -> Comparison:
-    """What is told in the metric's unit, over pairs where both have a value."""
+    """Return the results in the metric's unit, over pairs where both have a value."""
     known, sign = pair.known, 1.0 if head.better in ("higher", "none") else -1.0
     least, most = sign * pair.least, sign * pair.most
     ends = [float(x.mean()) for x in (np.minimum(least, most), np.maximum(least, most))]
@@ -254,7 +255,7 @@ def _differences(
 def _sound_means(
     found: Comparison, pair: _Pair, groups: Clusters, sign: float, level: float
 ) -> Estimate:
-    """The mean difference over pairs in which neither planner failed."""
+    """Return the mean difference over pairs in which neither planner failed."""
     failed = pair.a.failed | pair.b.failed
     if not failed.any():
         return found.difference
@@ -267,7 +268,7 @@ def _finite(number: float) -> float | None:
 
 
 def reach(freedom: int, level: float) -> float:
-    """Standard errors that a difference must have to be found with probability `_POWER`."""
+    """Return the standard errors that a difference needs for the power `_POWER`."""
     return c.quantile_t(0.5 + level / 2, freedom) + c.quantile_t(_POWER, freedom)
 
 
@@ -294,7 +295,7 @@ def _standardised(gains: Floats, groups: Clusters, level: float) -> Estimate:
 def _ranked(
     found: Comparison, pair: _Pair, groups: Clusters, level: float
 ) -> tuple[Comparison, int]:
-    """What only asks which is better, over all pairs."""
+    """Return the rank-based results over all pairs."""
     contrasts, undecided = pair.contrasts()
     ranks = signed_ranks(contrasts)
     won = 0.5 + np.sign(contrasts) / 2

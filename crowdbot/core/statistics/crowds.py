@@ -1,7 +1,7 @@
-"""Whether ranks depend on the crowd: the order of planners in each, and who is first in how many.
+"""Dependence of ranks on the crowd: the order of planners in each crowd.
 
-Runs are told apart by the axis ``crowd`` (`crowdbot campaign --crowds`). Kendall's tau-b (1945)
-says how alike two orders are; ties count as ties.
+Runs are separated by the axis ``crowd`` (`crowdbot campaign --crowds`). Kendall's tau-b (1945)
+measures the agreement of two orders; ties count as ties.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class CrowdOrder:
     """The order of planners in one crowd.
 
     Attributes:
-        crowd: label.
-        realism: index of the crowd, None where it was not measured.
-        means: planner -> mean over ``pairs`` scenarios and seeds that all planners have, as
-            `planner_mean` has it, the best first.
+        crowd: the crowd's label.
+        realism: realism index of the crowd, None if not measured.
+        means: planner -> `planner_mean` over the ``pairs`` scenarios and seeds that all planners
+            have, best first.
     """
 
     crowd: str
@@ -43,20 +43,20 @@ class CrowdOrder:
     pairs: int
 
     def value(self, planner: str) -> float:
-        """The mean of one planner."""
+        """Return the mean of one planner."""
         found = self.means[planner].value
         return math.nan if found is None else found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdVerdict:
-    """How often one planner is before another.
+    """Order of two planners, over all crowds.
 
     Attributes:
-        first, second: ``first`` is before ``second`` in most, by realism.
-        before: labels of the crowds where it is; ``against``: where it is the other way round.
-        crowds: in how many both were run.
-        weighted: share of the crowds where it is, each counted by its realism.
+        first, second: ``first`` ranks before ``second`` in most crowds, weighted by realism.
+        before: labels of crowds with this order; ``against``: with the opposite order.
+        crowds: number of crowds in which both were run.
+        weighted: share of crowds with this order, weighted by realism.
     """
 
     first: str
@@ -68,7 +68,7 @@ class CrowdVerdict:
 
     @property
     def text(self) -> str:
-        """One sentence."""
+        """Return the result as one sentence."""
         if not self.before and not self.against:
             return f"{self.first} and {self.second} are equal in all {self.crowds} crowds"
         said = (
@@ -82,13 +82,13 @@ class CrowdVerdict:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdRanks:
-    """What ranks owe to the crowd.
+    """Dependence of the ranks on the crowd.
 
     Attributes:
-        metric: that decides the order.
-        orders: one for each crowd, the most human first.
-        taus: (crowd, crowd) -> Kendall's tau-b; NaN where an order is all ties.
-        verdicts: one for each pair of planners.
+        metric: the metric that decides the order.
+        orders: one per crowd, most realistic first.
+        taus: (crowd, crowd) -> Kendall's tau-b; NaN if an order is all ties.
+        verdicts: one per pair of planners.
     """
 
     metric: str
@@ -97,7 +97,7 @@ class CrowdRanks:
     verdicts: tuple[CrowdVerdict, ...]
 
     def as_json(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data for JSON."""
         return {
             "metric": self.metric,
             "orders": [
@@ -131,12 +131,12 @@ class CrowdRanks:
 def crowd_ranks(
     results: Results, metric: str | None = None, *, table: Table | None = None
 ) -> CrowdRanks | None:
-    """Orders by crowd; None where runs are of fewer than two crowds or planners.
+    """Return orders by crowd; None with fewer than two crowds or planners.
 
     Args:
-        results: of one suite.
-        metric: that decides the order; by default the primary score.
-        table: of these results, for a caller who has it.
+        results: results of one suite.
+        metric: the metric that decides the order; default: the primary score.
+        table: the table of these results, if already built.
     """
     labels = list(dict.fromkeys(r.axes[AXIS] for r in results.runs if AXIS in r.axes))
     planners = sorted({r.planner for r in results.runs})
@@ -167,7 +167,7 @@ def crowd_ranks(
 
 
 def kendall(x: Sequence[float], y: Sequence[float]) -> float:
-    """Kendall's tau-b of two rows of values; NaN where one of them is all ties."""
+    """Return Kendall's tau-b of two rows of values; NaN if one is all ties."""
     concordant, tied_x, tied_y, pairs = 0, 0, 0, 0
     for i, j in combinations(range(len(x)), 2):
         a, b = _sign(x[i] - x[j]), _sign(y[i] - y[j])
@@ -192,7 +192,7 @@ def _order(label: str, planners: Sequence[str], table: Table, name: Name) -> Cro
 
 
 def _shared(label: str, planners: Sequence[str], table: Table, name: Name) -> NDArray[np.bool_]:
-    """Which rows of the table are of a crowd, and have a value of every planner, (n,)."""
+    """Return a mask (n,) of rows with this crowd and a value for every planner."""
     runs = [[table.runs.get((p, key)) for p in planners] for key in table.keys]
     there = [all(r is not None and r.axes.get(AXIS) == label for r in row) for row in runs]
     parts = [np.array(there, np.bool_)]
@@ -204,7 +204,7 @@ def _shared(label: str, planners: Sequence[str], table: Table, name: Name) -> ND
 
 
 def _verdict(a: str, b: str, orders: Sequence[CrowdOrder], sign: float) -> CrowdVerdict:
-    """Of the two ways round the one with more weight; of equal ones the first by name."""
+    """Return the order with more weight; of equal ones the first by name."""
     weights = _weights(orders)
     ways = []
     for first, second in permutations((a, b)):
@@ -222,7 +222,7 @@ def _verdict(a: str, b: str, orders: Sequence[CrowdOrder], sign: float) -> Crowd
 
 
 def _weights(orders: Sequence[CrowdOrder]) -> dict[str, float]:
-    """Shares of 1, by realism; the same for all where none is known or above the ghosts."""
+    """Return weights that sum to 1, by realism; equal if none is known or above the ghosts."""
     raw = {o.crowd: max(0.0, o.realism or 0.0) for o in orders}
     total = sum(raw.values())
     return {c: (w / total if total else 1.0 / len(raw)) for c, w in raw.items()}

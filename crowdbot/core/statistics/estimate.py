@@ -1,27 +1,25 @@
-"""Estimate: a number with its interval, or why there is none; what kinds of outcomes there were."""
+"""Estimate: a number with its interval, or the reason for its absence; and counts of outcomes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal
 
-#: What can come of one score of one run.
-#:
-#: ``failed``: without a value because the planner failed or the run could not be made. Where such
-#: a run has one it is ``ok``; in ranks it is worse than anything else all the same.
-#: ``missing``: nobody has tried yet; not compared, but told.
+#: Possible outcomes of one score of one run. ``failed``: no value because the planner failed or the
+#: run could not be made; a failed run with a value is ``ok``, but ranks below all others.
+#: ``missing``: not run yet; reported but not compared.
 Outcome = Literal["ok", "censored", "undefined", "failed", "missing"]
 OUTCOMES: tuple[Outcome, ...] = ("ok", "censored", "undefined", "failed", "missing")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Estimate:
-    """A number and the interval that covers the true one.
+    """A number and its confidence interval.
 
     Attributes:
-        value: None where it does not exist; ``reason`` says why.
-        low, high: ends of the interval; None where there is none, or it is open on that side.
-        reason: why there is no value, or no interval; empty if there are both.
+        value: None if it does not exist; ``reason`` says why.
+        low, high: ends of the interval; None if missing or open on that side.
+        reason: why there is no value or no interval; empty if both exist.
     """
 
     value: float | None = None
@@ -35,7 +33,7 @@ NOTHING = Estimate(reason="not computed")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """How many runs ended in which way, as one score sees it; nothing is left out."""
+    """Number of runs with each outcome, for one score; all runs are counted."""
 
     ok: int = 0
     censored: int = 0
@@ -45,5 +43,5 @@ class Counts:
 
     @property
     def tried(self) -> int:
-        """All but the missing ones."""
+        """Return the number of runs that are not missing."""
         return self.ok + self.censored + self.undefined + self.failed

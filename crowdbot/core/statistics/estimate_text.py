@@ -1,6 +1,6 @@
-"""An estimate as text, the same on every page: report, leaderboard and Markdown.
+"""An estimate as text, the same in report, leaderboard and Markdown.
 
-`element.js` of the report has the same rule for numbers that only a browser works out; both round
+`element.js` of the report follows the same rule for numbers computed in the browser; both round
 halves away from zero, as ``Number.prototype.toFixed`` does.
 """
 
@@ -19,7 +19,7 @@ _EXACT = Context(prec=800)  # a double has at most 767 digits
 
 
 def estimate_text(found: Estimate, minus: str = _MINUS) -> tuple[str, str]:
-    """The value, and its interval in brackets; "–" and nothing where there is none."""
+    """Return the value, and its interval in brackets; "–" and nothing if there is none."""
     if found.value is None:
         return NOTHING, ""
     width = 0.0 if found.low is None or found.high is None else found.high - found.low
@@ -32,12 +32,12 @@ def estimate_text(found: Estimate, minus: str = _MINUS) -> tuple[str, str]:
 
 
 def joined_text(found: Estimate) -> str:
-    """Both in one line."""
+    """Return value and interval in one line."""
     return " ".join(filter(None, estimate_text(found)))
 
 
 def range_text(ends: tuple[float | None, float | None]) -> str:
-    """Between which bounds something lies; "?" where there is none."""
+    """Return the bounds as text; "?" if there are none."""
     known = [x for x in ends if x is not None]
     decimals = decimals_for(known)
     low, high = ("?" if x is None else number_text(x, decimals) for x in ends)
@@ -45,19 +45,19 @@ def range_text(ends: tuple[float | None, float | None]) -> str:
 
 
 def decimals_for(numbers: Iterable[float]) -> int:
-    """Decimals that show three digits of the largest number, and two of what they differ by."""
+    """Return decimals for three digits of the largest number, and two of the differences."""
     known = [float(x) for x in numbers if math.isfinite(x)]
     return _decimals(max([0.0, *map(abs, known)]), max(known) - min(known) if known else 0.0)
 
 
 def _decimals(size: float, spread: float) -> int:
-    """Three digits of a size, and two of a spread that is more than rounding."""
+    """Return decimals for three digits of a size, and two of a spread larger than rounding."""
     seen = _places(spread, 2) if spread > 1e-6 * size else 0
     return min(9, max(0, _places(max(size, spread), 3), seen))
 
 
 def number_text(number: float, decimals: int, minus: str = _MINUS) -> str:
-    """With so many decimals; very large and very small ones as a power of ten."""
+    """Format a number with this many decimals; very large or small ones as a power of ten."""
     if not math.isfinite(number):
         return NOTHING
     if number == 0 and decimals > _MOST:
@@ -72,7 +72,7 @@ def number_text(number: float, decimals: int, minus: str = _MINUS) -> str:
 
 
 def _power(number: float) -> str:
-    """Two decimals and the power of ten."""
+    """Format a number with two decimals and its power of ten."""
     exponent = Decimal(number).adjusted()
     exponent = _rounded(number, exponent - 2).adjusted()  # 9.999 is 1.00e+1
     mantissa = _rounded(number, exponent - 2).scaleb(-exponent, _EXACT)
@@ -80,10 +80,10 @@ def _power(number: float) -> str:
 
 
 def _rounded(number: float, last: int) -> Decimal:
-    """To a multiple of ten to this power, halves away from zero."""
+    """Round to a multiple of this power of ten, halves away from zero."""
     return Decimal(number).quantize(Decimal(1).scaleb(last), ROUND_HALF_UP, _EXACT)
 
 
 def _places(size: float, shown: int) -> int:
-    """Decimals that show so many digits of a size."""
+    """Return the decimals that show this many digits of a size."""
     return shown - 1 - Decimal(repr(float(size))).adjusted() if 0 < size < math.inf else 0

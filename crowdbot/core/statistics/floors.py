@@ -1,6 +1,6 @@
-"""Floors: whether a planner beats those that any should, in the score that counts first.
+"""Floors: does a planner beat the floor planners in the primary score?
 
-A planner has to beat every floor. All of these tests must succeed at once, so that none needs a
+A planner has to beat every floor. All of these tests must succeed together, so none needs a
 correction for the others (Berger 1982, intersection-union test).
 """
 
@@ -21,7 +21,7 @@ from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.table import MISSING, Name, Table
 from crowdbot.core.support.text import plural
 
-#: The score that decides, the first of these that the runs have: older ones lack the first.
+#: Candidates for the deciding score, the first that the runs have: older runs lack the first.
 PRIMARY = (four_scores.PRIMARY.metric, "success_no_collision", "success")
 
 LeadVerdict = Literal["ahead", "behind", "not distinguishable"]
@@ -29,13 +29,13 @@ LeadVerdict = Literal["ahead", "behind", "not distinguishable"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lead:
-    """By how much one planner is better than another in one score.
+    """The lead of one planner over another in one score.
 
     Attributes:
         pairs, draws: scenarios and seeds that both have run; crowd draws among them.
         by: mean lead over the pairs, in the score's unit, positive where ``planner`` is better.
-        verdict: ``ahead`` or ``behind`` only where the interval excludes 0, every pair has a value
-            and there are draws enough for any test to tell; else ``reason`` may say why not.
+        verdict: ``ahead`` or ``behind`` only if the interval excludes 0, every pair has a value and
+            there are enough draws for a test; else ``reason`` may say why not.
     """
 
     planner: str
@@ -49,11 +49,11 @@ class Lead:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloorCheck:
-    """One planner against all floors that were run.
+    """Comparison of one planner with all floors that were run.
 
     Attributes:
-        metric, variant: the score; empty where the runs have none that could decide.
-        leads: over each floor, the smallest first.
+        metric, variant: the score; empty if the runs have no deciding score.
+        leads: lead over each floor, smallest first.
     """
 
     planner: str
@@ -63,14 +63,17 @@ class FloorCheck:
 
     @property
     def beats_all(self) -> bool:
-        """Whether there are floors, and the planner is ahead of each."""
+        """Return True if there are floors and the planner is ahead of each."""
         return bool(self.leads) and all(lead.verdict == "ahead" for lead in self.leads)
 
     @property
     def text(self) -> str:
-        """What a reader is told first."""
+        """Return the sentence that the report shows first."""
         if not self.leads:
-            return f"{self.planner} was compared with no floor: nothing says what its scores mean"
+            return (
+                f"{self.planner}: no floor planner ran in these scenarios, "
+                "so the scores have no yardstick"
+            )
         score, lost = self.metric.replace("_", " "), [x for x in self.leads if x.verdict != "ahead"]
         if not lost:
             names = ", ".join(x.other for x in self.leads)
@@ -81,12 +84,12 @@ class FloorCheck:
 def check_floors(
     results: Results, *, level: float = 0.95, table: Table | None = None
 ) -> tuple[FloorCheck, ...]:
-    """Each planner against every floor, by name; floors themselves are not checked.
+    """Compare each planner with every floor, by name; floors themselves are not checked.
 
     Args:
-        results: runs that may be compared.
-        level: of the intervals.
-        table: of these results, for a caller who has it.
+        results: comparable runs.
+        level: confidence level of the intervals.
+        table: the table of these results, if already built.
     """
     roles = {run.planner: run.role for run in results.runs}
     table = table or Table(results)
@@ -102,13 +105,13 @@ def check_floors(
 def against_floors(
     table: Table, name: Name | None, planner: str, floors: Iterable[str], *, level: float = 0.95
 ) -> FloorCheck:
-    """One planner against some floors; those that share no scenario and seed with it are left out.
+    """Compare one planner with some floors; floors without a common scenario and seed are left out.
 
     Args:
-        table: of the runs.
+        table: table of the runs.
         name: from `primary_name`.
         planner, floors: labels.
-        level: of the intervals.
+        level: confidence level of the intervals.
     """
     if name is None:
         return FloorCheck(planner=planner, metric="", variant="")
@@ -118,7 +121,7 @@ def against_floors(
 
 
 def primary_name(table: Table) -> Name | None:
-    """The score that decides: that of `PRIMARY` which stands first among the headlines."""
+    """Return the deciding score: the first headline among `PRIMARY`."""
     headlines = dict(headline_names(table))
     found = (metric for metric in PRIMARY if metric in headlines)
     metric = next(found, None)
@@ -126,7 +129,7 @@ def primary_name(table: Table) -> Name | None:
 
 
 def lead_over(table: Table, name: Name, planner: str, other: str, *, level: float = 0.95) -> Lead:
-    """How far a planner is ahead of another in one score."""
+    """Return how far a planner is ahead of another in one score."""
     found, _ = compare(table, name, planner, other, level=level)
     sign = 1.0 if found.better in ("higher", "none") else -1.0
     by = _turned(found.difference, sign)
@@ -146,7 +149,7 @@ def _turned(found: Estimate, sign: float) -> Estimate:
 
 
 def _lacking(table: Table, name: Name, *planners: str) -> int:
-    """Pairs that both have tried, and that one has no value in."""
+    """Count pairs that both have run, in which one has no value."""
     columns = [table.column(name, planner) for planner in planners]
     tried = np.all([c.outcome != MISSING for c in columns], axis=0)
     return int(np.count_nonzero(tried & ~np.all([c.known for c in columns], axis=0)))
@@ -159,9 +162,9 @@ def _verdict(
         return "not distinguishable", "nothing says which values are better"
     if by.low is None or by.high is None:
         return "not distinguishable", by.reason or found.reason
-    if lacking:  # who leaves out the runs that went badly must not gain by it
+    if lacking:  # leaving out runs that went badly must not be an advantage
         return "not distinguishable", f"{lacking} of {found.pairs} pairs have no value"
-    # An interval needs two draws; with so few, any two planners differ by chance.
+    # An interval needs two draws; with so few, any difference may be chance.
     if least_p(found.draws) > 1.0 - level:
         return "not distinguishable", f"too few crowd draws: {found.draws}"
     if by.low > 0.0:
@@ -174,7 +177,7 @@ def _low(lead: Lead) -> float:
 
 
 def _told(leads: Sequence[Lead]) -> str:
-    """All leads; a reason that they share is said once."""
+    """Return all leads as text; a shared reason is given once."""
     reasons = {lead.reason for lead in leads}
     if len(leads) == 1 or len(reasons) > 1 or reasons == {""}:
         return "; ".join(map(_by, leads))
@@ -184,7 +187,7 @@ def _told(leads: Sequence[Lead]) -> str:
 
 
 def _by(lead: Lead) -> str:
-    """Such as ``+0.31 [0.22, 0.40] against stop_and_go, 18 pairs, 6 crowd draws``."""
+    """Return a lead such as ``+0.31 [0.22, 0.40] against stop_and_go, 18 pairs, 6 crowd draws``."""
     why = f" ({lead.reason})" if lead.reason else ""
     counts = f"{plural(lead.pairs, 'pair')}, {plural(lead.draws, 'crowd draw')}"
     place = f"{lead.other}, {counts}"

@@ -1,4 +1,4 @@
-"""Scores by groups of runs: by planner, by axes of the suite, by how they ended."""
+"""Scores by groups of runs: by planner, suite axis or outcome."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from crowdbot.core.statistics.table import MISSING, OK, Key, Name, Table, counts
 from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import UnknownNameError
 
-#: Labels of a group, and planner -> (n,) its rows of the table.
+#: Labels of a group; and planner -> (n,) its rows of the table.
 _Rows = Mapping[str, NDArray[np.bool_]]
 _Group = tuple[str, ...]
 
@@ -33,13 +33,13 @@ class GroupSummary:
 
     Attributes:
         group: axis -> label.
-        counts: how the runs of the group ended, as this score sees it.
+        counts: outcomes of the group's runs for this score.
         failed: runs whose planner failed, which may have values, and attempts that left no run.
-        mean: of the values there are, or the rate of all these runs together, with its interval:
-            what report and leaderboard say of the same runs.
-        bounds: of the mean of all runs, if those without a value are anywhere within their bounds;
-            None where there is no bound.
-        median: of the values there are.
+        mean: mean of the existing values, or the rate of all these runs together, with its
+            interval, as in report and leaderboard.
+        bounds: bounds of the mean of all runs, with missing values anywhere within their bounds;
+            None if unbounded.
+        median: median of the existing values.
     """
 
     group: Mapping[str, str]
@@ -57,13 +57,13 @@ class GroupSummary:
 def by_group(
     results: Results, metric: str, by: Sequence[str], variant: str | None = None
 ) -> list[GroupSummary]:
-    """Scores by groups of runs.
+    """Return scores by groups of runs.
 
     Args:
-        results: what to look at.
+        results: the results.
         metric: pattern of names.
         by: axes, or ``planner``, ``suite``, ``scenario``, ``seed``, ``status``.
-        variant: None takes the one that stands for its metric in a report (`headline_names`).
+        variant: None: the metric's headline variant (`headline_names`).
 
     Raises:
         UnknownNameError: no such axis or metric.
@@ -92,7 +92,7 @@ def _names(table: Table, metric: str, variant: str | None) -> Iterator[Name]:
 
 
 def _groups(table: Table, results: Results, by: Sequence[str]) -> Mapping[_Group, _Rows]:
-    """Labels -> rows, in the order of the runs."""
+    """Return labels -> rows, in the order of the runs."""
     places = {key: i for i, key in enumerate(table.keys)}
     found: dict[_Group, dict[str, NDArray[np.bool_]]] = {}
     for one in _tried(table, results):
@@ -130,7 +130,7 @@ def _summary(
 
 
 def _gathered(table: Table, name: Name, rows: _Rows) -> tuple[Floats, Floats, NDArray[np.int8]]:
-    """Least and greatest value, and outcome, of each run of a group, (runs,)."""
+    """Return least and greatest value, and outcome, of each run of a group, (runs,)."""
     columns = [(table.column(name, planner), chosen) for planner, chosen in rows.items()]
     parts = [(column.low[r], column.high[r], column.outcome[r]) for column, r in columns]
     low, high, outcome = zip(*parts, strict=True)

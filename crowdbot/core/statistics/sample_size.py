@@ -1,11 +1,11 @@
-"""How many crowd draws a verdict takes: at least, and for a difference as large as the one seen.
+"""Number of crowd draws that a verdict needs: the minimum, and for the observed difference.
 
-Runs in one crowd rise and fall together, so that draws count, not runs. The least number follows
-from the test: with G draws no p is below 2^(1 - G) (`signed_rank`), and Holm's first step wants
-alpha / tests. The number for a difference of size d is that of a two-sided t test at the level
-alpha / tests with power 0.8, from the standard error of the difference that was seen, which falls
-with the root of the draws; pi / 3 times as many, because signed ranks need that where differences
-are normal (Pitman's efficiency 3 / pi; Lehmann 1975, Nonparametrics, appendix 5).
+Runs in one crowd are correlated, so draws count, not runs. The least number follows from the test:
+with G draws no p is below 2^(1 - G) (`signed_rank`), and Holm's first step wants alpha / tests. The
+number for a difference of size d is that of a two-sided t test at the level alpha / tests with
+power 0.8, from the observed standard error, which falls with the square root of the draws; times pi
+/ 3, because signed ranks need that for normal differences (Pitman's efficiency 3 / pi; Lehmann
+1975, Nonparametrics, appendix 5).
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from crowdbot.core.statistics.signed_rank import least_p
 from crowdbot.core.statistics.summary import Summary
 from crowdbot.core.support.text import plural
 
-#: Nobody simulates more draws than this: a difference that needs them counts as none.
+#: Largest number of draws worth simulating: a difference that needs more counts as none.
 MOST_DRAWS = 100_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SampleSize:
-    """Whether a sample can lead to a verdict at all.
+    """Size of a sample, compared with the size needed for a verdict.
 
     Attributes:
-        draws: independent crowd draws that two planners have in common; the most of any pair.
-        pairs: of the same scenario and seed among them.
-        least: draws without which no difference, however large, is told from chance.
-        tests, alpha: comparisons that share the chance ``alpha`` of a false verdict.
+        draws: independent crowd draws that two planners share; maximum over pairs of planners.
+        pairs: pairs of the same scenario and seed among them.
+        least: draws below which no difference, however large, is significant.
+        tests, alpha: comparisons that share the probability ``alpha`` of a false verdict.
     """
 
     draws: int
@@ -42,26 +42,22 @@ class SampleSize:
 
     @property
     def too_small(self) -> bool:
-        """Whether no verdict is possible."""
+        """Return True if no verdict is possible."""
         return self.draws < self.least
 
     @property
     def text(self) -> str:
-        """What is missing, in words; empty where a verdict is possible."""
+        """Return what is missing, in words; empty if a verdict is possible."""
         if not self.too_small:
             return ""
         return (
-            f"The sample is too small for any verdict between planners: "
-            f"{plural(self.draws, 'crowd draw')} in {plural(self.pairs, 'pair')} of runs. "
-            f"{plural(self.tests, 'test')} that share a chance of {100 * self.alpha:g} % of a "
-            f"false verdict need at least {self.least} crowd draws, since p cannot be below "
-            f"2^(1 - draws): {self.least} scenarios with a crowd of their own would do if one "
-            "planner were better in each of them"
+            f"The sample is too small for any verdict between planners: you have "
+            f"{plural(self.draws, 'different crowd')}; a verdict needs at least {self.least}"
         )
 
 
 def sample_size(summary: Summary) -> SampleSize | None:
-    """Of the comparisons that decide; None where nothing is compared."""
+    """Return the sample size of the deciding comparisons; None without any."""
     main = [c for c in summary.comparisons if is_main(c.metric, c.variant)]
     compared = main or list(summary.comparisons)
     if not compared:
@@ -78,7 +74,7 @@ def sample_size(summary: Summary) -> SampleSize | None:
 
 
 def least_draws(tests: int, alpha: float) -> int:
-    """The smallest number of draws that can give a verdict in one of so many tests."""
+    """Return the smallest number of draws that can give a verdict with this many tests."""
     draws = 1
     while least_p(draws) * tests > alpha:
         draws += 1
@@ -86,17 +82,16 @@ def least_draws(tests: int, alpha: float) -> int:
 
 
 def draws_needed(found: Comparison, tests: int, alpha: float, level: float) -> int | None:
-    """Draws that would find the difference that was seen with probability 0.8.
+    """Return the draws that would detect the observed difference with probability 0.8.
 
     Args:
-        found: with its mean difference and what is detectable.
-        tests: that share ``alpha``.
-        alpha: chance of any false verdict.
-        level: of intervals, at which ``found.detectable`` was worked out.
+        found: the comparison, with its mean and detectable difference.
+        tests: number of tests that share ``alpha``.
+        alpha: probability of any false verdict.
+        level: confidence level used for ``found.detectable``.
 
     Returns:
-        None where there is no difference, nothing is known of its chance, or more than
-        `MOST_DRAWS` would be needed.
+        None without a difference or standard error, or if more than `MOST_DRAWS` would be needed.
     """
     size = abs(found.difference.value or 0.0)
     if not size or not found.detectable or found.draws < 2:

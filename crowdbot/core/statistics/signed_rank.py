@@ -1,10 +1,9 @@
-"""Wilcoxon's signed ranks where the draw is the unit that chance decides about.
+"""Wilcoxon's signed-rank test with the crowd draw as the random unit.
 
-Ranks are given to all pairs and signs are flipped for whole draws together: under "no
-difference", exchanging the planners' names within a draw leaves the distribution as it is. This
-holds whatever the pairs of one draw have in common, so that the test keeps its level with few
-draws and with unequal ones; Wilcoxon's own table takes every pair for a witness of its own. With
-one pair a draw both are the same test.
+Ranks are given to all pairs and signs are flipped for whole draws together: under "no difference",
+exchanging the planners' names within a draw leaves the distribution as it is. This holds for any
+correlation within a draw, so the test keeps its level with few and with unequal draws; Wilcoxon's
+own table assumes independent pairs. With one pair per draw both tests are the same.
 """
 
 from __future__ import annotations
@@ -17,13 +16,13 @@ from numpy.typing import NDArray
 from crowdbot.core.statistics.clusters import Clusters, Floats
 
 _EXACT_DRAWS = 24  # 2**12 sums of either half
-_EXACT_TOTAL = 200_000  # length of an exact distribution, where there are more draws
+_EXACT_TOTAL = 200_000  # largest length of an exact distribution with more draws
 
 
 def double_ranks(contrasts: Floats) -> NDArray[np.int64]:
-    """Twice the ranks of the absolute values, whole numbers; ties share the mean of their ranks.
+    """Return twice the ranks of the absolute values, as integers; ties share their mean rank.
 
-    Infinite contrasts tie at the top; zeros are ranked, too, which is Pratt's way (1959).
+    Infinite contrasts tie at the top; zeros are ranked too, as in Pratt (1959).
     """
     _, inverse, counts = np.unique(np.abs(contrasts), return_inverse=True, return_counts=True)
     return np.asarray((2 * np.cumsum(counts) - counts + 1)[inverse], dtype=np.int64)
@@ -35,9 +34,10 @@ def signed_ranks(contrasts: Floats) -> NDArray[np.int64]:
 
 
 def p_value(ranks: NDArray[np.int64], clusters: Clusters) -> float:
-    """Two-sided p: how often flipped draws give a sum of ranks at least as far from zero.
+    """Return the two-sided p: how often flipped draws give a rank sum at least as far from zero.
 
-    Exact for up to 24 draws, and for more of them while the sums are small; normal beyond.
+    Exact for up to 24 draws, and for more while the sums are small; otherwise a normal
+    approximation.
     """
     sums = np.rint(clusters.sums(ranks.astype(float))).astype(np.int64)
     seen, parts = abs(int(sums.sum())), np.abs(sums[sums != 0])
@@ -52,7 +52,7 @@ def p_value(ranks: NDArray[np.int64], clusters: Clusters) -> float:
 
 
 def _by_halves(parts: NDArray[np.int64], seen: int) -> float:
-    """All 2**G sums, as those of two halves met in the middle; upper tail twice."""
+    """Compute p from all 2**G sums by meet-in-the-middle; twice the upper tail."""
     half = len(parts) // 2
     first, second = _all_sums(parts[:half]), np.sort(_all_sums(parts[half:]))
     reached = len(second) - np.searchsorted(second, seen - first, side="left")
@@ -67,7 +67,7 @@ def _all_sums(parts: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _by_sums(parts: NDArray[np.int64], seen: int) -> float:
-    """The distribution of the positive sum, draw by draw; signs change it by two each."""
+    """Compute p from the distribution of the positive sum, draw by draw."""
     total = int(parts.sum())
     chance = np.zeros(total + 1)
     chance[0] = 1.0
@@ -80,12 +80,12 @@ def _by_sums(parts: NDArray[np.int64], seen: int) -> float:
 
 
 def least_p(draws: int) -> float:
-    """The smallest p that so many draws can give."""
+    """Return the smallest p that this many draws can give."""
     return float(2.0 ** (1 - draws))
 
 
 def holm(p_values: Floats) -> Floats:
-    """Holm's step-down adjustment (1979): controls the chance of any false finding."""
+    """Return Holm's step-down adjustment (1979), which controls the family-wise error rate."""
     order = np.argsort(p_values, kind="stable")
     factors = len(p_values) - np.arange(len(p_values))
     adjusted = np.minimum(1.0, np.maximum.accumulate(p_values[order] * factors))

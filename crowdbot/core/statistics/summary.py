@@ -1,4 +1,4 @@
-"""Everything that is computed of a campaign's results, at once."""
+"""All statistics of a campaign's results."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crowdbot.core.statistics.summary_estimator import planner_mean
 from crowdbot.core.statistics.table import MISSING, Column, Name, Table
 from crowdbot.core.statistics.variance import VarianceParts, variance_parts
 
-#: Reasons of scores whose data no simulated run has; they are left out where all runs say so.
+#: Reasons of scores that no simulated run can have; left out if all runs give them.
 _NOT_ASKED = {"no_command", "no_answers", "no_formula_in_seed"}
 
 
@@ -28,14 +28,14 @@ class PlannerScore:
     """One score of one planner over all its runs.
 
     Attributes:
-        counts: how the runs ended; ``reasons`` says why values are missing -> how often.
+        counts: outcomes of the runs; ``reasons``: why values are missing -> how often.
         draws: independent crowd draws among the values.
-        mean: over the values that exist (``counts.ok``), with its interval; that of a rate is the
-            rate of all runs together.
-        bounds: of the mean over all runs, if undefined and censored values are anywhere within
-            their bounds; None on a side where there is no bound. Who arrives seldom may have a
-            good ``mean`` of the runs in which he did; this says what it is worth.
-        least, quartiles, most: of these values; None without any.
+        mean: mean of the existing values (``counts.ok``), with its interval; for a rate, the rate
+            of all runs together.
+        bounds: bounds of the mean over all runs, with undefined and censored values anywhere within
+            their bounds; None for an open side. A planner that seldom arrives may have a good
+            ``mean`` of few runs; these bounds show how much that says.
+        least, quartiles, most: statistics of these values; None without any.
     """
 
     planner: str
@@ -57,21 +57,21 @@ class PlannerScore:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """What is known after some runs.
+    """The statistical results of a set of runs.
 
     Attributes:
         planners: sorted.
-        scores: by metric, variant and planner.
-        comparisons: of each pair of planners in each score.
+        scores: scores by metric, variant and planner.
+        comparisons: comparison of each pair of planners in each score.
         axes: effect of each axis on each score of each planner.
-        variances: parts of conditions, draws and seeds in each score of each planner.
-        densities: how dense the crowds really were.
-        level: of all intervals.
-        alpha: chance of any false verdict among the four scores, and among all others.
-        conditions_fixed: whether intervals leave only people to chance; else, with one draw a
-            condition, conditions are chance as well.
-        tests: how many comparisons of the four scores share `alpha` (Holm); where none of the
-            four is looked at, of all scores.
+        variances: variance components of each score of each planner.
+        densities: realised crowd densities.
+        level: confidence level of all intervals.
+        alpha: probability of any false verdict among the four scores, and among all others.
+        conditions_fixed: True if intervals treat only people as random; otherwise, with one draw
+            per condition, conditions are random too.
+        tests: number of comparisons of the four scores that share `alpha` (Holm); of all scores if
+            none of the four is included.
     """
 
     planners: tuple[str, ...]
@@ -86,14 +86,16 @@ class Summary:
     conditions_fixed: bool = False
 
     def comparison(self, metric: str, a: str, b: str) -> Comparison | None:
-        """The comparison of two planners in a metric as it was computed, a before b."""
+        """Return the comparison of two planners in a metric, as computed with a before b."""
         found = (x for x in self.comparisons if (x.metric, x.a, x.b) == (metric, a, b))
         return next(found, None)
 
     def ranks(self, metric: str) -> dict[str, int]:
-        """Planner -> 1 + how many are better for certain; equal ranks are not distinguishable.
+        """Return planner -> 1 + number of significantly better ones.
 
-        Empty where the metric is not ranked.
+        Equal ranks cannot be separated.
+
+        Empty if the metric is not ranked.
         """
         here = [x for x in self.comparisons if x.metric == metric and x.verdict != "not ranked"]
         ranks = {planner: 1 for x in here for planner in (x.a, x.b)}
@@ -104,12 +106,11 @@ class Summary:
 
 
 def headline_names(table: Table) -> tuple[Name, ...]:
-    """One variant of each metric, the same for all runs; the four scores come first.
+    """Return one variant per metric, the same for all runs; the four main scores come first.
 
-    That is ``rate``, where a metric has one: what grows with time compares how long runs last.
-    Else it is ``corrected``; where that has fewer values than ``restricted``, which is made for
-    records that end too early, that one; else the first. Metrics that no run has data for are left
-    out.
+    This is ``rate`` if the metric has one, since sums over time depend on the run's length.
+    Otherwise ``corrected``, or ``restricted`` if that has more values (it handles records that end
+    early), or else the first. Metrics without data are left out.
     """
     variants: dict[str, list[Name]] = {}
     for name in table.names:
@@ -126,16 +127,16 @@ def summarise(
     alpha: float = 0.05,
     table: Table | None = None,
 ) -> Summary:
-    """All statistics of some results.
+    """Compute all statistics of some results.
 
     Args:
-        results: from a store.
-        names: (metric, variant) to look at; default `headline_names`. The four scores among them
-            are the family that Holm's correction is for, together with all pairs of planners; all
-            others are a family of their own, and so are comparisons with floors and ceilings.
-        level: of intervals.
-        alpha: chance of any false verdict in a family.
-        table: of these results, for a caller who has it.
+        results: results from a store.
+        names: (metric, variant) to include; default `headline_names`. The four main scores, with
+            all pairs of planners, form one family for Holm's correction; all others form another,
+            and so do comparisons with floors and ceilings.
+        level: confidence level of intervals.
+        alpha: probability of any false verdict in a family.
+        table: the table of these results, if already built.
     """
     table = table or Table(results)
     chosen = headline_names(table) if names is None else tuple(names)
@@ -162,10 +163,10 @@ def summarise(
 
 
 def _families(found: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int, float]]:
-    """Place of a comparison -> corrected p: first for the four scores, then for all others.
+    """Yield index of a comparison -> corrected p: first for the four scores, then for all others.
 
-    Comparisons with floors and ceilings (``marks``) are families of their own: that they are run
-    besides must not make it harder to tell other planners apart.
+    Comparisons with floors and ceilings (``marks``) are separate families: running them must not
+    reduce the power for other planners.
     """
     for marked, main in product((False, True), (True, False)):
         here = {
@@ -205,19 +206,19 @@ def _planner_score(table: Table, name: Name, planner: str, level: float) -> Plan
 
 
 def _of_rate(column: Column, centre: Estimate) -> tuple[float | None, float | None]:
-    """Of a rate: itself, or none where runs have no value."""
+    """Return bounds of a rate: the rate itself, or none if runs have no value."""
     tried = column.outcome != MISSING
     return (centre.value, centre.value) if column.known[tried].all() else (None, None)
 
 
 def _bounds(column: Column) -> tuple[float | None, float | None]:
-    """Of the mean over all runs that were tried."""
+    """Return the bounds of the mean over all runs that were tried."""
     tried = column.outcome != MISSING
     return bounds_of_mean(column.low[tried], column.high[tried])
 
 
 def bounds_of_mean(low: Floats, high: Floats) -> tuple[float | None, float | None]:
-    """Of the mean over runs of which each has a least and a greatest value, (n,)."""
+    """Return the bounds of the mean over runs with a least and a greatest value each, (n,)."""
     if not len(low):
         return None, None
     least, most = float(low.mean()), float(high.mean())

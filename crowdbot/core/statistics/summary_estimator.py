@@ -1,9 +1,9 @@
-"""What a score of a planner is in the mean, and how far two planners are apart: one estimator.
+"""The summary of a planner's score, and the difference of two planners: one estimator.
 
-Report, leaderboard, ``results``, ranks by crowd, floors and audit all call it. Means of runs stay
-within the bounds of the score. Rates are those of all runs together: the sum of what was counted
-over the sum of what it is a rate over, and not the mean of each run's quotient, which those runs
-rule that hardly got anywhere. `data.js` of the report does the same for runs that a reader chooses.
+Report, leaderboard, ``results``, ranks by crowd, floors and audit all use it. Means of runs stay
+within the bounds of the score. Rates are those of all runs together (sum of counts over sum of
+exposure), not the mean of each run's quotient, which runs that barely move would dominate.
+`data.js` of the report does the same for runs that a reader selects.
 """
 
 from __future__ import annotations
@@ -20,12 +20,15 @@ from crowdbot.core.statistics.clusters import Bounds, Floats
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.table import Name, Table
 
-#: What a score is summed up by: the share of yes, the rate of all runs together, or the mean.
+#: The summary of a score: the share of yes, the rate of all runs together, or the mean.
 Centre = Literal["share", "rate", "mean"]
 
 
 def centre_of(table: Table, name: Name) -> Centre:
-    """What sums up a score, which its metric alone decides: not the values, nor who else ran."""
+    """Return the summary of a score.
+
+    It depends on the metric only, not on values or other planners.
+    """
     scale = table.scale(name)
     if table.exposure_name(name) is not None:
         return "rate"
@@ -39,14 +42,14 @@ def planner_mean(
     level: float = 0.95,
     rows: NDArray[np.bool_] | None = None,
 ) -> Estimate:
-    """Mean of one planner's values, or the rate of its runs together, with its interval.
+    """Return the mean of one planner's values, or its pooled rate, with its interval.
 
     Args:
-        table: of the runs.
+        table: table of the runs.
         name: the score.
-        planner: whose.
-        level: of the interval.
-        rows: (n,) of the table to look at; default all.
+        planner: the planner.
+        level: confidence level of the interval.
+        rows: (n,) mask of rows to use; default all.
     """
     whole = np.ones(len(table.keys), np.bool_)
     return mean_of_rows(table, name, {planner: whole if rows is None else rows}, level)
@@ -55,7 +58,7 @@ def planner_mean(
 def mean_of_rows(
     table: Table, name: Name, rows: Mapping[str, NDArray[np.bool_]], level: float = 0.95
 ) -> Estimate:
-    """The same of runs of several planners: planner -> (n,) its rows."""
+    """Return the same for runs of several planners: planner -> (n,) its rows."""
     scale = table.scale(name)
     bounds, step = (scale.minimum, scale.maximum), 1.0 if scale.integer else 0.0
     parts = [_values(table, name, planner, chosen) for planner, chosen in rows.items()]
@@ -66,7 +69,7 @@ def mean_of_rows(
 def _values(
     table: Table, name: Name, planner: str, chosen: NDArray[np.bool_]
 ) -> tuple[Floats, Floats, NDArray[np.intp]]:
-    """What is summed up above and below the line, and in which rows it stands."""
+    """Return numerators, denominators and their rows."""
     column, exposure = table.column(name, planner), table.exposure(name, planner)
     known = column.known & chosen
     if exposure is None:
@@ -78,16 +81,16 @@ def _values(
 def rate_difference(
     table: Table, name: Name, pair: tuple[str, str], chosen: NDArray[np.bool_], level: float = 0.95
 ) -> tuple[Estimate, float | None] | None:
-    """Rate of one planner minus that of another, and its standard error; None of other scores.
+    """Return one planner's rate minus another's and its standard error; None for other scores.
 
-    Linearised as `clusters.ratio` is: what each run adds to the difference, draw by draw.
+    Linearised like `clusters.ratio`: each run's contribution to the difference, draw by draw.
 
     Args:
-        table: of the runs.
+        table: table of the runs.
         name: the score.
         pair: the planners.
         chosen: (n,) rows in which both have a value.
-        level: of the interval.
+        level: confidence level of the interval.
     """
     sides = []
     for planner in pair:
@@ -111,14 +114,14 @@ def rate_difference(
 
 
 def _parts(rates: Floats, exposure: Floats) -> tuple[float, Floats]:
-    """The rate of all runs, and what each adds to its deviation, times the number of runs."""
+    """Return the rate of all runs, and each run's contribution to its deviation, times n."""
     whole = float(exposure.sum())
     rate = float((rates * exposure).sum()) / whole
     return rate, (rates - rate) * exposure * (len(rates) / whole)
 
 
 def bounds_of_difference(table: Table, name: Name) -> Bounds:
-    """How far two values of a score can be apart, where that is known."""
+    """Return the largest difference of two values of a score, if known."""
     scale = table.scale(name)
     width = scale.maximum - scale.minimum
     return (-width, width) if math.isfinite(width) else c.UNBOUNDED

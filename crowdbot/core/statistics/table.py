@@ -1,4 +1,4 @@
-"""Results laid out by what is paired: scenario and seed in rows, planners in columns."""
+"""Results as a paired table: scenario and seed in rows, planners in columns."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crowdbot.core.statistics.estimate import OUTCOMES, Counts
 from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.suite.matrix import DRAW
 
-#: Suite, scenario, seed: what runs are paired by.
+#: Suite, scenario, seed: the key for pairing runs.
 Key = tuple[str, str, int]
 #: Metric and variant.
 Name = tuple[str, str]
@@ -28,8 +28,8 @@ _Read = tuple[int, str, tuple[float, float]]
 
 OK, CENSORED, UNDEFINED, FAILED, MISSING = range(len(OUTCOMES))
 
-#: What people score in metrics that compare with them, where it is not 1, the ratio of equals.
-#: None: it is not among the scores, so that no distance can be told.
+#: Reference value of metrics that compare with people, if it is not 1, the ratio of equals. None:
+#: it is not among the scores, so no distance can be computed.
 REFERENCES: Mapping[str, float | None] = {"overtaking_count": None}
 
 
@@ -39,8 +39,8 @@ class Column:
 
     Attributes:
         outcome: (n,) index into `OUTCOMES`.
-        low, high: (n,) bounds of the value: equal where it is known, infinite where nothing is.
-        failed: (n,) where the planner failed or no run could be made; there may be a value.
+        low, high: (n,) bounds of the value: equal if known, infinite if nothing is known.
+        failed: (n,) True if the planner failed or no run could be made; there may be a value.
         reasons: why values are missing -> how often.
     """
 
@@ -52,20 +52,20 @@ class Column:
 
     @property
     def known(self) -> NDArray[np.bool_]:
-        """Where there is a value."""
+        """Return a mask of known values."""
         return np.asarray(self.outcome == OK)
 
     @property
     def counts(self) -> Counts:
-        """How many of each."""
+        """Return the number of each outcome."""
         return counts_of(self.outcome)
 
 
 class Table:
-    """Rows are scenario x seed, columns planner x score.
+    """A table with scenario x seed in rows and planner x score in columns.
 
-    A run whose planner failed keeps its values: it is a run whose robot did not arrive. One that
-    could not be made (`Results.failures`) counts as failed unless it was made after all.
+    A run whose planner failed keeps its values: it is a run whose robot did not arrive. A run that
+    could not be made (`Results.failures`) counts as failed unless a later attempt succeeded.
     """
 
     def __init__(self, results: Results) -> None:
@@ -86,45 +86,48 @@ class Table:
         return tuple(sorted(self._rows))
 
     def label(self, name: Name) -> ScoreRow:
-        """A row that says unit, category and direction of a score."""
+        """Return a row with unit, category and direction of a score."""
         return next(iter(self._rows[name].values()))
 
     @cached_property
     def draws(self) -> tuple[str, ...]:
-        """The crowd draw of each row; where nobody walks, the scenario itself."""
+        """Return the crowd draw of each row; the scenario itself if it has no people."""
         found = {key: _draw(run) for (_, key), run in self.runs.items()}
         known = {key[:2]: draw for key, draw in found.items()}
         return tuple(found.get(k) or known.get(k[:2]) or f"{k[0]}/{k[1]}" for k in self.keys)
 
     @cached_property
     def conditions(self) -> tuple[str, ...]:
-        """What the suite says of each row: its labels on all axes but `DRAW`."""
+        """Return the condition of each row: its labels on all axes except `DRAW`."""
         found = {key: _condition(key, run.axes) for (_, key), run in self.runs.items()}
         known = {key[:2]: condition for key, condition in found.items()}
         return tuple(found.get(k) or known.get(k[:2]) or f"{k[0]}/{k[1]}" for k in self.keys)
 
     @cached_property
     def clusters(self) -> Clusters:
-        """The crowd draws of all rows; conditions are strata where each has several draws."""
+        """Return the crowd draws of all rows; conditions are strata if each has several draws."""
         return Clusters.of(self.draws, self.conditions)
 
     def reference(self, name: Name) -> float | None:
-        """What a score that compares with people is to be near to."""
+        """Return the target value of a score that compares with people."""
         return REFERENCES.get(name[0], 1.0)
 
     def scale(self, name: Name) -> ScoreScale:
-        """Bounds of a score, and what it is a rate over."""
+        """Return the bounds of a score, and the exposure of a rate."""
         return self.scales.get(name, UNKNOWN)
 
     def exposure_name(self, name: Name) -> Name | None:
-        """The score that a rate is over; None where it is not a rate, or the runs lack that."""
+        """Return the score by which a rate is divided.
+
+        None if not a rate or missing in the runs.
+        """
         over = name[0], self.scale(name).rate_over
         return over if over[1] and over in self._rows else None
 
     def exposure(self, name: Name, planner: str) -> Floats | None:
-        """What a rate of one planner is over in each row, (n,); NaN where that is not known.
+        """Return the exposure of one planner's rate in each row, (n,); NaN if unknown.
 
-        None where the score is not a rate, or the runs do not have what it is over.
+        None if the score is not a rate, or the runs lack its exposure.
         """
         over = self.exposure_name(name)
         if over is None:
@@ -133,7 +136,7 @@ class Table:
         return np.where(column.known & (column.low > 0.0), column.low, np.nan)
 
     def column(self, name: Name, planner: str) -> Column:
-        """One score of one planner."""
+        """Return one score of one planner."""
         if (name, planner) not in self._columns:
             self._columns[name, planner] = self._column(name, planner)
         return self._columns[name, planner]
@@ -154,7 +157,7 @@ class Table:
         )  # fmt: skip
 
     def _tried(self, planner: str) -> list[tuple[RunRow | None, bool]]:
-        """For each row the run of a planner, and whether it could not be made."""
+        """Return a planner's run for each row, and True if it could not be made."""
         if planner not in self._attempts:
             places = [(planner, key) for key in self.keys]
             self._attempts[planner] = [(self.runs.get(p), p in self.failures) for p in places]
@@ -162,7 +165,7 @@ class Table:
 
 
 def counts_of(outcome: NDArray[np.int8]) -> Counts:
-    """How many of each outcome."""
+    """Return the number of each outcome."""
     found = np.bincount(outcome, minlength=len(OUTCOMES))
     return Counts(**dict(zip(OUTCOMES, map(int, found), strict=True)))
 
@@ -185,20 +188,20 @@ def _draw(run: RunRow) -> str:
 
 
 def _condition(key: Key, axes: Mapping[str, str]) -> str:
-    """Labels on all axes but `DRAW`; the scenario itself where there are none."""
+    """Return the labels on all axes except `DRAW`; the scenario itself if there are none."""
     labels = [f"{axis}={label}" for axis, label in axes.items() if axis != DRAW]
     return "/".join([key[0], *(labels or ([] if DRAW in axes else [key[1]]))])
 
 
 def _without_run(metric: str) -> _Read:
-    """Outcome, reason and bounds of a score of an attempt that left no run."""
+    """Return outcome, reason and bounds of a score of an attempt without a run."""
     if metric in WITHOUT_RUN:
         return OK, "", (WITHOUT_RUN[metric], WITHOUT_RUN[metric])
     return FAILED, "no_run", (-math.inf, math.inf)
 
 
 def _read(run: RunRow | None, score: ScoreRow | None) -> _Read:
-    """Outcome, reason and bounds of one score of one run."""
+    """Return outcome, reason and bounds of one score of one run."""
     nothing = (-math.inf, math.inf)
     if run is None:
         return MISSING, "", nothing

@@ -1,4 +1,4 @@
-"""How much of a score's variance goes with conditions, with people, and with run seeds."""
+"""Variance components of a score: conditions, people, and run seeds."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ ONE_DRAW_EACH = "one crowd draw a condition: conditions and people cannot be tol
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VarianceParts:
-    """Variance components of one score of one planner, in the square of its unit.
+    """Variance components of one score of one planner, in its squared unit.
 
-    Estimates of components may be negative where the true one is near 0; they are given as 0.
+    Negative estimates, which occur if the true component is near 0, are given as 0.
 
     Attributes:
-        condition: between the conditions of the suite, for infinitely many people each.
-        draw: between crowd draws of one condition. Where nobody repeated a run with another seed
-            it has the seed's part in it.
-        seed: between run seeds with the same people; None without any repeated.
-        reason: why there are none; empty if there are.
+        condition: variance between conditions of the suite, for infinitely many people each.
+        draw: variance between crowd draws of one condition. Without repeated seeds it includes
+            their part.
+        seed: variance between run seeds with the same people; None without repeated runs.
+        reason: why there are none, or empty.
     """
 
     planner: str
@@ -39,7 +39,7 @@ class VarianceParts:
 
     @property
     def shares(self) -> tuple[float, float, float]:
-        """Of condition, draw and seed; zeros where nothing varies."""
+        """Return the shares of condition, draw and seed; zeros without variation."""
         parts = np.array([self.condition or 0.0, self.draw or 0.0, self.seed or 0.0])
         whole = float(parts.sum())
         found = parts / whole if whole > 0.0 else parts
@@ -47,7 +47,7 @@ class VarianceParts:
 
 
 def variance_parts(table: Table, name: Name, planner: str) -> VarianceParts:
-    """Nested analysis of variance of unequal groups (Searle 1971, Linear Models, ch. 11)."""
+    """Return a nested analysis of variance for unequal groups (Searle 1971, Linear Models, 11)."""
     column = table.column(name, planner)
     known = np.flatnonzero(column.known)
     parts = partial(VarianceParts, planner=planner, metric=name[0], variant=name[1])
@@ -65,16 +65,16 @@ def variance_parts(table: Table, name: Name, planner: str) -> VarianceParts:
 def nested_variance(
     values: Floats, condition: NDArray[np.intp], draw: NDArray[np.intp]
 ) -> tuple[float | None, float, float | None] | None:
-    """Components by the method of moments: each mean square equals what is expected of it.
+    """Return components by the method of moments: each mean square equals its expectation.
 
     Args:
         values: (n,).
-        condition: (n,) number of the condition of each value.
-        draw: (n,) number of its draw; a draw belongs to one condition.
+        condition: (n,) index of each value's condition.
+        draw: (n,) index of each value's draw; a draw belongs to one condition.
 
     Returns:
-        of conditions (None with a single one), draws and what is left (None without repeated
-        runs); None where no condition has several draws.
+        components of conditions (None with one condition), draws and the remainder (None without
+        repeated runs); None if no condition has several draws.
     """
     n = len(values)
     of_draw = np.zeros(int(draw.max()) + 1, np.intp)

@@ -1,1 +1,1 @@
-"""Support: small tools that know nothing of robots."""
+"""Support: small general tools, independent of robots."""

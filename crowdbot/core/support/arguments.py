@@ -1,6 +1,6 @@
-"""Arguments of public functions: what is of another kind is refused, by its name.
+"""Check arguments of public functions, with messages that name the argument.
 
-Types exclude all this for whoever checks types. Most scripts and notebooks do not.
+Type checkers find the same errors, but most scripts and notebooks are not type-checked.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ from crowdbot.errors import InputError, kind_of
 
 
 def expect(name: str, value: object, *kinds: type, hint: str = "") -> None:
-    """Refuse an argument of another kind.
+    """Refuse an argument of another type.
 
     Raises:
-        InputError: it is.
+        InputError: it has another type.
     """
     if not isinstance(value, kinds):
         _refuse(name, value, f"a {' or '.join(k.__name__ for k in kinds)}", hint)
 
 
 def expect_function(name: str, value: object) -> None:
-    """Refuse what cannot be called.
+    """Refuse an argument that is not callable.
 
     Raises:
-        InputError: it cannot.
+        InputError: it is not callable.
     """
     if not callable(value):
         _refuse(name, value, "a function")
 
 
 def path_of(name: str, value: str | os.PathLike[str]) -> Path:
-    """A path, from a text or a path.
+    """Return a path from a text or a path.
 
     Raises:
         InputError: it is neither.
@@ -50,10 +50,10 @@ def path_of(name: str, value: str | os.PathLike[str]) -> Path:
 
 
 def number_of(name: str, value: Any, unit: str = "") -> float:
-    """A finite number.
+    """Return a finite number.
 
     Raises:
-        InputError: it is not one; the unit says in what it is wanted.
+        InputError: it is not one; the message names the unit.
     """
     wanted = f"a number in {unit}" if unit else "a number"
     if isinstance(value, bool | str | bytes | complex) or not hasattr(value, "__float__"):
@@ -68,7 +68,7 @@ def number_of(name: str, value: Any, unit: str = "") -> float:
 
 
 def whole_number_of(name: str, value: Any, least: int = 0) -> int:
-    """A whole number that is not below the least.
+    """Return a whole number that is at least the minimum.
 
     Raises:
         InputError: it is not one.
@@ -86,10 +86,10 @@ def whole_number_of(name: str, value: Any, least: int = 0) -> int:
 
 
 def point_of(name: str, value: Any) -> tuple[float, float]:
-    """Two finite numbers, m.
+    """Return two finite numbers, m.
 
     Raises:
-        InputError: it is something else.
+        InputError: it is not a point.
     """
     try:
         x, y = value
@@ -99,10 +99,10 @@ def point_of(name: str, value: Any) -> tuple[float, float]:
 
 
 def texts_of(name: str, value: str | Sequence[str]) -> tuple[str, ...]:
-    """One text or several.
+    """Return one or several texts as a tuple.
 
     Raises:
-        InputError: it is something else.
+        InputError: it is not text.
     """
     if isinstance(value, str):
         return (value,)
@@ -115,15 +115,15 @@ def texts_of(name: str, value: str | Sequence[str]) -> tuple[str, ...]:
 
 
 def mapping_of(name: str, value: Any, of: str) -> Mapping[Any, Any]:
-    """A mapping.
+    """Return a mapping.
 
     Args:
-        name: of the argument.
-        value: of it.
-        of: what it maps to what, in words.
+        name: the argument's name.
+        value: the argument.
+        of: description of its keys and values.
 
     Raises:
-        InputError: it is something else.
+        InputError: it is not a mapping.
     """
     if not isinstance(value, Mapping):
         _refuse(name, value, f"a mapping of {of}")

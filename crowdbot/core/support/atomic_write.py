@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Atomic file writes."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from crowdbot.errors import InputError
 
 @contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
-    """A path beside ``path`` to write to, renamed to it at the end; gone when the body fails.
+    """Yield a temporary path, renamed to ``path`` at the end, deleted on failure.
 
-    Folders above that are missing are made.
+    Missing parent folders are created.
 
     Raises:
         InputError: the path cannot be written.
@@ -23,7 +23,7 @@ def atomic_path(path: Path) -> Iterator[Path]:
     try:
         if not path.parent.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
-        part.touch()  # what cannot be written is told before the work, and by its own name
+        part.touch()  # report an unwritable path before the work, by its final name
         yield part
         part.replace(path)
     except OSError as error:
@@ -34,7 +34,7 @@ def atomic_path(path: Path) -> Iterator[Path]:
 
 
 def atomic_write(path: Path, content: str | bytes) -> None:
-    """Write a file beside its place, then rename it; nothing is left when that fails.
+    """Write a file under a temporary name, then rename it; nothing is left on failure.
 
     Raises:
         InputError: the path cannot be written.

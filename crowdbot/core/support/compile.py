@@ -18,37 +18,37 @@ import numba
 from crowdbot.core.support.compile_cache import is_plain_numba
 
 F = TypeVar("F", bound=Callable[..., Any])
-# `_nrt`, below, is not in numba's documentation, but how numba compiles its own such functions.
+# `_nrt`, used below, is undocumented; numba compiles its own such functions with it.
 _OPTIONS: dict[str, Any] = {"error_model": "numpy"}
 
 
 def kernel(function: F) -> F:
-    """Compile a function that makes no array and calls none that returns one.
+    """Compile a function that allocates no array and calls none that returns one.
 
-    Numba refuses one that makes an array when it compiles it.
+    Numba refuses to compile a function that allocates an array.
     """
     return cast(F, _compiled(function, {**_OPTIONS, "_nrt": False}))
 
 
 def array_kernel(function: F) -> F:
-    """Compile a function that makes arrays, or calls one that does."""
+    """Compile a function that allocates arrays, or calls one that does."""
     return cast(F, _compiled(function, _OPTIONS))
 
 
 def inline_kernel(function: F) -> F:
-    """As `kernel`, for a function that is copied into those that call it.
+    """As `kernel`, for a function that is inlined into its callers.
 
-    For a part of a loop that takes named tuples of arrays: handing over a hundred numbers would
-    cost as much as the part itself.
+    For a part of a loop that takes named tuples of arrays: passing a hundred numbers would cost as
+    much as the part itself.
     """
     return cast(F, _compiled(function, {"inline": "always", **_OPTIONS, "_nrt": False}))
 
 
 def declared_kernel(signature: Any) -> Callable[[F], F]:
-    """Compile a function at once, for one signature: one that is called by address.
+    """Compile a function immediately for one signature, for calls by address.
 
     Numba's ``@njit(signature, cache=True, error_model="numpy")`` does the same, but the first such
-    function that a process reads from the cache costs it 0.1 s.
+    function that a process loads from the cache takes 0.1 s.
     """
 
     def decorate(function: F) -> F:

@@ -1,8 +1,8 @@
-"""A second process that compiles what a first run needs late, while that compiles the rest.
+"""Compile in a second process what a first run needs late, in parallel to the first process.
 
 Both read and write one folder of compiled functions, and each function is compiled by one of them
-(`crowdbot.core.support.compile_parts`). Without the second process, whatever becomes of it, the
-first one compiles all by itself.
+(`crowdbot.core.support.compile_parts`). If the second process fails or is missing, the first one
+compiles everything itself.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
     "from crowdbot.core.support.compile_ahead import main; main(sys.argv[2])"
 )
-#: Time that the second process has to end by itself, s.
+#: Time for the second process to exit by itself, s.
 _GRACE = 2.0
 
 
 @contextmanager
 def compiled_ahead(module: str) -> Iterator[None]:
-    """Within this, if nothing is compiled yet, a second process calls ``module.compile_ahead()``.
+    """Call ``module.compile_ahead()`` in a second process, if nothing is compiled yet.
 
     It ends with the block, or with this process. On a single core there is none: it would only
     compile in another order.
@@ -52,10 +52,10 @@ def _started(module: str) -> subprocess.Popen[bytes] | None:
     try:
         return subprocess.Popen(
             command,
-            stdin=subprocess.PIPE,  # its end tells the second process that this one has ended
+            stdin=subprocess.PIPE,  # its end shows the second process that this one has ended
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            start_new_session=True,  # Ctrl-C is for this one
+            start_new_session=True,  # only this process handles Ctrl-C
         )
     except OSError:
         return None
@@ -72,7 +72,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def main(module: str) -> None:
-    """The second process."""
+    """Run the second process."""
     threading.Thread(target=_end_with_caller, daemon=True).start()
     import_module(module).compile_ahead()
 
@@ -81,7 +81,7 @@ def _end_with_caller() -> None:
     os.read(0, 1)
     from crowdbot.core.support.compile_parts import SAVING
 
-    with SAVING:  # half a file would stay
+    with SAVING:  # or else a partial file would remain
         os._exit(0)
 
 

@@ -9,7 +9,7 @@ _PACKAGE = Path(__file__).parents[2]
 _VARIABLE = "NUMBA_CACHE_DIR"
 _PLAIN = "CROWDBOT_PLAIN_NUMBA"
 _LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
-#: What numba asks, in turn: where the first has no file or no folder, numba's own.
+#: Numba's cache locators in order: its own follow if the first has no file or no folder.
 _CLASSES = ",".join(
     ("crowdbot.core.support.compile_cache_locator.CompiledStateLocator",
      "UserWideCacheLocator", "IPythonCacheLocator", "ZipCacheLocator")
@@ -22,12 +22,12 @@ def is_plain_numba() -> bool:
 
 
 def use_kernel_cache() -> None:
-    """Name the folder to numba, which reads it when it is imported; a user's own choice wins."""
+    """Set numba's cache folder, which it reads on import; a user's own setting is kept."""
     os.environ.setdefault(_VARIABLE, str(kernel_folder()))
     os.environ.setdefault(_LOCATORS, _CLASSES)
 
 
-#: So many compiled functions a first run with people, sensors and dwa leaves.
+#: Approximate number of compiled functions after a first run with people, sensors and dwa.
 USUAL = 218
 
 

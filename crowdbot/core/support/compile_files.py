@@ -1,8 +1,8 @@
-"""What numba's cache keeps of a compiled function, and how it is read again.
+"""Cache files of compiled functions for numba, and how they are loaded.
 
-A function as a part (`crowdbot.core.support.compile_parts`) is intermediate code only. One that is
-whole is machine code, with intermediate code for those who compile a caller. Who only calls it
-never needs that, and reading it takes longer than linking the machine code.
+A function stored as a part (`crowdbot.core.support.compile_parts`) is intermediate code only. A
+whole function is machine code, plus intermediate code for compiling its callers. Calls never need
+the latter, and loading it takes longer than linking the machine code.
 """
 # Numba has no types of its own. What is overridden here is not in its documentation.
 # mypy: disable-error-code="misc,no-untyped-call,attr-defined"
@@ -21,7 +21,7 @@ PART = "part"
 
 
 class _NoEngine:
-    """A part has no machine code, and so no global variables to be set in it."""
+    """Engine of a part, which has no machine code and so no global variables to set."""
 
     def __init__(self, codegen: Any) -> None:
         self._codegen = codegen
@@ -34,11 +34,11 @@ class _NoEngine:
 
 
 class PartLibrary(JITCodeLibrary):
-    """One function as intermediate code, which never becomes machine code by itself."""
+    """One function as intermediate code, which is never compiled to machine code alone."""
 
     @property
     def codegen(self) -> Any:
-        """Numba's, without what has addresses."""
+        """Return numba's code generator, without addresses."""
         return _NoEngine(self._codegen)
 
     def _finalize_final_module(self) -> None:
@@ -47,22 +47,22 @@ class PartLibrary(JITCodeLibrary):
         self._finalized = True
 
     def get_pointer_to_function(self, name: str) -> int:
-        """There is none."""
+        """Return 0: there is no address."""
         del name
         return 0
 
     def serialize_using_object_code(self) -> tuple[str, str, bytes]:
-        """What the cache keeps, instead of machine code."""
+        """Return the cached data in place of machine code."""
         return self.name, PART, self._get_module_for_linking().as_bitcode()
 
 
 def is_part(result: Any) -> bool:
-    """Whether a compiled function is a part."""
+    """Return True if a compiled function is a part."""
     return isinstance(result.library, PartLibrary)
 
 
 class _ReadLibrary(JITCodeLibrary):
-    """A whole function from the cache; of its intermediate code nothing but the names is known."""
+    """A whole function from the cache; only names of its intermediate code are known."""
 
     def __init__(
         self, symbols: Sequence[str], codegen: Any, name: str, code: tuple[bytes, bytes]
@@ -81,14 +81,14 @@ class _ReadLibrary(JITCodeLibrary):
 
 
 def _symbols_of(library: Any) -> tuple[str, ...]:
-    """What a library defines."""
+    """Return the symbols that a library defines."""
     module = library._get_module_for_linking()
     both = (module.functions, module.global_variables)
     return tuple(one.name for each in both for one in each if not one.is_declaration)
 
 
 class _ReadingContext:
-    """What numba reads a function from the cache with, in place of its own context."""
+    """A replacement for numba's context when a function is loaded from the cache."""
 
     def __init__(self, context: Any, read: Callable[[Any, str, Any], JITCodeLibrary]) -> None:
         self._context, self._read = context, read
@@ -112,21 +112,21 @@ def _read_part(codegen: Any, name: str, bitcode: bytes) -> PartLibrary:
 
 
 class CacheFiles(CompileResultCacheImpl):
-    """Keeps, with a function that is whole, what it defines and all constants that it looks up.
+    """Stores a whole function with its symbols and all constants that it refers to.
 
-    A part and what was made of it share one environment. Who has read that of the part, be it with
-    one of its callers, lacks the constants that are needed to hand Python an array.
+    A part and the whole function share one environment. The part's environment, loaded for example
+    with a caller, lacks the constants needed to return an array to Python.
     """
 
     def reduce(self, result: Any) -> Any:
-        """What is written."""
+        """Return the data to store."""
         payload = super().reduce(result)
         if is_part(result):
             return payload
         return (*payload, tuple(result.environment.consts), _symbols_of(result.library))
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
-        """The function, of what was written."""
+        """Return the function from stored data."""
         if payload[0][1] == PART:
             return self._read(target_context, payload, _read_part)
         *rest, constants, symbols = payload

@@ -1,13 +1,12 @@
-"""Compiles what only compiled code calls without what Python would need to call it.
+"""Compile functions called only from compiled code without Python or C wrappers.
 
-Numba makes three functions of each: the function itself, one that takes Python's objects apart
-and one for C, and turns all three into machine code. A part of a loop needs none but the first,
-and that only as LLVM's intermediate code, which is optimised anew, and becomes machine code, within
-each function that calls it. Measured over a first run, the other two are more than half of what
-LLVM is given.
+Numba generates three functions each: the function itself, a Python wrapper and a C wrapper, and
+compiles all three to machine code. A part of a loop needs only the first, as LLVM intermediate
+code, which is optimised and compiled within each caller. In a first run, the wrappers are more than
+half of LLVM's input.
 
-A function is compiled as a part when another compiled function calls it. Where Python, or C by
-address, calls it with the same types, what these need is added and kept beside the part.
+A function is compiled as a part when another compiled function calls it. If Python, or C by
+address, calls it with the same types, the wrappers are added and stored beside the part.
 """
 # Numba has no types of its own. What is overridden here is not in its documentation.
 # mypy: disable-error-code="misc,no-untyped-call,attr-defined"
@@ -46,13 +45,13 @@ SAVING = threading.Lock()
 
 
 class _Cache(FunctionCache):
-    """Keeps a function whole and as a part, whichever was compiled."""
+    """Stores a function whole and as a part, whichever was compiled."""
 
     _impl_class = CacheFiles
     _as_part = False
 
     def load(self, sig: Any, context: Any, as_part: bool) -> Any:
-        """As numba's, without what only those who compile need, a tenth of a second's work."""
+        """As numba's, without what only compilation needs, which saves a tenth of a second."""
         self._as_part = as_part
         rtsys.initialize(context)
         with self._guard_against_spurious_io_errors():
@@ -67,8 +66,8 @@ class _Cache(FunctionCache):
     def turn(self) -> Iterator[None]:
         """Wait while another process compiles this function.
 
-        A process that holds one waits for those that it calls, so none waits for itself. Where
-        the file system knows no locks, both compile.
+        A process that holds one lock waits for callees only, so there is no deadlock. Without file
+        locks, both compile.
         """
         place = int.from_bytes(hashlib.sha256(self._cache_file._index_path.encode()).digest()[:5])
         try:
@@ -90,7 +89,7 @@ class _Cache(FunctionCache):
 
 @cache
 def _lock_file(path: Path) -> int:
-    """Open for as long as this process lives: locks go when any file of that path is closed."""
+    """Open the lock file for the process's lifetime: closing any handle would release locks."""
     return os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
 
 
@@ -112,7 +111,7 @@ class _Compiler(_FunctionCompiler):
 
 
 class KernelDispatcher(CPUDispatcher):
-    """As numba's, but compiles what is called by compiled code as a part only."""
+    """As numba's, but compiles functions called from compiled code as parts only."""
 
     def __init__(
         self,
@@ -129,7 +128,7 @@ class KernelDispatcher(CPUDispatcher):
         self._parts: dict[Any, Any] = {}
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """Types of a call from compiled code."""
+        """Return the types of a call from compiled code."""
         with global_compiler_lock:
             before, self._called_by_compiled = self._called_by_compiled, True
             try:
@@ -138,9 +137,10 @@ class KernelDispatcher(CPUDispatcher):
                 self._called_by_compiled = before
 
     def compile(self, sig: Any) -> Any:
-        """Compile for arguments, as a part if compiled code asks.
+        """Compile for argument types, as a part if compiled code requests it.
 
-        Numba's own does the same, and times each call of LLVM, which takes a twentieth of all.
+        Numba's own method does the same, and also times each LLVM call, which takes a twentieth of
+        the total.
         """
         with global_compiler_lock, seldom_collected():
             if not self._can_compile:
@@ -189,8 +189,8 @@ class KernelDispatcher(CPUDispatcher):
             ) from None
 
     def _whole(self, part: Any) -> Any:
-        """A part with what Python and C call; the part itself is not translated again."""
-        # A part read from the cache has a context of all functions, which hands out no new array.
+        """Return a part with its Python and C wrappers; the part is not compiled again."""
+        # A part from the cache has a context of all functions, which cannot return new arrays.
         makes_arrays = self.targetoptions.get("_nrt", True)
         context = part.target_context.subtarget(enable_nrt=makes_arrays)
         description, environment = part.fndesc, part.environment
@@ -206,7 +206,7 @@ class KernelDispatcher(CPUDispatcher):
         return whole
 
     def _keep(self, result: Any) -> None:
-        """For callers; a part is nothing that Python could call."""
+        """Keep a part for callers; Python cannot call it."""
         arguments = tuple(result.signature.args)
         if is_part(result):
             self._parts[arguments] = self.overloads[arguments] = result
@@ -217,16 +217,16 @@ class KernelDispatcher(CPUDispatcher):
 
 
 def _let_others_call(result: Any) -> None:
-    """What numba does by itself with what it has just translated."""
+    """Register a newly compiled function for callers, as numba does by itself."""
     context, library = result.target_context, result.library
     context.insert_user_function(result.entry_point, result.fndesc, [library])
 
 
 def _leave_scipy() -> None:
-    """Have numba take for granted that there is a BLAS, also where plugins compile by themselves.
+    """Make numba assume that BLAS is available, also for plugins' own compilation.
 
-    It imports scipy.linalg to find out, which takes 0.2 s. Where a function multiplies matrices
-    it looks again.
+    Its check imports scipy.linalg, which takes 0.2 s. It is repeated for functions that multiply
+    matrices.
     """
     look, linalg.ensure_blas = linalg.ensure_blas, lambda: None
     try:

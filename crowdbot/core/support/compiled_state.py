@@ -1,9 +1,9 @@
-"""What compiled code depends on, as a hash: the function, all that it calls, all it reads.
+"""Hash of everything that compiled code depends on: the function, its callees, its globals.
 
-Numba keeps compiled code until the function's own file changes. That is too long: a function that
-it calls, in another file, may have changed. And it is too short: most changes of a file do not
-touch the function. Hashed here are byte code and options of a function, the values of the names
-that it reads, and the same of each function among them.
+Numba keeps compiled code until the function's own file changes. That misses changes of callees in
+other files, and discards code after unrelated changes in the same file. Hashed here are byte code
+and options of a function, the values of names that it reads, and the same for each function among
+them.
 """
 
 from __future__ import annotations
@@ -27,17 +27,16 @@ _PLAIN = (
     bool, int, float, complex, str, bytes, type(None), type(Ellipsis), Enum,
     np.generic, np.dtype, Type, Signature,
 )  # fmt: skip
-#: Packages whose own versions say what they hold.
+#: Packages identified by their version alone.
 _FOREIGN = sys.stdlib_module_names | {"numpy", "numba", "llvmlite"}
 _VERSIONS = f"numba {numba.__version__}, numpy {np.__version__}"
 _STATES: WeakKeyDictionary[types.FunctionType, str] = WeakKeyDictionary()
 
 
 class CompiledState:
-    """Compares and pickles as the hash of a function's state, which is taken when it is needed.
+    """Compares and pickles as the hash of a function's state, computed on demand.
 
-    Numba asks for it when a function is declared: what the function calls may be declared later
-    in the same file.
+    Numba asks for it when a function is declared: callees may be declared later in the same file.
     """
 
     def __init__(self, function: Any) -> None:
@@ -57,9 +56,9 @@ class CompiledState:
 
 
 def state_of(function: types.FunctionType) -> str:
-    """Hash of everything that decides what a function is compiled to, but for its arguments."""
+    """Return the hash of everything that affects a function's compiled code but its arguments."""
     if function not in _STATES:
-        _STATES[function] = "itself"  # while it is being looked at: it may call itself
+        _STATES[function] = "itself"  # for recursive functions
         told = hashlib.sha256(_VERSIONS.encode())
         for part in _function(function):
             told.update(part.encode() + b"\0")
@@ -82,7 +81,7 @@ def _function(function: types.FunctionType) -> Iterator[str]:
 
 
 def _code(code: types.CodeType, doc: str | None = None) -> Iterator[str]:
-    """Byte code and what it names; neither places in the file nor documentation."""
+    """Yield byte code and the names in it, without source positions or documentation."""
     yield f"{code.co_code.hex()} {code.co_names} {code.co_varnames} {code.co_freevars}"
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
@@ -97,7 +96,7 @@ def _names(code: types.CodeType) -> set[str]:
 
 
 def _value(value: Any, reader: types.FunctionType) -> Iterator[str]:
-    """A value that a function reads."""
+    """Yield a value that a function reads."""
     if isinstance(value, _PLAIN):
         yield f"{type(value).__qualname__} {value!r}"
     elif isinstance(value, np.ndarray):
@@ -117,7 +116,7 @@ def _value(value: Any, reader: types.FunctionType) -> Iterator[str]:
 
 
 def _module(module: types.ModuleType, reader: types.FunctionType) -> Iterator[str]:
-    """A module, with what a function may read of it."""
+    """Yield a module, with the parts that a function may read."""
     yield module.__name__
     if module.__name__.partition(".")[0] not in _FOREIGN:
         for name in sorted(_names(reader.__code__) & vars(module).keys()):
@@ -131,7 +130,7 @@ def _is_foreign(value: Any) -> bool:
 
 
 def _inner_function(value: Any) -> types.FunctionType | None:
-    """The Python function in a compiled one, in an intrinsic, or itself."""
+    """Return the Python function in a compiled function or intrinsic, or itself."""
     inner = getattr(value, "py_func", getattr(value, "_defn", value))
     return inner if isinstance(inner, types.FunctionType) else None
 
@@ -143,7 +142,7 @@ def _named(value: Any) -> str:
 
 @cache
 def package_of(file: Path) -> Path:
-    """The folder of the outermost package that a module belongs to, or the module's own."""
+    """Return the folder of a module's outermost package, or the module's own folder."""
     folder = file.parent
     while (folder.parent / "__init__.py").is_file():
         folder = folder.parent
@@ -152,7 +151,7 @@ def package_of(file: Path) -> Path:
 
 @cache
 def package_state(folder: Path) -> str:
-    """Hash of names, sizes and times of the sources in a package, or beside a lone module."""
+    """Return the hash of names, sizes and times of a package's sources, or of a lone module's."""
     whole = (folder / "__init__.py").is_file()
     state = hashlib.sha256()
     for file in sorted(folder.rglob("*.py") if whole else folder.glob("*.py")):

@@ -1,4 +1,4 @@
-"""Reads columns of numbers from CSV files."""
+"""Read columns of numbers from CSV files."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from crowdbot.errors import InputError
 def read_columns(
     path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = ()
 ) -> dict[str, Array]:
-    """Columns of a CSV file with a header; empty cells are NaN.
+    """Return the columns of a CSV file with a header; empty cells are NaN.
 
     Raises:
-        InputError: it cannot be read, a column is missing, or a cell is not a number; with its
-            line.
+        InputError: it cannot be read, a column is missing, or a cell is not a number (the message
+            names the line).
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:

@@ -1,4 +1,4 @@
-"""Rows as a data frame of pandas or a table of Arrow, for those who have them installed."""
+"""Rows as a pandas data frame or an Arrow table, if these are installed."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
     import pandas as pd  # type: ignore[import-untyped]
     import pyarrow as pa  # type: ignore[import-untyped]
 
-#: Columns that are numbers even where every cell is empty.
+#: Columns that are numeric even if every cell is empty.
 NUMBERS = ("value", "lower", "upper", "goal_time", "sim_time", "wall_time", "density")
 
 
 def to_pandas(rows: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> pd.DataFrame:
-    """A data frame; numbers that are not there are NaN.
+    """Return a data frame; missing numbers are NaN.
 
     Args:
-        rows: one mapping a row.
+        rows: one mapping per row.
         columns: names, in order.
 
     Raises:
@@ -34,10 +34,10 @@ def to_pandas(rows: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> pd.D
 
 
 def to_arrow(rows: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> pa.Table:
-    """A table of Arrow; what is not there is null.
+    """Return an Arrow table; missing values are null.
 
     Args:
-        rows: one mapping a row.
+        rows: one mapping per row.
         columns: names, in order.
 
     Raises:

@@ -1,8 +1,8 @@
-"""How this machine rounds: what decides whether two machines give the same trajectories.
+"""A fingerprint of this machine's rounding, which decides if trajectories are reproducible.
 
-IEEE arithmetic is the same everywhere; the last digits of sine, exponential and of products of
-matrices are not. They depend on the C library, on numpy's and BLAS' choice of instructions and on
-settings of the process, so that no name of a processor tells. A fingerprint of results does.
+IEEE arithmetic is the same everywhere; the last digits of sine, exponential and matrix products are
+not. They depend on the C library, on the instructions chosen by numpy and BLAS, and on process
+settings, so the processor's name is not enough. A fingerprint of results is.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ _OF_TWO: tuple[Callable[[float, float], float], ...] = (math.atan2, math.hypot, 
 
 @cache
 def fingerprint() -> str:
-    """16 hex digits; equal on two machines that round the functions of simulations alike."""
-    # no generator of random numbers: the points must not depend on what is examined
+    """Return 16 hex digits, equal on machines that round simulation functions alike."""
+    # no random generator: the points must not depend on what is tested
     place = (np.arange(1, _COUNT + 1) * 0.6180339887498949) % 1.0
     other = (np.arange(1, _COUNT + 1) * 0.4142135623730951) % 1.0
     x, y = 8.0 * place - 4.0, 8.0 * other - 4.0

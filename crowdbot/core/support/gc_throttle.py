@@ -1,4 +1,4 @@
-"""Python's collector of cycles, kept from walking again and again what is loaded for good."""
+"""Run the cyclic GC less often while long-lived objects are loaded."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-#: New objects before the collector looks at them, instead of 700: about 50 MB of small ones.
+#: New objects before a collection, instead of 700: about 50 MB of small ones.
 _MANY = 500_000
-#: Thresholds before `collect_seldom`; empty in processes that are not ours.
+#: Thresholds before `collect_seldom`; empty in host processes of the API.
 _usual: list[tuple[int, int, int]] = []
 
 
 def collect_seldom() -> None:
-    """Collect cycles seldom from now on, in a process of ours: what it loads it keeps.
+    """Collect seldom from now on, in our own process, whose loaded objects are permanent.
 
-    A threshold that is larger already, or 0 (off), stays.
+    A larger threshold, or 0 (off), is kept.
     """
     before = gc.get_threshold()
     if _raise_threshold():
@@ -24,9 +24,9 @@ def collect_seldom() -> None:
 
 @contextmanager
 def seldom_collected() -> Iterator[None]:
-    """As `collect_seldom`, for a while: documents are many objects with few cycles.
+    """As `collect_seldom`, within a context: documents are many objects with few cycles.
 
-    A decorator, too.
+    Also usable as a decorator.
     """
     before = gc.get_threshold()
     _raise_threshold()
@@ -38,9 +38,9 @@ def seldom_collected() -> Iterator[None]:
 
 @contextmanager
 def collected_as_usual() -> Iterator[None]:
-    """Undoes `collect_seldom` for a while: what planners leave may be large.
+    """Undo `collect_seldom` within a context, since planners' garbage may be large.
 
-    Where that was not called, thresholds are a user's, and nothing is done.
+    Without an earlier `collect_seldom`, thresholds are the user's and are kept.
     """
     if not _usual:
         yield
@@ -54,7 +54,7 @@ def collected_as_usual() -> Iterator[None]:
 
 
 def _raise_threshold() -> bool:
-    """Whether the threshold was lower, and not off."""
+    """Raise the threshold; return True if it was lower and not off."""
     first, *others = gc.get_threshold()
     if not 0 < first < _MANY:
         return False

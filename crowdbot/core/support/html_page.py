@@ -1,7 +1,7 @@
-"""One HTML page in one file, which asks the network for nothing.
+"""One HTML page in one file, without network requests.
 
-A package holds the parts: ``page.html.j2``, ``page.css`` and scripts. The content security policy
-of the page allows its own style sheet and script, by hash, and nothing else.
+A package contains ``page.html.j2``, ``page.css`` and scripts. The page's content security policy
+allows only its own style sheet and script, by hash.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ def render_page(
     frames: bool = False,
     **values: Any,
 ) -> str:
-    """Fill in the page of a package; equal input gives equal text.
+    """Render the page of a package; equal input gives equal text.
 
     Args:
-        package: whose folder holds the parts.
-        scripts: names of its files, in the order in which they run.
+        package: the package with the parts.
+        scripts: names of its script files, in order.
         more_style: rules to add to ``page.css``.
-        images: sources of images that the page makes itself, such as ``blob:``.
-        frames: whether the page may open others from its own site or folder within itself.
-        values: what the template names, beside ``policy``, ``style`` and ``script``. Text is
-            escaped.
+        images: sources of generated images, such as ``blob:``.
+        frames: True if the page may embed others from its own site or folder.
+        values: further variables of the template, besides ``policy``, ``style`` and ``script``.
+            Text is escaped.
     """
     style = "\n".join(filter(None, [_part(package, "page.css"), more_style]))
     script = "\n".join(_part(package, name) for name in scripts)

@@ -1,4 +1,4 @@
-"""Arrays that nobody can make writable again: their memory is a Python bytes object."""
+"""Permanently read-only arrays: their memory is a Python bytes object."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ D = TypeVar("D")
 
 
 def immutable(array: NDArray[T]) -> NDArray[T]:
-    """A copy of an array, laid out like it, that refuses ``setflags(write=True)`` for good.
+    """Return a copy of an array that permanently refuses ``setflags(write=True)``.
 
-    The array itself if it is one of these.
+    An array that is already immutable is returned itself.
     """
     if _lies_in_bytes(array):
         return array
@@ -32,7 +32,7 @@ def _lies_in_bytes(array: NDArray[Any]) -> bool:
 
 
 def immutable_fields(value: D) -> D:
-    """A copy of a dataclass whose arrays, and those of dataclasses in it, nobody can change."""
+    """Return a copy of a dataclass whose arrays, including nested ones, are immutable."""
     holder: Any = value
     changed: dict[str, Any] = {}
     for field in fields(holder):

@@ -1,4 +1,4 @@
-"""What differs between two documents, field by field."""
+"""Differences between two documents, field by field."""
 
 from __future__ import annotations
 
@@ -7,29 +7,29 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-#: Stands for a field that one side does not have.
+#: Marks a field that one side does not have.
 ABSENT = object()
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A field, and what both sides have there; `ABSENT` where there is nothing."""
+    """A field, and its value on both sides; `ABSENT` if missing."""
 
     path: str
     a: Any
     b: Any
 
     def as_dict(self) -> dict[str, Any]:
-        """For ``--json``; a side that lacks the field lacks the key."""
+        """Return a dictionary for ``--json``; a missing side has no key."""
         sides = {"a": self.a, "b": self.b}
         return {"field": self.path} | {k: v for k, v in sides.items() if v is not ABSENT}
 
 
 def differences(a: Any, b: Any, path: str = "") -> Iterator[Difference]:
-    """Differences of two documents of JSON values, by path; maps are followed, lists are not.
+    """Yield differences of two JSON documents by path; maps are followed, lists are not.
 
-    A map with another ``kind`` is one difference: fields of two types have nothing in common.
-    A map that only one side has is followed, so that each of its fields is seen.
+    A map with another ``kind`` is one difference, since fields of different types are unrelated. A
+    map on one side only is followed, so that each field is shown.
     """
     if isinstance(a, Mapping) and isinstance(b, Mapping) and not _other_kind(a, b):
         for key in sorted({*a, *b}):
@@ -40,7 +40,7 @@ def differences(a: Any, b: Any, path: str = "") -> Iterator[Difference]:
 
 
 def shown(value: Any) -> str:
-    """A side of a difference for people."""
+    """Return one side of a difference as readable text."""
     if value is ABSENT:
         return "–"
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
@@ -51,7 +51,7 @@ def _other_kind(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
 
 
 def _same(a: Any, b: Any) -> bool:
-    """Equal in value and type: ``1`` and ``true`` are not the same."""
+    """Return True if equal in value and type: ``1`` and ``true`` differ."""
     if a is ABSENT or b is ABSENT:
         return a is b
     return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)

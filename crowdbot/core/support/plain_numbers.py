@@ -1,4 +1,4 @@
-"""What a plugin returned as an array of real numbers, without running more of its code."""
+"""Convert a plugin's result to an array of real numbers, without running more of its code."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-#: An array of ours has so many dimensions at most.
+#: Largest number of dimensions of our arrays.
 _DEEPEST = 3
 _NUMBERS = (bool, int, float)
 
 
 def plain_numbers(value: object) -> NDArray[np.float64]:
-    """An array of a plugin's answer: an array, a number, or plain lists of them.
+    """Return an array from an array, a number, or plain lists of numbers.
 
-    numpy asks a list that only looks like one for its items, which may never end, and drops the
-    imaginary part of complex numbers with a warning.
+    numpy iterates over list-like objects, which may be endless, and drops the imaginary part of
+    complex numbers with a warning.
 
     Raises:
-        TypeError: it is something else.
+        TypeError: it is none of these.
     """
     if type(value) is np.ndarray and value.dtype == np.float64:
         return value

@@ -55,7 +55,7 @@ class Rows(Protocol[T]):
 
 
 def rows_of(count: int, record: RecordType[T]) -> Rows[T]:
-    """So many new records of zeros."""
+    """Return this many new records of zeros."""
     return cast(Rows[T], np.zeros(count, cast(Any, record)))
 
 

@@ -1,4 +1,4 @@
-"""A process that ends without looking through everything that libraries have made."""
+"""Exit without a final garbage collection."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _WRITERS = (io.TextIOWrapper, io.BufferedWriter, io.BufferedRandom)
 
 
 def end_without_collecting() -> None:
-    """Have this process leave its memory to the operating system when it ends.
+    """Make this process exit without a final garbage collection.
 
-    Python's collector of cycles otherwise walks all objects several times at the end: with Drake
-    and numba these are hundreds of thousands, and a quarter of the processor time of a short
-    command. What was written into files is kept, also where a plugin left one open. For processes
-    that are ours alone: a host of crowdbot's Python API may count on its own finalisers.
+    Otherwise Python's cyclic collector walks all objects several times at exit: with Drake and
+    numba hundreds of thousands, which takes a quarter of a short command's processor time. Written
+    data is flushed, even in files that a plugin left open. Use only in our own processes: a host of
+    crowdbot's Python API may rely on its finalisers.
     """
     atexit.unregister(_end)
     atexit.register(_end)
@@ -31,7 +31,7 @@ def _end() -> None:
 def _flush(file: io.IOBase) -> None:
     try:
         file.flush()
-    except (OSError, ValueError):  # its disk is full, its reader has gone, or it is closed
+    except (OSError, ValueError):  # disk full, reader gone, or closed
         return
 
 

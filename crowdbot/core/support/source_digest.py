@@ -1,4 +1,4 @@
-"""The SHA-256 of all files that a Python file consists of: modules beside it, and declared data."""
+"""SHA-256 of all files that a Python file needs: modules beside it, and declared data."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from pathlib import Path
 from crowdbot.errors import InputError
 
 _FOREIGN = {*sys.stdlib_module_names, "crowdbot"}
-#: Functions whose first argument, where it is text, is the name of a module.
+#: Functions whose first argument, if text, is a module name.
 _BY_NAME = ("import_module", "__import__")
 _MOST_DATA = 10_000
 
 
 def source_digest(file: Path, data: Sequence[str] = ()) -> str:
-    """SHA-256 of a file; with modules beside it that it imports, or data, of these as well.
+    """Return the SHA-256 of a file; with modules beside it that it imports, or data, of all these.
 
-    Imports are read from the text, at any depth, so that the same files have the same digest
-    whatever else was imported before.
+    Imports are read from the source at any depth, so that equal files have equal digests regardless
+    of earlier imports.
 
     Args:
         file: a Python file.
@@ -40,7 +40,7 @@ def source_digest(file: Path, data: Sequence[str] = ()) -> str:
 
 
 def digest_of_files(files: Mapping[str, Path]) -> str:
-    """SHA-256 of the names and contents of some files, in order of names.
+    """Return the SHA-256 of the names and contents of some files, in order of names.
 
     Raises:
         InputError: one cannot be read.
@@ -52,7 +52,7 @@ def digest_of_files(files: Mapping[str, Path]) -> str:
 
 
 def file_digest(file: Path) -> str:
-    """SHA-256 of one file.
+    """Return the SHA-256 of one file.
 
     Raises:
         InputError: it cannot be read.
@@ -65,15 +65,15 @@ def file_digest(file: Path) -> str:
 
 
 def data_files(folder: Path, patterns: Iterable[str]) -> dict[str, Path]:
-    """Name -> file for all that some names or patterns stand for.
+    """Return name -> file for all files that match names or patterns.
 
     Args:
-        folder: what they are relative to.
+        folder: folder of the names and patterns.
         patterns: file names; ``*``, ``?``, ``[…]`` and ``**`` as in a glob; a folder means all
             files in it.
 
     Raises:
-        InputError: one of them matches no file, or there are unreasonably many.
+        InputError: a pattern matches no file, or there are too many files.
     """
     found: dict[str, Path] = {}
     for pattern in patterns:
@@ -87,9 +87,9 @@ def data_files(folder: Path, patterns: Iterable[str]) -> dict[str, Path]:
 
 
 def declared_data(holder: object) -> tuple[str, ...]:
-    """What a class says in ``data = ("weights.npz",)``; nothing where it says nothing of the kind.
+    """Return the declaration ``data = ("weights.npz",)`` of a class; empty without one.
 
-    A field of a spec with this name is a parameter, and no declaration.
+    A spec field with this name is a parameter, not a declaration.
     """
     if "data" in getattr(holder, "model_fields", {}):
         return ()
@@ -102,9 +102,9 @@ def declared_data(holder: object) -> tuple[str, ...]:
 
 
 def package_files(folder: Path) -> dict[str, Path]:
-    """Name -> file of a package, and of modules beside it that it imports.
+    """Return name -> file of a package, and of modules beside it that it imports.
 
-    What lies in ``__pycache__`` or begins with a dot is left out.
+    ``__pycache__`` and names that begin with a dot are left out.
     """
     own = {
         "/".join(file.relative_to(folder).parts): file
@@ -118,7 +118,7 @@ def package_files(folder: Path) -> dict[str, Path]:
 
 
 def imported_names(file: Path) -> set[str]:
-    """First parts of the names of all modules that a file, or one beside it, imports."""
+    """Return the top module names that a file, or one beside it, imports."""
     return {name for one in _with_helpers(file) for name in _imported(one)}
 
 
@@ -127,7 +127,7 @@ def _with_helpers(file: Path) -> set[Path]:
 
 
 def _helpers_of(folder: Path, files: Iterable[Path], own: set[str]) -> set[Path]:
-    """Files of the modules in a folder that some files import, or that those import."""
+    """Return the files of modules in a folder that some files import, directly or indirectly."""
     waiting, found = list(files), set[Path]()
     seen = set(waiting)
     while waiting:
@@ -140,11 +140,11 @@ def _helpers_of(folder: Path, files: Iterable[Path], own: set[str]) -> set[Path]
 
 
 def _imported(file: Path) -> set[str]:
-    """First parts of the names of all modules that a file imports."""
+    """Return the top module names that a file imports."""
     try:
         nodes = list(ast.walk(ast.parse(file.read_bytes())))
     except (SyntaxError, ValueError, RecursionError, OSError):
-        return set()  # importing it says why
+        return set()  # importing it gives the reason
     names = {alias.name for n in nodes if isinstance(n, ast.Import) for alias in n.names}
     names |= {n.module for n in nodes if isinstance(n, ast.ImportFrom) and n.module and not n.level}
     names |= {name for n in nodes if isinstance(n, ast.Call) for name in _named(n)}
@@ -152,7 +152,7 @@ def _imported(file: Path) -> set[str]:
 
 
 def _named(call: ast.Call) -> Iterator[str]:
-    """The module that a call imports by its name."""
+    """Yield the module that a call imports by name."""
     called = call.func
     name = called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")
     if name in _BY_NAME and call.args and isinstance(call.args[0], ast.Constant):
@@ -162,7 +162,7 @@ def _named(call: ast.Call) -> Iterator[str]:
 
 
 def _beside(folder: Path, name: str) -> Iterator[Path]:
-    """The files of a module or package in a folder, compiled ones too."""
+    """Yield the files of a module or package in a folder, including compiled ones."""
     if not name.isidentifier():
         return
     if (folder / name).is_dir():
@@ -180,7 +180,7 @@ def _is_module(file: Path) -> bool:
 
 
 def _matching(folder: Path, pattern: str) -> Iterator[Path]:
-    """Files that a pattern stands for; one that is absolute, or goes up, is a name."""
+    """Yield files that match a pattern; absolute patterns, or ones that go up, are plain names."""
     place = Path(pattern).expanduser()
     if place.is_absolute() or ".." in place.parts:
         plain = place if place.is_absolute() else folder / place
@@ -197,5 +197,5 @@ def _matching(folder: Path, pattern: str) -> Iterator[Path]:
 
 
 def _name(file: Path, folder: Path) -> str:
-    """As seen from the folder, however it is called itself."""
+    """Return the name relative to the folder, regardless of the folder's name."""
     return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()

@@ -1,7 +1,7 @@
-"""The order of numbers, for compiled functions.
+"""Stable sort order of numbers, for compiled functions.
 
-Numba takes a second of processor time and more to compile ``np.argsort`` or ``sort``, and does so
-again for each function that calls them. This one is compiled once for all.
+Numba needs a second or more of processor time to compile ``np.argsort`` or ``sort`` for each
+function that calls them. This function is compiled only once.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 Order = NDArray[np.int64]
-#: As many are sorted one by one before parts are merged.
+#: Size of parts that are sorted by insertion before they are merged.
 _SHORT = 16
 
 
 @array_kernel
 def stable_order(values: Array) -> Order:
-    """As ``np.argsort(values, kind="stable")``: equal ones keep their order, NaN come last.
+    """Return ``np.argsort(values, kind="stable")``: equal values keep their order, NaN come last.
 
     Args:
         values: (N,).
@@ -48,7 +48,7 @@ def _before(a: float, b: float) -> bool:
 
 @kernel
 def _sort_short(values: Array, order: Order, first: int, end: int) -> None:
-    """Write the order of values [first, end) there, by insertion."""
+    """Write the order of values [first, end) in place, by insertion sort."""
     for i in range(first, end):
         place = i
         while place > first and _before(values[i], values[order[place - 1]]):

@@ -1,4 +1,4 @@
-"""Keeps standard output to what a command answers, whatever plugins print meanwhile."""
+"""Keep plugins' output away from the command's standard output."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _OUT, _ERR = 1, 2
 
 @contextmanager
 def stdout_to_stderr() -> Iterator[None]:
-    """Send to stderr what is printed to stdout: by Python, by compiled code, by child processes.
+    """Send output to stdout to stderr instead: from Python, compiled code and child processes.
 
-    For commands, not for libraries: file descriptor 1 belongs to the whole process.
+    For commands, not libraries: file descriptor 1 belongs to the whole process.
     """
     sys.stdout.flush()
     kept = _redirected()
@@ -31,7 +31,7 @@ def stdout_to_stderr() -> Iterator[None]:
 
 
 def _redirected() -> int | None:
-    """Let descriptor 1 lead where 2 leads; the old one, or None where one of them is closed."""
+    """Redirect descriptor 1 to 2; return the old one, or None if one of them is closed."""
     try:
         kept = os.dup(_OUT)
     except OSError:
@@ -45,7 +45,7 @@ def _redirected() -> int | None:
 
 
 def _flush() -> None:
-    """Write out what waits in buffers of Python and of C, while it still goes to stderr."""
+    """Flush the buffers of Python and C while they still go to stderr."""
     for stream in (sys.__stdout__, sys.stdout):
         with contextlib.suppress(OSError, ValueError, AttributeError):
             stream.flush()  # type: ignore[union-attr]

@@ -1,7 +1,7 @@
-"""JSON that somebody else wrote, read so that nobody can read it otherwise.
+"""Strict JSON for untrusted input: no duplicate keys, NaN or lone surrogates.
 
-Python's parser takes the last of two equal keys, NaN, numbers that become infinite, and half
-characters; other parsers do not. None of these is in what crowdbot writes.
+Python's parser accepts duplicate keys (the last one wins), NaN, numbers that overflow, and lone
+surrogates; other parsers do not. crowdbot never writes any of these.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import Any, NoReturn
 
 from crowdbot.errors import hidden_character
 
-#: Most brackets around a value, and digits of a whole number.
+#: Largest nesting depth, and number of digits of an integer.
 DEEPEST, LONGEST = 64, 300
 
 
 def parse_json(text: str) -> Any:
-    """The content of a document.
+    """Return the content of a document.
 
     Raises:
-        ValueError: it is not JSON, or can be read in two ways; says what.
+        ValueError: it is not JSON, or is ambiguous; the message says why.
     """
     if text.startswith("\ufeff"):
         raise ValueError("it begins with a byte order mark")
@@ -63,7 +63,7 @@ def _finite(digits: str) -> float:
 
 
 def _check(content: Any) -> None:
-    """Depth, and characters that no reader would see."""
+    """Check depth, and characters that readers cannot see."""
     level: Iterable[Any] = [content]
     for _ in range(DEEPEST + 1):
         level = [part for value in level for part in _parts(value)]
@@ -76,7 +76,7 @@ def _parts(value: Any) -> Iterator[Any]:
     if isinstance(value, str):
         hidden = hidden_character(value)
         if hidden:
-            raise ValueError(f"a text has the character {hidden}, which nobody sees")
+            raise ValueError(f"a text has the hidden character {hidden}")
     elif isinstance(value, dict):
         yield from value
         yield from value.values()

@@ -1,4 +1,4 @@
-"""Simulated time in integer ticks of 1/128 s, so that no event time is ever rounded."""
+"""Simulated time in integer ticks of 1/128 s, so that event times are exact."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ TICK = 1.0 / TICKS_PER_SECOND
 
 
 def ticks(rate: float) -> int:
-    """Ticks between events of a rate that divides 128 Hz."""
+    """Return the ticks between events of a rate that divides 128 Hz."""
     return round(TICKS_PER_SECOND / rate)
 
 
 def is_due(tick: int, rate: float) -> bool:
-    """Whether a sample n of any rate up to 128 Hz falls on this tick.
+    """Return True if a sample of a rate up to 128 Hz falls on this tick.
 
     Sample n is taken on the first tick at or after n / rate.
     """
@@ -21,6 +21,6 @@ def is_due(tick: int, rate: float) -> bool:
 
 
 def _samples_until(tick: int, rate: float) -> int:
-    """Number of samples n >= 0 with n / rate <= tick / 128."""
-    # 8.2 Hz is stored as a little less; its sample 123 still belongs to the tick at 15 s.
+    """Return the number of samples n >= 0 with n / rate <= tick / 128."""
+    # 8.2 Hz is stored as slightly less; its sample 123 still belongs to the tick at 15 s.
     return int(tick * rate / TICKS_PER_SECOND + 1e-9) + 1 if tick >= 0 else 0

@@ -1,1 +1,1 @@
-"""Trajectories: what a run leaves behind for metrics, and what is computed from it."""
+"""Trajectories: the data of a run for metrics, and quantities computed from it."""

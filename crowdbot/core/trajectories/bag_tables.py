@@ -1,7 +1,7 @@
-"""Tables of a robot and of people from topics of a bag of ROS 1 or ROS 2.
+"""Tables of a robot and of people from topics of a ROS 1 or ROS 2 bag.
 
-A message is read by the parts that it has, not by the name of its type: a pose, with or without a
-covariance; a list of people with positions; so packages that nobody installed can be read.
+A message is read by its fields, not by its type name: a pose, with or without covariance; a list of
+people with positions. So message packages need not be installed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from crowdbot.core.trajectories.raw_table import Cells, RawTable
 from crowdbot.errors import InputError, UnknownNameError
 
-#: Where messages of people have their list, in the order of looking.
+#: Fields that may hold the list of people, in the order they are tried.
 _LISTS = ("people", "tracks", "pedestrians", "agents", "agent_states", "markers", "poses")
 _NAMES = ("track_id", "id", "name", "object_id", "uuid")
 
@@ -24,12 +24,12 @@ _NAMES = ("track_id", "id", "name", "object_id", "uuid")
 def bag_tables(
     path: Path, robot: str | None, people: str | None
 ) -> tuple[RawTable | None, RawTable | None]:
-    """The tables of two topics; times are those of the headers, else those of the recording.
+    """Return the tables of two topics; times are from the headers, else from the recording.
 
     Args:
         path: a bag of ROS 1 (``.bag``), a folder of rosbag2, or its ``.mcap`` or ``.db3`` file.
-        robot: topic with the pose: ``Odometry``, ``PoseStamped``, ``Pose`` and their like.
-        people: topic with a list of people, or a ``PoseArray``, whose order then tells who is who.
+        robot: topic with the pose: ``Odometry``, ``PoseStamped``, ``Pose`` and similar.
+        people: topic with a list of people, or a ``PoseArray``, whose order then identifies people.
 
     Raises:
         InputError: it cannot be read, or a message has no pose or no list.
@@ -50,7 +50,7 @@ def bag_tables(
 
 
 def people_topics(path: Path) -> list[str]:
-    """Topics of a bag whose messages have a list of people with positions, in order.
+    """Return the topics of a bag whose messages list people with positions, in order.
 
     Raises:
         InputError: it cannot be read.
@@ -58,7 +58,7 @@ def people_topics(path: Path) -> list[str]:
     found: dict[str, bool] = {}
     for topic, _, message in _messages(path):
         items = next((getattr(message, n) for n in _LISTS if hasattr(message, n)), ())
-        if len(items):  # whoever looks at an empty list does not know yet
+        if len(items):  # an empty list shows nothing
             found[topic] = found.get(topic, True) and all(_pose(i) is not None for i in items)
     return sorted(topic for topic, people in found.items() if people)
 
@@ -82,7 +82,7 @@ def _messages(path: Path, topics: set[str] | None = None) -> Iterator[tuple[str,
 
 
 def _stamp(message: Any, ns: int) -> int:
-    """Nanoseconds; of the header where it has one that was filled in."""
+    """Return nanoseconds, from the header if it is filled in."""
     header = getattr(message, "header", None)
     if header is not None and (header.stamp.sec or header.stamp.nanosec):
         return 10**9 * int(header.stamp.sec) + int(header.stamp.nanosec)
@@ -98,13 +98,13 @@ def _robot_row(path: Path, topic: str, message: Any) -> dict[str, float]:
     if q is not None and q.x**2 + q.y**2 + q.z**2 + q.w**2 > 0.5:
         row["theta"] = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y**2 + q.z**2))
     twist = getattr(getattr(message, "twist", None), "twist", None)
-    if twist is not None:  # Odometry: in the robot's own frame
+    if twist is not None:  # Odometry: in the robot's frame
         row |= {"v": float(twist.linear.x), "w": float(twist.angular.z)}
     return row
 
 
 def _pose(item: Any) -> Any:
-    """What has a position, at any of the usual depths."""
+    """Return the part with a position, at any of the usual depths."""
     for _ in range(4):
         if hasattr(item, "position") and hasattr(item.position, "x"):
             return item
@@ -121,7 +121,7 @@ def _people_rows(path: Path, topic: str, message: Any) -> Iterator[dict[str, Any
     for number, item in enumerate(getattr(message, name)):
         pose = _pose(item)
         if pose is None:
-            raise InputError(f"{path}: {topic}: somebody in '{name}' has no position")
+            raise InputError(f"{path}: {topic}: a person in '{name}' has no position")
         label = next((getattr(item, n) for n in _NAMES if hasattr(item, n)), number)
         row = {"id": _label(label), "x": float(pose.position.x), "y": float(pose.position.y)}
         yield row | _velocity(item)
@@ -145,9 +145,9 @@ def _table(path: Path, topic: str | None, rows: list[dict[str, Any]]) -> RawTabl
     if topic is None:
         return None
     if not rows:
-        raise InputError(f"{path}: {topic} holds nobody")
+        raise InputError(f"{path}: {topic} contains no people")
     once = {(row["t"], row.get("id")): row for row in sorted(rows, key=lambda row: row["t"])}
-    rows = list(once.values())  # a message that was sent again says nothing new
+    rows = list(once.values())  # a repeated message adds nothing
     columns: dict[str, Cells] = {
         n: [row.get(n, math.nan) for row in rows] for n in dict.fromkeys(k for r in rows for k in r)
     }

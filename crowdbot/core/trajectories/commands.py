@@ -27,7 +27,7 @@ class Commands:
         v_user, w_user: (N,) input of the user, m/s forward and rad/s counter-clockwise.
         v_sc, w_sc: (N,) final command after shared control, likewise.
         v_max, w_max: largest speeds that can be commanded, m/s and rad/s.
-        t_end: until when the last command holds, s.
+        t_end: end of the last command, s.
     """
 
     t: Array
@@ -55,8 +55,8 @@ class Commands:
         """Build from plain arrays; without ``t_end`` the last command has no duration.
 
         Raises:
-            InputError: a shape does not fit, a number is not finite, time does not increase, or a
-                limit is not positive.
+            InputError: a shape is wrong, a number is not finite, time does not increase, or a limit
+                is not positive.
         """
         rows = dict(zip(COLUMNS, (t, v_user, w_user, v_sc, w_sc), strict=True))
         columns = {name: _column(name, values) for name, values in rows.items()}
@@ -88,7 +88,7 @@ class Commands:
 
     @property
     def durations(self) -> Array:
-        """How long each command holds (N,), s."""
+        """Return how long each command holds (N,), s."""
         return np.diff(self.t, append=self.t_end)
 
 

@@ -1,4 +1,4 @@
-"""Tracks of people in the formats of data sets: TrajNet++, and ETH and UCY."""
+"""Tracks of people in data set formats: TrajNet++, and ETH and UCY."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ import numpy as np
 from crowdbot.core.trajectories.raw_table import RawTable
 from crowdbot.errors import InputError, UnknownNameError
 
-#: Columns of ETH's ``obsmat.txt``: y is the height, and up in its plane is the third.
+#: Columns of ETH's ``obsmat.txt``: y is the height, and the third column is y in the plane.
 _OBSMAT = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
 _PLAIN = ("frame", "id", "x", "y")
 
 
 def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> RawTable:
-    """People of a TrajNet++ file (``.ndjson``: lines of ``scene`` and ``track``).
+    """Read people from a TrajNet++ file (``.ndjson``: lines of ``scene`` and ``track``).
 
     Args:
         path: the file.
         scene: number of one scene: frames and people of its time; None takes all tracks.
-        frame_rate: frames per second; None takes what the scenes say (``fps``, of their steps).
+        frame_rate: frames per second; None: from the scenes (``fps``, of their steps).
 
     Raises:
-        InputError: it cannot be read, or a line is something else.
+        InputError: it cannot be read, or a line is invalid.
         UnknownNameError: there is no such scene.
     """
     scenes: dict[int, dict[str, Any]] = {}
@@ -57,15 +57,14 @@ def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> Ra
 
 
 def eth_ucy_table(path: Path, frame_rate: float | None) -> RawTable:
-    """People of ETH or UCY: ``obsmat.txt`` with 8 columns, or 4: frame, id, x, y.
+    """Read people from ETH or UCY: ``obsmat.txt`` with 8 columns, or 4: frame, id, x, y.
 
     Args:
         path: the file; blanks, tabs or commas between the columns, no header.
-        frame_rate: frames per second; None takes a step of annotations for 0.4 s, as both data
-            sets have it.
+        frame_rate: frames per second; None: one annotation per 0.4 s, as in both data sets.
 
     Raises:
-        InputError: it cannot be read, or a row is something else.
+        InputError: it cannot be read, or a row is invalid.
     """
     rows, lines = [], []
     for number, line in enumerate(_text(path).splitlines(), 1):
@@ -93,7 +92,7 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> RawTable:
 
 
 def split_robot(table: RawTable, robot: int | str | None) -> tuple[RawTable | None, RawTable]:
-    """One person of a table as the robot, and the others.
+    """Return one person of a table as the robot, and the others.
 
     Raises:
         UnknownNameError: there is no such person.
@@ -114,7 +113,7 @@ def split_robot(table: RawTable, robot: int | str | None) -> tuple[RawTable | No
 
 
 def _seconds(frames: Any, step: float) -> Any:
-    """Times of frames; the commonest step between frames that occur is ``step`` seconds."""
+    """Return times of frames; the most frequent frame step equals ``step`` seconds."""
     between = np.diff(np.unique(frames))
     if not len(between):
         return np.zeros(len(frames))
@@ -123,7 +122,7 @@ def _seconds(frames: Any, step: float) -> Any:
 
 
 def _once(table: RawTable) -> RawTable:
-    """Without repetitions: scenes that overlap list a track again."""
+    """Return the table without duplicates: overlapping scenes list a track twice."""
     keys = list(zip(table.columns["id"], table.columns["t"], strict=True))
     first = sorted({k: i for i, k in reversed(list(enumerate(keys)))}.values())
     columns = {n: np.asarray(c)[first] for n, c in table.columns.items()}

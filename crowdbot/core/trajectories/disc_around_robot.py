@@ -1,4 +1,4 @@
-"""A robot with an outline, read as the disc around it."""
+"""A robot with an outline, treated as the disc around it."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 
 
 def as_disc(run: Trajectories) -> Trajectories:
-    """The same run of the least disc about the robot's origin that its outline is in.
+    """Return the run with the smallest disc around the robot's origin that contains its outline.
 
-    Many benchmarks know robots only so. It is the run itself where the robot is a disc, or where
-    there is none.
+    Many benchmarks only support discs. If the robot is a disc, or there is none, this is the run
+    itself.
     """
     return run.cached("as_disc", lambda: _as_disc(run))
 

@@ -1,4 +1,4 @@
-"""Dynamic time warping of two paths: how far apart they are when time plays no part."""
+"""Dynamic time warping of two paths: their distance regardless of time."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from crowdbot.core.types.arrays import Array, Mask
 
 
 def spaced(x: Array, y: Array, valid: Mask, spacing: float) -> Array:
-    """Points (P, 2) of a path, m, as far apart on the way as ``spacing``; first and last included.
+    """Return points (P, 2) at equal spacing along a path, m; first and last included.
 
-    So the number of points depends on the way and not on the sampling, and standing adds none.
+    So the number of points depends on the path's length, not on sampling or standstill.
 
     Args:
         x, y: (N,) positions, NaN where unknown.
-        valid: (N-1,) steps without a teleport; others are gone straight and add no way.
+        valid: (N-1,) steps without a teleport; others are straight and add no length.
         spacing: m.
     """
     known = np.isfinite(x) & np.isfinite(y)
@@ -31,9 +31,9 @@ def spaced(x: Array, y: Array, valid: Mask, spacing: float) -> Array:
 
 
 def least_warping(a: Array, b: Array) -> float:
-    """Least sum of distances (m) over all monotone assignments of points (A, 2) and (B, 2).
+    """Return the smallest sum of distances (m) over monotone assignments of (A, 2) and (B, 2).
 
-    Both ends belong together. The table is filled along its diagonals, whose cells are independent.
+    Both ends are matched. The table is filled along its diagonals, whose cells are independent.
     """
     n, m = len(a), len(b)
     apart = np.hypot(*(a[:, None, i] - b[None, :, i] for i in (0, 1)))

@@ -1,7 +1,7 @@
-"""The robot and each person as two bodies that move: gaps, time to contact, contact events.
+"""The robot and each person as a pair of moving bodies: gaps, time to contact, contacts.
 
 People are discs; the robot is a disc, or has a footprint. N samples, M people; world frame, SI
-units. NaN stands for "not there" or "not known". What is computed for a run is computed once.
+units. NaN means absent or unknown. Results are cached per run.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from crowdbot.core.types.arrays import Array, Mask
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Encounter:
-    """Every person relative to the robot.
+    """All people relative to the robot.
 
     Attributes:
         t: (N,) sample times, s.
         px, py: (N, M) position of each person minus the robot's, m.
-        reach: (M,) sum of both radii, m; the person's alone beside a footprint.
+        reach: (M,) sum of both radii, m; with a footprint, only the person's.
         distance: (N, M) distance between centres, m.
         gap: (N, M) distance between surfaces, m; negative in contact.
         valid: (N-1, M) steps on which both bodies moved continuously.
@@ -53,7 +53,7 @@ class Encounter:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contacts:
-    """Beginnings of contact: time (s), column of the person, sample before the onset; (K,)."""
+    """Starts of contacts: time (s), column of the person, sample before the onset; (K,)."""
 
     time: Array
     agent: NDArray[np.int64]
@@ -61,13 +61,13 @@ class Contacts:
 
 
 def robot_of(run: Trajectories) -> RobotTrack:
-    """The robot of a run that is known to have one."""
+    """Return the robot of a run, which must have one."""
     assert run.robot is not None
     return run.robot
 
 
 def people(run: Trajectories) -> AgentTracks:
-    """Everybody in a run; nobody at all (M = 0) in a run without people."""
+    """Return all people in a run; M = 0 in a run without people."""
     if run.agents is not None:
         return run.agents
     nowhere, none = np.empty((len(run.t), 0)), np.empty(0)
@@ -81,33 +81,33 @@ def people(run: Trajectories) -> AgentTracks:
 
 
 def encounter(run: Trajectories, jump_speed: float) -> Encounter:
-    """Relative positions of all people; ``jump_speed`` (m/s) tells teleports."""
+    """Return the relative positions of all people; ``jump_speed`` (m/s) detects teleports."""
     return run.cached(("encounter", jump_speed), lambda: _encounter(run, jump_speed))
 
 
 def robot_velocities(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
-    """World velocity of the robot (N,), (N,), m/s."""
+    """Return the robot's world velocity (N,), (N,), m/s."""
     return run.cached(
         ("robot_velocities", jump_speed), lambda: robot_velocity(run.t, robot_of(run), jump_speed)
     )
 
 
 def people_velocities(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
-    """World velocities of people (N, M), (N, M), m/s; NaN where absent or unknown."""
+    """Return people's world velocities (N, M), (N, M), m/s; NaN if absent or unknown."""
     return run.cached(
         ("people_velocities", jump_speed), lambda: agent_velocities(run.t, people(run), jump_speed)
     )
 
 
 def people_speeds(run: Trajectories, jump_speed: float) -> Array:
-    """Speeds of people (N, M), m/s; NaN where absent or unknown."""
+    """Return people's speeds (N, M), m/s; NaN if absent or unknown."""
     return run.cached(
         ("people_speeds", jump_speed), lambda: np.hypot(*people_velocities(run, jump_speed))
     )
 
 
 def relative_velocity(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
-    """Velocity of each person minus the robot's (N, M), (N, M), m/s; NaN where unknown."""
+    """Return each person's velocity minus the robot's (N, M), (N, M), m/s; NaN if unknown."""
     rx, ry = robot_velocities(run, jump_speed)
     ax, ay = people_velocities(run, jump_speed)
     return ax - rx[:, None], ay - ry[:, None]
@@ -116,7 +116,7 @@ def relative_velocity(run: Trajectories, jump_speed: float) -> tuple[Array, Arra
 def approach(
     run: Trajectories, jump_speed: float, contact_tol: float, rel_speed_tol: float
 ) -> tuple[Array, Array]:
-    """Time to contact (s) and relative speed (m/s) of each person (N, M), (N, M)."""
+    """Return time to contact (s) and relative speed (m/s) of each person (N, M), (N, M)."""
 
     def compute() -> tuple[Array, Array]:
         velocity = relative_velocity(run, jump_speed)
@@ -130,7 +130,7 @@ def approach(
 def onsets(
     run: Trajectories, jump_speed: float, contact_tol: float, release_gap: float
 ) -> Contacts:
-    """`contact_onsets` of a run."""
+    """Return `contact_onsets` of a run."""
     return run.cached(
         ("onsets", jump_speed, contact_tol, release_gap),
         lambda: contact_onsets(
@@ -167,10 +167,10 @@ def _encounter(run: Trajectories, jump_speed: float) -> Encounter:
 def time_to_contact(
     pair: Encounter, velocity: tuple[Array, Array], *, contact_tol: float, rel_speed_tol: float
 ) -> Array:
-    """Time until two discs that keep their velocities touch (N, M), s.
+    """Return the time until two discs with constant velocities touch (N, M), s.
 
-    0 where they touch already, inf where they never will, or where a velocity is unknown. The
-    smaller root of ``|p + tau v| = reach``, in the form without cancellation.
+    0 in contact, inf if they never touch or a velocity is unknown. The smaller root of ``|p + tau
+    v| = reach``, in the form without cancellation.
 
     Args:
         pair: relative positions.
@@ -197,18 +197,18 @@ def time_to_contact(
 
 
 def touching(pair: Encounter, contact_tol: float) -> Mask:
-    """Samples (N, M) at which the surfaces touch or overlap."""
+    """Return a mask of samples (N, M) in which the surfaces touch or overlap."""
     return pair.gap <= contact_tol
 
 
 def contact_runs(pair: Encounter, contact_tol: float) -> int:
-    """Maximal runs of touching samples, over all people; a teleport or absence ends a run."""
+    """Count runs of touching samples over all people; a teleport or absence ends a run."""
     touch = touching(pair, contact_tol)
     return int(touch[:1].sum() + (touch[1:] & ~(touch[:-1] & pair.valid)).sum())
 
 
 def contact_onsets(pair: Encounter, *, contact_tol: float, release_gap: float) -> Contacts:
-    """Contacts of the continuous piecewise linear motion, with hysteresis, by time.
+    """Return contacts of the continuous piecewise linear motion, with hysteresis, by time.
 
     A contact begins when the gap reaches 0 on a valid step, or when a body appears overlapping;
     it ends when the gap at a sample exceeds ``release_gap`` (m), or when a body disappears or is
@@ -233,21 +233,21 @@ def contact_events(
     contact_tol: float,
     release_gap: float,
 ) -> Contacts:
-    """`contact_onsets` of any M bodies with the robot.
+    """Return `contact_onsets` for any M bodies and the robot.
 
     Args:
         t: (N,) times, s.
         gap: (N, M) between the surfaces, m; NaN where absent.
-        fraction: (N-1, M) of each step at which the surfaces first touch, NaN where they do not.
+        fraction: (N-1, M) of each step at which the surfaces first touch, NaN if they do not.
         valid: (N-1, M) steps on which both bodies moved continuously.
-        contact_tol: surfaces this close touch, m.
-        release_gap: a contact ends when the surfaces are farther apart, m.
+        contact_tol: surfaces closer than this touch, m.
+        release_gap: gap beyond which a contact ends, m.
     """
     touch = gap <= contact_tol
     swept = valid & np.isfinite(fraction)
     appears = np.ones(touch.shape, dtype=bool)
     appears[1:] = ~valid
-    apart = ~(gap <= release_gap + contact_tol)  # absent people, too
+    apart = ~(gap <= release_gap + contact_tol)  # absent people too
     free = ~_in_contact(touch, swept, appears, apart)
     k_first, a_first = np.nonzero(appears & touch)
     k_swept, a_swept = np.nonzero(swept & free[:-1])
@@ -259,9 +259,9 @@ def contact_events(
 
 
 def _in_contact(touch: Mask, swept: Mask, appears: Mask, apart: Mask) -> Mask:
-    """Whether each pair is in contact after each sample (N, M).
+    """Return a mask of pairs in contact after each sample (N, M).
 
-    Every sample either decides this anew or leaves it as it was after the last one that did.
+    Every sample either sets the state or keeps that of the previous sample.
     """
     begins = appears & touch
     begins[1:] |= swept & ~apart[1:]
@@ -272,9 +272,9 @@ def _in_contact(touch: Mask, swept: Mask, appears: Mask, apart: Mask) -> Mask:
 
 
 def _first_touch(pair: Encounter, contact_tol: float) -> Array:
-    """Fraction of each step (N-1, M) at which the surfaces first touch; NaN where they do not.
+    """Return the fraction of each step (N-1, M) at which surfaces first touch; NaN if they do not.
 
-    A footprint slides along the step with its middle heading, and turns at both ends.
+    A footprint moves along the step with its mean heading, and turns at both ends.
     """
     if pair.footprint is None:
         return _discs_touch(pair, contact_tol)
@@ -290,7 +290,7 @@ def _first_touch(pair: Encounter, contact_tol: float) -> Array:
 
 
 def _discs_touch(pair: Encounter, contact_tol: float) -> Array:
-    """The distance along a step is convex, so its smallest value decides."""
+    """Compute `_first_touch` for discs, whose distance is convex along a step."""
     px, py = pair.px[:-1], pair.py[:-1]
     dx, dy = np.diff(pair.px, axis=0), np.diff(pair.py, axis=0)
     square, nearing = dx**2 + dy**2, -(px * dx + py * dy)
@@ -300,5 +300,5 @@ def _discs_touch(pair: Encounter, contact_tol: float) -> Array:
     root = np.sqrt(np.maximum(square * pair.reach**2 - (px * dy - py * dx) ** 2, 0.0))
     gap = pair.gap[:-1] * (pair.distance[:-1] + pair.reach)
     onset = np.divide(gap, nearing + root, out=np.zeros(px.shape), where=nearing + root > 0)
-    # the root of a touch within the tolerance may lie beside the step
+    # with the tolerance, the root of a touch may lie outside the step
     return np.where(closest <= pair.reach + contact_tol, np.clip(onset, 0.0, nearest), np.nan)

@@ -1,6 +1,6 @@
-"""How people near the robot change their way: accelerations, and the robot's part in them.
+"""People's reactions near the robot: accelerations, and the robot's share in them.
 
-N samples, M people; world frame, SI units. Steps, not samples, have an acceleration.
+N samples, M people; world frame, SI units. Accelerations belong to steps, not samples.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
 from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
-#: Two times closer than this are the same, s.
+#: Times closer than this are equal, s.
 SAME_TIME = 1e-6
 
 _T = TypeVar("_T", bound=np.generic)
@@ -32,11 +32,11 @@ _Both = tuple[Trajectories, Trajectories]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evasion:
-    """Accelerations of people on steps near the robot; 0 on all others.
+    """Accelerations of people on steps near the robot; 0 elsewhere.
 
     Attributes:
         dt: (N-1,) lengths of the steps, s.
-        near: (N-1, M) steps on which somebody is near and moves continuously.
+        near: (N-1, M) steps on which a person is near and moves continuously.
         size: (N-1, M) magnitude of the acceleration, m/s².
         away: (N-1, M) the part that points away from the robot, never negative, m/s².
         approach: (N-1, M) speed of the robot towards the person, never negative, m/s.
@@ -50,11 +50,11 @@ class Evasion:
 
     @property
     def met(self) -> Mask:
-        """People (M,) who are near on some step."""
+        """Return people (M,) who are near on some step."""
         return np.asarray(self.near.any(axis=0))
 
     def push(self, share: Array | float = 1.0) -> Array:
-        """What the robot's advance does against each person's acceleration, per mass (M,), J/kg.
+        """Return the robot's work against each person's acceleration, per mass (M,), J/kg.
 
         Args:
             share: (N-1, M) of each step that counts.
@@ -62,30 +62,30 @@ class Evasion:
         return np.asarray(self.dt @ (self.away * self.approach * share))
 
     def work(self, mass: Array, share: Array | float = 1.0) -> float:
-        """Work that the robot's advance does against people who accelerate away from it, J.
+        """Return the robot's work against people who accelerate away from it, J.
 
         Args:
-            mass: (M,) of people, kg.
+            mass: (M,) people's masses, kg.
             share: (N-1, M) of each step that counts.
         """
         return float(self.push(share) @ mass)
 
     def rms(self) -> float:
-        """Root mean square of the acceleration over people and time near the robot, m/s²."""
+        """Return the root mean square acceleration over people and time near the robot, m/s²."""
         time = float(self.dt @ self.near.sum(axis=1))
         return float(np.sqrt(self.dt @ (self.size**2).sum(axis=1) / time)) if time > 0 else 0.0
 
 
 def evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
-    """Accelerations within ``reach`` (m, centre to centre) of the robot, which the run must have.
+    """Return accelerations within ``reach`` (m, centre to centre) of the robot, which must exist.
 
-    ``jump_speed`` (m/s) tells teleports where none were recorded.
+    ``jump_speed`` (m/s) detects teleports if none were recorded.
     """
     return run.cached(("evasion", reach, jump_speed), lambda: _evasion(run, reach, jump_speed))
 
 
 def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
-    """Few people are near at a time: of the others nothing is computed."""
+    """Compute accelerations only for the few people who are near at a time."""
     pair, dt = encounter(run, jump_speed), np.diff(run.t)
     limit = reach + DISTANCE_TOLERANCE
     step, who = np.nonzero(pair.valid & (np.abs(_middle(pair.px)) <= limit))
@@ -101,7 +101,7 @@ def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
     nx, ny = (np.divide(p, distance, out=np.zeros(p.shape), where=there) for p in (px, py))
 
     def spread(values: NDArray[_T]) -> NDArray[_T]:
-        """To all steps and people; 0 where nobody is near."""
+        """Expand values to all steps and people; 0 if not near."""
         whole = np.zeros(pair.valid.shape, values.dtype)
         whole[step, who] = values
         return whole
@@ -116,9 +116,9 @@ def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
 
 
 def own_legs(run: Trajectories, reach: float, jump_speed: float) -> Mask:
-    """Steps (N-1, M) near the robot on which nothing touches a person: he moves by himself.
+    """Return a mask of steps (N-1, M) near the robot on which nothing touches the person.
 
-    Who is pushed by others, by a wall or by the robot does not evade; contacts are counted apart.
+    A person pushed by others, a wall or the robot does not evade; contacts are counted separately.
     """
     near = evasion(run, reach, jump_speed).near
     key = "own_legs", reach, jump_speed
@@ -126,10 +126,10 @@ def own_legs(run: Trajectories, reach: float, jump_speed: float) -> Mask:
 
 
 def ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
-    """The run, and its robot as a ghost among the people who never met one.
+    """Return the run, and its robot as a ghost among people who never met a robot.
 
-    What such a ghost is blamed for happens without a robot. Both have the length of the shorter
-    record; None where the two were not sampled at the same times after the start.
+    The ghost's values are what happens without a robot. Both have the length of the shorter record;
+    None if they were not sampled at the same times after the start.
     """
     return cached_beside(run, alone, "ghost", lambda: _ghost_run(run, alone))
 
@@ -143,10 +143,10 @@ def _ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
 
 
 def _middle(values: Array) -> Array:
-    """Mean of both ends of each step."""
+    """Return the mean of both ends of each step."""
     return (values[1:] + values[:-1]) / 2.0
 
 
 def _at_middle(values: Array, step: Indices, who: Indices) -> Array:
-    """As `_middle` of some steps and people."""
+    """As `_middle`, for some steps and people."""
     return (values[step + 1, who] + values[step, who]) / 2.0

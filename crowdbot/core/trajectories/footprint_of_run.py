@@ -1,4 +1,4 @@
-"""The footprint of the robot of a run."""
+"""The robot's footprint in a run."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 
 
 def footprint_of(run: Trajectories) -> Footprint | None:
-    """The outline of a run's robot; None for a disc, or without robot."""
+    """Return the outline of a run's robot; None for a disc, or without a robot."""
     if run.robot is None or run.robot_footprint is None:
         return None
     capsule = len(run.robot_footprint) == 2

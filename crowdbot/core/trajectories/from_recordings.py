@@ -40,7 +40,7 @@ _Run = TypeVar("_Run", bound="FromRecordings")
 
 
 class FromRecordings:
-    """What `Trajectories` can be made from, beside arrays."""
+    """Constructors of `Trajectories` besides arrays."""
 
     __slots__ = ()
     _read_recording: ClassVar[Callable[[Path | str, str | None], FromRecordings] | None] = None
@@ -248,7 +248,7 @@ class FromRecordings:
         return cast(Self, read(path_of("path", path), robot))
 
     def implausible(self) -> list[str]:
-        """What in it cannot be, such as positions in millimetres, in sentences with evidence."""
+        """Return sentences on implausible values, such as positions in millimetres."""
         return implausible(cast(Any, self))
 
 

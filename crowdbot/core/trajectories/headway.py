@@ -1,7 +1,7 @@
-"""Headway: how soon the robot would touch somebody who does not get out of its way.
+"""Headway: time until the robot would touch a person who does not move.
 
-It asks what the robot does, and not how people answer: the time until a robot that keeps its
-velocity touches a person who stands still where he is. N samples, M people; world frame, SI units.
+It measures the robot's behaviour, not people's reactions: the time until a robot with constant
+velocity touches a person who stands still. N samples, M people; world frame, SI units.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ from crowdbot.core.trajectories.encounters import encounter, robot_velocities, t
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 
-#: Surfaces this close touch, m; slower motion counts as none, m/s.
+#: Surfaces closer than this touch, m; slower motion counts as none, m/s.
 _TOUCH, _STILL = 1e-9, 1e-6
 
 
 def headway(run: Trajectories, jump_speed: float) -> Array:
-    """Headway (N, M) of the robot towards each person, s.
+    """Return the robot's headway (N, M) towards each person, s.
 
-    0 in contact; inf where the robot stands, or passes without a touch, or somebody is absent.
+    0 in contact; inf if the robot stands or passes without contact, or the person is absent.
     """
     return run.cached(("headway", jump_speed), lambda: _headway(run, jump_speed))
 
 
 def share_below(run: Trajectories, limit: float, jump_speed: float) -> Array:
-    """Share (N-1, M) of each step on which the headway is below a limit (s): 0, one half or 1."""
+    """Return the share (N-1, M) of each step with headway below a limit (s): 0, one half or 1."""
     short = (headway(run, jump_speed) < limit).astype(np.float64)
     return np.asarray((short[1:] + short[:-1]) / 2.0)
 

@@ -1,7 +1,7 @@
-"""From tables of a robot and of people to the arrays of `Trajectories.from_arrays`.
+"""Convert tables of a robot and of people to the arrays of `Trajectories.from_arrays`.
 
-What the tables leave out is derived here: heading from the direction of motion, arrival from the
-goal. Velocities that are left out are derived before any metric sees them, by `preprocess`.
+Missing values are derived here: heading from the direction of motion, arrival from the goal.
+`preprocess` derives missing velocities before the metrics run.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from crowdbot.core.trajectories.resample import interpolated, steady_times
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
-#: Two times closer than this are one sample, s.
+#: Times closer than this are one sample, s.
 SAME_TIME = 1e-6
-#: Slower than this a body has no direction of motion, m/s.
+#: Below this speed a body has no direction of motion, m/s.
 STANDING = 0.02
 
 ROBOT = ("t", "x", "y", "theta", "v", "w", "vx", "vy")
@@ -31,7 +31,7 @@ CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bear
 
 _TWO_CLOCKS = "{}: one table has stamps, the other seconds: their clocks cannot be compared"
 _LATEST = np.iinfo(np.int64).max
-#: The samples: those of the robot; or times with a steady rate, Hz.
+#: The sample times: the robot's, or times with a constant rate, Hz.
 Samples = float | Literal["robot"] | None
 
 
@@ -47,17 +47,17 @@ def columns_of(
     clock_offset: float,
     max_gap: float,
 ) -> dict[str, Any]:
-    """Columns by the names of `Trajectories.from_arrays`.
+    """Return columns with the names of `Trajectories.from_arrays`.
 
     Args:
-        robot, agents, trips, contacts: tables with the columns above; each may be missing.
-        agent_radius, agent_mass: of people for whom the table does not say it.
-        resample: see `Samples`; None takes times as they are.
+        robot, agents, trips, contacts: tables; each may be missing.
+        agent_radius, agent_mass: defaults for people without a value in the table.
+        resample: see `Samples`; None keeps the given times.
         clock_offset: added to the times of people, s.
-        max_gap: people are not interpolated over a longer time without a row, s.
+        max_gap: longest gap between rows over which people are interpolated, s.
 
     Raises:
-        InputError: a table does not fit the others, or there is no table.
+        InputError: tables are inconsistent, or there is no table.
     """
     for what, given, columns in (("robot", robot, ROBOT[:3]), ("agents", agents, AGENT[:4])):
         if given is not None:
@@ -96,7 +96,7 @@ def columns_of(
 
 
 def _seconds(table: RawTable, column: str, origin: int | None) -> Array:
-    """(K,) times, s; of stamps since ``origin``, ns since 1970."""
+    """Return times (K,), s; stamps are counted from ``origin``, ns since 1970."""
     times, stamped = table.times(column, origin or 0)
     if stamped != (origin is not None):
         raise InputError(_TWO_CLOCKS.format(table.name))
@@ -104,7 +104,7 @@ def _seconds(table: RawTable, column: str, origin: int | None) -> Array:
 
 
 def _zero(rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None) -> float:
-    """The instant that stamps are counted from, s: the robot's first; else the first of all."""
+    """Return the origin of stamps, s: the robot's first, else the first of all."""
     table = rows if rows is not None else people
     assert table is not None
     return float(np.min(table["t"]))
@@ -127,9 +127,9 @@ def _robot_rows(robot: RawTable, origin: int | None) -> dict[str, Array]:
 
 
 def heading_of_motion(t: Array, x: Array, y: Array) -> Array:
-    """(N,) direction in which a body moves, rad; while it stands, where it moved before.
+    """Return (N,) directions of motion, rad; at standstill, the last direction.
 
-    A body that never moves looks along x. Before it moves it looks where it will go.
+    Before a body first moves, it has its first direction; if it never moves, it faces along x.
     """
     if len(t) < 2:
         return np.zeros(len(t))
@@ -147,7 +147,7 @@ def heading_of_motion(t: Array, x: Array, y: Array) -> Array:
 def _samples(
     rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None, resample: Samples
 ) -> Array:
-    """The times of the run, s."""
+    """Return the times of the run, s."""
     tables = [table["t"] for table in (rows, people) if table is not None]
     if isinstance(resample, str):
         if resample != "robot":
@@ -166,7 +166,7 @@ def _samples(
 
 
 def _resampled_robot(rows: Mapping[str, Array], t: Array) -> dict[str, Array]:
-    """All columns between their samples; headings turn the shorter way."""
+    """Interpolate all columns between their samples; headings turn the shorter way."""
     known = rows["t"]
     made = {n: interpolated(known, v, t) for n, v in rows.items() if n not in ("t", "theta")}
     finite = np.isfinite(rows["theta"])
@@ -204,7 +204,7 @@ def _people_columns(
 def _on_samples(
     table: RawTable, rows: Mapping[str, Any], t: Array, ids: NDArray[np.int64], column: Any
 ) -> dict[str, Any]:
-    """People whose rows lie on the samples."""
+    """Return people whose rows lie on the samples."""
     k = np.clip(np.searchsorted(t, rows["t"] - SAME_TIME), 0, len(t) - 1)
     off = np.flatnonzero(np.abs(t[k] - rows["t"]) > SAME_TIME)
     if len(off):
@@ -253,10 +253,10 @@ def _contacts(table: RawTable, ids: Ids | None, origin: int | None, zero: float)
 
 
 def _corners(goal_zone: Any) -> Array:
-    """(K, 2) corners of a zone, m.
+    """Return the (K, 2) corners of a zone, m.
 
     Raises:
-        InputError: it is something else.
+        InputError: it is not a zone.
     """
     try:
         corners = np.asarray(goal_zone, dtype=float)
@@ -273,9 +273,9 @@ def arrival(
     goal_radius: float,
     goal_zone: Any,
 ) -> float | None:
-    """When the robot's centre was first within the goal, s; None: never, or there is no goal.
+    """Return when the robot's centre first entered the goal, s; None: never, or no goal.
 
-    Within ``goal_radius`` of the goal, or inside the zone; between two samples it moves straight.
+    Within ``goal_radius`` of the goal, or inside the zone; motion between samples is straight.
 
     Raises:
         InputError: the zone is not a polygon.

@@ -1,12 +1,12 @@
-"""The same people with and without the robot: how far each is displaced, how long delayed.
+"""The same people with and without the robot: each person's displacement and delay.
 
-People are matched by id, their trips by number. A trip with the robot is laid over the same trip
-without it: what lies beside that way is displacement, what lies behind on it is delay. So a person
-who walks the same way later is delayed and not displaced.
+People are matched by id, their trips by number. A trip with the robot is compared with the same
+trip without it: sideways distance from that path is displacement, lag along it is delay. So a
+person who walks the same path later is delayed but not displaced.
 
-A crowd is chaotic: two that differ by 2 cm at the start have nothing to do with each other after
-a minute, without any robot. So people are compared over the whole run, and, apart from that, over
-their first meeting with the robot, if until then they have walked as they do without it. SI units.
+A crowd is chaotic: two runs that differ by 2 cm at the start are unrelated after a minute, even
+without a robot. So people are compared over the whole run and, separately, over their first meeting
+with the robot, if until then they walked as they do without it. SI units.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
 from crowdbot.core.trajectories.trips import trip_samples
 from crowdbot.core.types.arrays import Array
 
-#: A person is looked for this many samples before and after the place where he was found last.
+#: Number of samples before and after the last match in which a person is searched.
 WINDOW = 48
-#: Who is later or earlier by more no longer walks as he does without the robot, s.
+#: Time shift beyond which a person counts as affected, s.
 SAME_PACE = 0.1
-#: Slack of the rules who is near and who is where he would be, m and s.
+#: Tolerances for who is near and who is unaffected, m and s.
 _TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effects:
-    """What people pay; each (P,), by id.
+    """The effect on each person, (P,), by id.
 
     Attributes:
-        displacement: largest distance from the way without the robot, m.
+        displacement: largest distance from the path without the robot, m.
         delay: time lost, s; negative: gained.
         speed: mean walking speed without the robot, m/s.
-        left_out: trips, or people met, that were not compared because they begin elsewhere.
+        left_out: number of trips, or people met, not compared because they start elsewhere.
     """
 
     displacement: Array
@@ -50,19 +50,19 @@ class Effects:
     left_out: int
 
     def __len__(self) -> int:
-        """How many people."""
+        """Return the number of people."""
         return len(self.speed)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pairing:
-    """Who is compared, and over which time.
+    """Rules for the people and times that are compared.
 
     Attributes:
-        same_start: who begins farther off than without the robot is left out, m.
-        reach: who is no farther from the robot, centre to centre, meets it, m.
-        after: a meeting goes on so long after somebody is out of reach, s.
-        jump_speed: tells teleports where none were recorded, m/s.
+        same_start: largest distance between the starts with and without the robot, m.
+        reach: distance between centres within which a person meets the robot, m.
+        after: time that a meeting continues after the person is out of reach, s.
+        jump_speed: speed that detects teleports if none were recorded, m/s.
     """
 
     same_start: float
@@ -73,7 +73,7 @@ class Pairing:
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """One trip: its samples; (3, K) x, y and time since its beginning; how long it took."""
+    """One trip: its samples; (3, K) x, y and time since its start; its duration."""
 
     rows: slice
     column: int
@@ -92,15 +92,15 @@ class _Pair:
 
     @cached_property
     def laid(self) -> tuple[Array, Array]:
-        """As `_laid_over`, the one over the other; not asked of trips that are left out."""
+        """Return `_laid_over` of both trips; not called for trips that are left out."""
         return _laid_over(self.one, self.two)
 
 
 def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
-    """All people over all trips that both runs have and that begin alike.
+    """Return the effects on all people, over trips that exist and start alike in both runs.
 
     Args:
-        run: up to its end.
+        run: the whole run.
         alone: the same people without robot.
         pairing: who is compared.
     """
@@ -109,10 +109,10 @@ def whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> E
 
 
 def meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
-    """People who meet the robot, from the beginning of their first meeting to its end.
+    """Return the effects on people who meet the robot, over their first meeting.
 
-    Only those count who until then walk as without the robot: the others were disturbed before,
-    by whom nobody knows. The run has to have a robot; otherwise as `whole_effects`.
+    Only people who until then walk as without the robot count: the others were disturbed before,
+    for unknown reasons. The run must have a robot; otherwise as `whole_effects`.
     """
     key = "meeting_effects", pairing
     return cached_beside(run, alone, key, lambda: _meeting_effects(run, alone, pairing))
@@ -159,7 +159,7 @@ def _meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -
 
 
 def _pairs(run: Trajectories, alone: Trajectories, jump_speed: float) -> list[_Pair]:
-    """Trips that both runs have, by person and number."""
+    """Return trips that exist in both runs, by person and number."""
 
     def match() -> list[_Pair]:
         ways, others = _ways(run, jump_speed), _ways(alone, jump_speed)
@@ -176,14 +176,14 @@ def _starts_apart(pair: _Pair, pairing: Pairing) -> bool:
 
 
 def _walks_otherwise(pair: _Pair, sample: int, pairing: Pairing) -> bool:
-    """Whether somebody is elsewhere than without the robot, or later or earlier there."""
+    """Return True if a person is elsewhere than without the robot, or there at another time."""
     beside, late = pair.laid
     moved = beside[sample] > pairing.same_start + _TOLERANCE
     return bool(moved or abs(late[sample]) > SAME_PACE + _TOLERANCE)
 
 
 def _meeting(distance: Array, t: Array, pairing: Pairing) -> tuple[int, int]:
-    """First and last sample (of a trip) of the first meeting; -1, -1 if there is none."""
+    """Return first and last sample (of a trip) of the first meeting; -1, -1 if there is none."""
     near = np.flatnonzero(distance <= pairing.reach + _TOLERANCE)
     if not len(near):
         return -1, -1
@@ -194,24 +194,24 @@ def _meeting(distance: Array, t: Array, pairing: Pairing) -> tuple[int, int]:
 
 
 def _delay(pair: _Pair) -> float:
-    """Time lost on a whole trip, s."""
+    """Return the time lost on a whole trip, s."""
     one, two = pair.one, pair.two
     if one.reached and two.reached:
         return one.seconds - two.seconds
-    if one.reached:  # only the other one was cut
+    if one.reached:  # only the other one is cut off
         return -float(_laid_over(two, one)[1][-1])
     return float(pair.laid[1][-1])
 
 
 def _laid_over(one: _Way, two: _Way) -> tuple[Array, Array]:
-    """Distance from the other way (m), and how late there (s), at each sample (K,)."""
+    """Return, at each sample (K,), the distance from the other path (m) and the delay there (s)."""
     beside, late = np.empty((2, one.path.shape[1]))
     follow(one.path, two.path, WINDOW, beside, late)
     return beside, late
 
 
 def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
-    """Person and number of the trip -> where it went; two samples at least."""
+    """Return person and number of the trip -> its path; with at least two samples."""
     agents, trips = people(run), run.trips
     if trips is None or not agents.x.size:
         return {}
@@ -238,9 +238,9 @@ def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
 
 
 def _continuous(run: Trajectories, jump_speed: float) -> NDArray[np.int64]:
-    """Of each trip (K, 3) the longest part without a teleport or absence.
+    """Return, for each trip (K, 3), the longest part without teleport or absence.
 
-    Its first sample, the one behind its last, and the person's column; without a column no sample.
+    Its first sample, the one after its last, and the person's column; no samples without a column.
     """
     valid = valid_agent_steps(run.t, people(run), jump_speed)
     first, last, column = trip_samples(run)
@@ -251,7 +251,7 @@ def _continuous(run: Trajectories, jump_speed: float) -> NDArray[np.int64]:
 
 
 def _walked(way: _Way) -> tuple[float, float]:
-    """Length (m) and duration (s) of what was seen of a trip."""
+    """Return length (m) and duration (s) of the observed part of a trip."""
     x, y, t = way.path
     length = np.hypot(x[1:] - x[:-1], y[1:] - y[:-1]).sum()
     return float(length), float(t[-1] - t[0])

@@ -1,4 +1,4 @@
-"""One way laid over another, and the part of a trip for which that makes sense: compiled loops."""
+"""Align one path with another, and find the longest valid part of a trip: compiled loops."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Mask
 
-#: Places this near are one, m²: who waits is where he was.
+#: Points closer than this coincide (squared, m²).
 _SAME = 1e-18
-#: Slack where segments are left out unseen, m: rounding must not leave out the nearest.
+#: Tolerance for skipping segments, m: rounding must not skip the nearest.
 _NEAR = 1e-6
 
 
@@ -24,12 +24,12 @@ def longest_parts(
     column: NDArray[np.int64],
     parts: NDArray[np.int64],
 ) -> None:
-    """Write where the longest part of each trip over valid steps begins and ends.
+    """Write start and end of each trip's longest part over valid steps.
 
     Args:
         valid: (N-1, M) steps.
-        first, last, column: (K,) samples and person of each trip; -1: nobody.
-        parts: (K, 3) its first sample, and the one behind its last, are written.
+        first, last, column: (K,) samples and person of each trip; -1: unknown person.
+        parts: (K, 3) output: its first sample, and the one after its last.
     """
     for k in range(column.shape[0]):
         begin, end = first[k], last[k] + 1 if column[k] >= 0 else first[k]
@@ -42,15 +42,15 @@ def longest_parts(
 
 @kernel
 def follow(one: Array, other: Array, window: int, beside: Array, late: Array) -> None:
-    """Lay one way over another, from beginning to end.
+    """Align one path with another, from start to end.
 
-    The other way is prolonged by a step at both ends: samples do not fall on them.
+    The other path is extended by a step at both ends, since samples rarely coincide with its ends.
 
     Args:
         one, other: (3, K) and (3, L) x, y (m) and time (s), L >= 2.
-        window: how many samples away from the last place the next one is looked for.
-        beside: (K,) written: distance from the other way, m.
-        late: (K,) written: how much later than there the place is reached, s.
+        window: number of samples from the last match in which to search the next.
+        beside: (K,) output: distance from the other path, m.
+        late: (K,) output: delay at the matched position, s.
     """
     x, y, t = one[0], one[1], one[2]
     wx, wy, wt = other[0], other[1], other[2]
@@ -60,7 +60,7 @@ def follow(one: Array, other: Array, window: int, beside: Array, late: Array) ->
     at = 0
     for k in range(x.shape[0]):
         best, near, behind = math.inf, at, 0.0
-        # The last place is at hand: what is farther off than that cannot be nearest.
+        # Start with the last match: farther positions cannot be nearest.
         dx, dy = x[k] - wx[at], y[k] - wy[at]
         far = (math.sqrt(dx * dx + dy * dy) + 3.0 * longest + _NEAR) ** 2
         for s in range(max(0, at - window), min(wx.shape[0] - 1, at + window + 1)):

@@ -1,7 +1,7 @@
 """Contacts of the robot with people: from the recorded table, else from the samples.
 
-The table holds every contact that the simulator or the robot's skin felt, however short. Samples
-miss what happens between them: a bounce of 30 ms lies between two samples 62.5 ms apart.
+The table contains every contact that the simulator or the robot's skin detected. Samples miss short
+contacts: a bounce of 30 ms fits between samples 62.5 ms apart.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from crowdbot.core.types.arrays import Array, Mask
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PersonContacts:
-    """Contacts with people by time; each (K,).
+    """Contacts with people, by time; each (K,).
 
     Attributes:
-        time: of the onset, s.
+        time: onset, s.
         agent: column of the person; -1: not in the table of people.
-        sample: last one before the onset, or at it.
+        sample: last sample before or at the onset.
         speed: relative speed before, m/s; NaN: unknown.
         closing: speed of the robot towards the person before, m/s; NaN: unknown.
-        recorded: whether they are those of the table.
+        recorded: True if they are from the table.
     """
 
     time: Array
@@ -46,20 +46,20 @@ class PersonContacts:
     recorded: bool
 
     def __len__(self) -> int:
-        """How many."""
+        """Return the number of contacts."""
         return len(self.time)
 
 
 def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
-    """Contacts (K,) into which the robot moved though it could have braked in time.
+    """Return a mask of contacts (K,) into which the robot moved although it could have braked.
 
-    Where nothing is known of the direction, or of the person, a robot that moves is at fault.
+    If the direction or the person is unknown, a moving robot is at fault.
 
     Args:
-        run: the one that ``found`` is of.
+        run: the run of ``found``.
         found: from `person_contacts`.
-        rule: see there.
-        jump_speed: tells teleports where none were recorded, m/s.
+        rule: the fault rule.
+        jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     braked = braked_in_time(run, rule, found.time, found.sample, found.agent, jump_speed)
     return ~(found.closing <= rule.speed) & ~braked
@@ -68,13 +68,13 @@ def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_spe
 def person_contacts(
     run: Trajectories, jump_speed: float, contact_tol: float, release_gap: float
 ) -> PersonContacts:
-    """Contacts of a run that has a robot and ends at its arrival.
+    """Return contacts of a run that has a robot and ends at its arrival.
 
     Args:
         run: the run.
-        jump_speed: tells teleports where none were recorded, m/s.
-        contact_tol, release_gap: of contacts from samples, m; see `encounters.contact_onsets`. A
-            table has its own rule when a contact ends.
+        jump_speed: speed that detects teleports if none were recorded, m/s.
+        contact_tol, release_gap: for contacts from samples, m; see `encounters.contact_onsets`. A
+            table has its own rule for the end of a contact.
     """
     key = "person_contacts", jump_speed, contact_tol, release_gap
     return run.cached(key, lambda: _contacts(run, jump_speed, contact_tol, release_gap))
@@ -127,9 +127,9 @@ def _closing(
     bearing: Array,
     jump_speed: float,
 ) -> Array:
-    """Speed of the robot towards where it is touched (K,), m/s; NaN where that is unknown.
+    """Return the robot's speed towards the point of contact (K,), m/s; NaN if unknown.
 
-    Towards the bearing where the table has one, else towards the person's centre at the onset.
+    Uses the table's bearing if there is one, else the person's centre at the onset.
     """
     if not len(time):
         return np.empty(0)
@@ -148,7 +148,7 @@ def _direction_of(
     sample: NDArray[np.int64],
     jump_speed: float,
 ) -> Array:
-    """World direction from the robot to a person at a time between two samples (K,), rad."""
+    """Return the world direction from the robot to a person between two samples (K,), rad."""
     pair = encounter(run, jump_speed)
     if not pair.px.shape[1]:
         return np.full(len(time), np.nan)

@@ -1,6 +1,6 @@
-"""What in a recording cannot be: wrong units, headings in degrees, frames that do not fit.
+"""Detect implausible recordings: wrong units, headings in degrees, mismatched frames.
 
-Each finding says what was found, and what it looks like; nothing is corrected.
+Each finding states the evidence and the likely cause; nothing is corrected.
 """
 
 from __future__ import annotations
@@ -12,24 +12,24 @@ import numpy as np
 
 from crowdbot.core.types.arrays import Array
 
-#: `crowdbot.core.trajectories.trajectories`, which imports what imports this file.
+#: `crowdbot.core.trajectories.trajectories`, which imports an importer of this file.
 Trajectories = Any
 
-#: Faster than this nobody is in a crowd: median speed of what moves, m/s.
+#: Median speed of moving bodies that no crowd exceeds, m/s.
 ROBOT_SPEED, PERSON_SPEED = 20.0, 5.0
-#: Slower than this a body has no direction of motion, m/s.
+#: Below this speed a body has no direction of motion, m/s.
 _MOVING = 0.05
-#: Samples that are needed to say something.
+#: Number of samples needed for a finding.
 _FEW = 5
-_STEPS = (1e-4, 5.0)  # s; a median time between samples outside is not one in seconds
+_STEPS = (1e-4, 5.0)  # s; a median time step outside is not in seconds
 _UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robots and people
-_CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anybody walks or drives; frames per second, usual
+_CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anyone walks or drives; usual frames per second
 _AGREED, _NEARLY_ALL = 0.8, 0.95  # shares of samples in which headings agree with the motion
-_HEADINGS = 0.7  # rad; a heading that is farther from the motion does not agree with it
+_HEADINGS = 0.7  # rad; largest deviation of an agreeing heading
 
 
 def implausible(run: Trajectories) -> list[str]:
-    """What cannot be, in sentences with the evidence; nothing for a plausible run."""
+    """Return findings with evidence, as sentences; empty for a plausible run."""
     found = list(_times(run.t))
     tracks: list[tuple[str, Array, Array, float]] = []
     if run.robot is not None:
@@ -67,7 +67,7 @@ def _speeds(who: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[st
 
 
 def _median_speed(t: Array, x: Array, y: Array) -> float | None:
-    """Of what moves, m/s; None where too little does."""
+    """Return the median speed of moving bodies, m/s; None if too few move."""
     with np.errstate(invalid="ignore"):
         steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
         speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
@@ -76,7 +76,7 @@ def _median_speed(t: Array, x: Array, y: Array) -> float | None:
 
 
 def _frames(t: Array, tracks: list[tuple[str, Array, Array, float]]) -> Iterator[str]:
-    """Whether times look like numbers of frames: whole, and nobody gets anywhere in a second."""
+    """Check for times that look like frame numbers: whole, and almost no motion in a second."""
     if len(t) < _FEW or np.any(t != np.round(t)) or np.median(np.diff(t)) > _STEPS[1]:
         return
     medians = {who: _median_speed(t, x, y) for who, x, y, _ in tracks}
@@ -91,7 +91,7 @@ def _frames(t: Array, tracks: list[tuple[str, Array, Array, float]]) -> Iterator
 
 
 def _headings(run: Trajectories) -> Iterator[str]:
-    """Whether the heading is that of the motion, forwards or backwards."""
+    """Check that the heading agrees with the motion, forwards or backwards."""
     robot = run.robot
     if robot is None or len(run.t) < _FEW or robot.vx is not None:
         return
@@ -114,7 +114,7 @@ def _headings(run: Trajectories) -> Iterator[str]:
     }
     best = max(others, key=lambda name: _agreement(motion, others[name]))
     agreed = _agreement(motion, others[best])
-    # On curved ways a wrong heading agrees in half of the samples by chance: then the other
+    # On curved paths a wrong heading agrees in half of the samples by chance: then the other
     # reading must agree nearly everywhere.
     if agreed > max(_AGREED, min(2.0 * as_radians, _NEARLY_ALL)):
         seen = f"{seen}; {best}, in {100 * agreed:.0f} %"
@@ -124,13 +124,13 @@ def _headings(run: Trajectories) -> Iterator[str]:
 
 
 def _agreement(motion: Array, theta: Array) -> float:
-    """Share of samples in which a body moves where it looks, or straight back."""
+    """Return the share of samples in which a body moves along its heading, or straight back."""
     error = np.abs(np.remainder(motion - theta + 0.5 * np.pi, np.pi) - 0.5 * np.pi)
     return float(np.mean(error < _HEADINGS))
 
 
 def _recorded_velocities(run: Trajectories) -> Iterator[str]:
-    """Whether velocities are the change of positions."""
+    """Check that velocities agree with the change of positions."""
     for who, track in (("the robot", run.robot), ("people", run.agents)):
         if track is None or track.vx is None or track.vy is None or len(run.t) < _FEW:
             continue
@@ -158,7 +158,7 @@ def _off(x: Array, y: Array, vx: Array, vy: Array) -> float:
 
 
 def _apart(run: Trajectories) -> Iterator[str]:
-    """Whether robot and people are in one place; not if x and y are exchanged in one of them."""
+    """Check that robot and people are in the same place; skipped if x and y look swapped in one."""
     if run.robot is None or run.agents is None or not run.agents.x.size:
         return
     nearest = _nearest(run, run.agents.x, run.agents.y)

@@ -1,4 +1,4 @@
-"""What happens to trajectories before any metric sees them: crop, valid steps, velocities, weights.
+"""Preprocess trajectories for metrics: cropping, valid steps, velocities, weights.
 
 Section 1.1 of the metric specification. N samples, M people; world frame, SI units.
 """
@@ -22,9 +22,9 @@ from crowdbot.core.trajectories.trajectories import (
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.errors import InputError
 
-#: Two instants closer than this are one, s.
+#: Times closer than this are equal, s.
 TIME_TOLERANCE = 1e-9
-#: Slack of the teleport rule, m: rounding must not turn a step into a teleport.
+#: Tolerance of the teleport rule, m: rounding must not turn a step into a teleport.
 STEP_TOLERANCE = 1e-9
 
 _Table = TypeVar("_Table", Trips, ContactEvents)
@@ -32,10 +32,10 @@ _Table = TypeVar("_Table", Trips, ContactEvents)
 
 # ----------------------------------------------------------------------- time
 def truncate_at_arrival(run: Trajectories) -> Trajectories:
-    """The run up to the robot's arrival; all of it when the robot never arrived, or is absent.
+    """Return the run up to the robot's arrival; all of it without an arrival or robot.
 
     Raises:
-        InputError: the arrival lies before the first sample, or is not finite.
+        InputError: the arrival is before the first sample, or not finite.
     """
     arrival = run.robot.goal_time if run.robot is not None else None
     if arrival is None:
@@ -46,7 +46,7 @@ def truncate_at_arrival(run: Trajectories) -> Trajectories:
 
 
 def truncate(run: Trajectories, end: float) -> Trajectories:
-    """The part of a run up to ``end`` (absolute, s), which must not precede the first sample.
+    """Return the part of a run up to ``end`` (absolute, s), at or after the first sample.
 
     Samples, trips and contacts that start later are dropped; trips that end later become
     unfinished at ``end``, contacts end there. Step times and signals, which need not lie on the
@@ -73,13 +73,13 @@ def _truncate(run: Trajectories, end: float) -> Trajectories:
 
 
 def truncate_to_shorter(a: Trajectories, b: Trajectories) -> tuple[Trajectories, Trajectories]:
-    """Both runs, cut to the duration of the shorter record."""
+    """Return both runs, cut to the duration of the shorter record."""
     shorter = min(duration(a.t), duration(b.t))
     return truncate(a, float(a.t[0]) + shorter), truncate(b, float(b.t[0]) + shorter)
 
 
 def samples_of_shorter(a: Trajectories, b: Trajectories) -> tuple[Trajectories, Trajectories]:
-    """As `truncate_to_shorter`, for who asks for samples: the shorter run stays as it is.
+    """Return both runs as in `truncate_to_shorter`, but keep the shorter run unchanged.
 
     Its trips and contacts may end after its last sample.
     """
@@ -92,18 +92,18 @@ def samples_of_shorter(a: Trajectories, b: Trajectories) -> tuple[Trajectories, 
 
 
 def duration(t: Array) -> float:
-    """From the first to the last sample, s."""
+    """Return the time from the first to the last sample, s."""
     return float(t[-1] - t[0])
 
 
 def travel_time(run: Trajectories, robot: RobotTrack) -> float:
-    """Seconds to the arrival, which need not be a sample; to the last sample without arrival."""
+    """Return the time to the arrival, which need not be a sample, else to the last sample, s."""
     end = run.t[-1] if robot.goal_time is None else robot.goal_time
     return float(end - run.t[0])
 
 
 def time_weights(t: Array) -> Array:
-    """Trapezoidal weights (N,), s; they sum to the duration."""
+    """Return trapezoidal weights (N,), s; they sum to the duration."""
     half = np.diff(t) / 2.0
     weights = np.zeros(len(t))
     weights[:-1] += half
@@ -113,14 +113,14 @@ def time_weights(t: Array) -> Array:
 
 # ---------------------------------------------------------------------- steps
 def valid_robot_steps(t: Array, robot: RobotTrack, jump_speed: float) -> Mask:
-    """Steps (N-1,) with both poses known and no teleport (faster than ``jump_speed``, m/s)."""
+    """Return steps (N-1,) with known poses and no teleport (faster than ``jump_speed``, m/s)."""
     return _known_steps(robot.x, robot.y) & _plausible_steps(t, robot.x, robot.y, jump_speed)
 
 
 def valid_agent_steps(t: Array, agents: AgentTracks, jump_speed: float) -> Mask:
-    """Steps (N-1, M) of people who are present at both ends and are not teleported.
+    """Return steps (N-1, M) of people who are present at both ends and not teleported.
 
-    Recorded jumps decide; where none were recorded, a step faster than ``jump_speed`` (m/s).
+    Recorded jumps decide; without a record, steps faster than ``jump_speed`` (m/s).
     """
     if agents.jump is not None:
         return _known_steps(agents.x, agents.y) & ~agents.jump
@@ -128,37 +128,37 @@ def valid_agent_steps(t: Array, agents: AgentTracks, jump_speed: float) -> Mask:
 
 
 def path_length(t: Array, robot: RobotTrack, jump_speed: float) -> float:
-    """Length of the robot's path over its valid steps, m; turning on the spot adds nothing."""
+    """Return the robot's path length over its valid steps, m; turning on the spot adds nothing."""
     valid = valid_robot_steps(t, robot, jump_speed)
     return float(np.hypot(_steps(robot.x), _steps(robot.y))[valid].sum())
 
 
 def heading_changes(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
-    """Change of the robot's heading on each step (N-1,), rad; NaN where a step is not valid."""
+    """Return the robot's change of heading per step (N-1,), rad; NaN on invalid steps."""
     valid = valid_robot_steps(t, robot, jump_speed)
     return np.where(valid, wrap(_steps(inf_to_nan(robot.theta))), np.nan)
 
 
 def inf_to_nan(values: Array) -> Array:
-    """NaN for what is infinite: both are unknown."""
+    """Replace infinite values by NaN: both mean unknown."""
     return np.where(np.isfinite(values), values, np.nan)
 
 
 def wrap(angle: Array) -> Array:
-    """The same angles in (-pi, pi], rad."""
+    """Return the same angles in (-pi, pi], rad."""
     wrapped: Array = np.pi - np.mod(np.pi - angle, 2.0 * np.pi)
     return wrapped
 
 
 # ----------------------------------------------------------------- velocities
 def with_velocities(run: Trajectories, jump_speed: float = 10.0) -> Trajectories:
-    """The run with the velocities that were not recorded, derived from its positions.
+    """Return the run with missing velocities derived from its positions.
 
-    Where a run has them all, it is returned as it is. What cannot be derived stays NaN.
+    A run with all velocities is returned unchanged. Values that cannot be derived stay NaN.
 
     Args:
         run: any run.
-        jump_speed: a step that is faster is a teleport, m/s; the default that metrics have.
+        jump_speed: faster steps are teleports, m/s; the metrics' default.
     """
     return run.cached(("with_velocities", jump_speed), lambda: _with_velocities(run, jump_speed))
 
@@ -181,7 +181,7 @@ def _with_velocities(run: Trajectories, jump_speed: float) -> Trajectories:
 def _of_parts(
     run: Trajectories, moves: Callable[[Trajectories], dict[str, Array]]
 ) -> dict[str, Array]:
-    """Velocities of a run; up to the arrival they do not know what comes after it."""
+    """Return velocities of a run; those up to the arrival do not use later samples."""
     whole = moves(run)
     for name, values in moves(truncate_at_arrival(run)).items():
         whole[name] = immutable(np.concatenate([values, whole[name][len(values) :]]))
@@ -209,7 +209,7 @@ def _moves_are_known(robot: RobotTrack) -> bool:
 
 
 def robot_velocity(t: Array, robot: RobotTrack, jump_speed: float) -> tuple[Array, Array]:
-    """World velocity (N,), (N,) of the robot, m/s; derived where not recorded, NaN if neither."""
+    """Return the robot's world velocity (N,), (N,), m/s; derived if not recorded, else NaN."""
     valid = valid_robot_steps(t, robot, jump_speed)
     if robot.vx is not None and robot.vy is not None:
         return _completed(t, (robot.x, robot.y), (robot.vx, robot.vy), valid)
@@ -219,7 +219,7 @@ def robot_velocity(t: Array, robot: RobotTrack, jump_speed: float) -> tuple[Arra
 
 
 def forward_speed(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
-    """Signed forward speed of the robot (N,), m/s; derived where not recorded."""
+    """Return the robot's signed forward speed (N,), m/s; derived if not recorded."""
     if np.all(np.isfinite(robot.v)):
         return robot.v
     vx, vy = robot_velocity(t, robot, jump_speed)
@@ -229,7 +229,7 @@ def forward_speed(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
 
 
 def yaw_rate(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
-    """Yaw rate of the robot (N,), rad/s; derived where not recorded."""
+    """Return the robot's yaw rate (N,), rad/s; derived if not recorded."""
     if np.all(np.isfinite(robot.w)):
         return robot.w
     turn = heading_changes(t, robot, jump_speed)
@@ -239,30 +239,30 @@ def yaw_rate(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
 
 
 def agent_velocities(t: Array, agents: AgentTracks, jump_speed: float) -> tuple[Array, Array]:
-    """World velocities (N, M), (N, M) of people, m/s; NaN where absent or not derivable."""
+    """Return people's world velocities (N, M), (N, M), m/s; NaN if absent or not derivable."""
     valid = valid_agent_steps(t, agents, jump_speed)
     return _completed(t, (agents.x, agents.y), (agents.vx, agents.vy), valid)
 
 
 def present(x: Array, y: Array) -> Mask:
-    """Where a position is known."""
+    """Return a mask of known positions."""
     return np.isfinite(x) & np.isfinite(y)
 
 
 def _completed(
     t: Array, position: tuple[Array, Array], recorded: tuple[Array, Array], valid: Mask
 ) -> tuple[Array, Array]:
-    """Recorded velocities, the secant where there is none, NaN where the body is absent."""
+    """Return recorded velocities, the secant if missing, and NaN if absent."""
     known, here = present(*recorded), present(*position)
     vx, vy = recorded
-    if not np.array_equal(known & here, here):  # the usual case costs no derivation
+    if not np.array_equal(known & here, here):  # the usual case needs no derivation
         vx = np.where(known, vx, _secant(t, position[0], valid))
         vy = np.where(known, vy, _secant(t, position[1], valid))
     return np.where(here, vx, np.nan), np.where(here, vy, np.nan)
 
 
 def _secant(t: Array, p: Array, valid: Mask) -> Array:
-    """Slope over the valid steps on either side of each sample, NaN where both are invalid."""
+    """Return the slope over the valid steps beside each sample, NaN if both are invalid."""
     column = (slice(None), *([None] * (p.ndim - 1)))
     rise = np.where(valid, _steps(p), 0.0)
     run = np.where(valid, np.diff(t)[column], 0.0)
@@ -287,7 +287,7 @@ def _plausible_steps(t: Array, x: Array, y: Array, jump_speed: float) -> Mask:
 
 
 def _steps(p: Array) -> Array:
-    with np.errstate(invalid="ignore"):  # an infinite position is an unknown one
+    with np.errstate(invalid="ignore"):  # an infinite position is unknown
         steps: Array = np.diff(p, axis=0)
     return steps
 

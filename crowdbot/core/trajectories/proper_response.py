@@ -1,8 +1,7 @@
-"""Whether a robot did what it could when a contact became foreseeable: it braked.
+"""Check that the robot braked once a contact was foreseeable.
 
-After the responsibility of RSS (Shalev-Shwartz, Shammah, Shashua 2017, arXiv:1708.06374): nobody
-can prevent every contact, but whoever sees one coming can give the proper response, in time to
-react, and is not to blame if that does not help.
+Based on responsibility in RSS (Shalev-Shwartz, Shammah, Shashua 2017, arXiv:1708.06374): not every
+contact can be prevented, but a robot that gives the proper response in time is not to blame.
 """
 
 from __future__ import annotations
@@ -21,19 +20,19 @@ from crowdbot.core.trajectories.encounters import (
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 
-#: Slower relative motion does not count, m/s.
+#: Slower relative motion is ignored, m/s.
 _STILL = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultRule:
-    """Whose fault a contact is.
+    """The rule for whose fault a contact is.
 
     Attributes:
-        speed: a robot that moves towards whom it touches more slowly is not at fault, m/s.
-        reaction: time that it has before it must brake, s.
-        braking: how hard it must brake then, m/s².
-        margin: people who are going to pass closer than this count as going to be touched, m.
+        speed: approach speed below which the robot is not at fault, m/s.
+        reaction: reaction time before it must brake, s.
+        braking: required deceleration, m/s².
+        margin: predicted distance that counts as a contact, m.
     """
 
     speed: float
@@ -50,20 +49,20 @@ def braked_in_time(
     agent: NDArray[np.int64],
     jump_speed: float,
 ) -> Mask:
-    """(K,) contacts before which the robot was as slow as braking in time would have made it.
+    """Return (K,) contacts before which the robot was as slow as braking in time allows.
 
-    A contact is foreseeable from the first sample on at which both, keeping their velocities,
-    would come within the margin before the robot could react and come to rest. The robot may go
-    on for the time to react, then it has to slow down; at the contact it may be ``rule.speed``
-    faster than that gives. One that was not foreseeable before the time to react is not its fault.
+    A contact is foreseeable from the first sample on at which both, keeping their velocities, would
+    come within the margin before the robot could react and come to rest. The robot may continue for
+    the reaction time, then it must slow down; at the contact it may be ``rule.speed`` faster than
+    that. A contact foreseeable only within the reaction time is not its fault.
 
     Args:
-        run: has a robot.
-        rule: see there.
+        run: a run with a robot.
+        rule: the fault rule.
         onset: (K,) times of the contacts, s.
         sample: (K,) the last sample before each contact.
-        agent: (K,) column of the person; -1, unknown: never braked in time.
-        jump_speed: tells teleports where none were recorded, m/s.
+        agent: (K,) column of the person; -1: unknown, counts as not braked.
+        jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     found = np.zeros(len(sample), dtype=bool)
     if not (agent >= 0).any():
@@ -80,7 +79,7 @@ def braked_in_time(
 
 
 def _foreseen(run: Trajectories, margin: float, jump_speed: float) -> Array:
-    """Time (N, M) until both come within the margin if they keep their velocities, s."""
+    """Return the time (N, M) until a pair with constant velocities comes within the margin, s."""
     velocity = relative_velocity(run, jump_speed)
     pair = encounter(run, jump_speed)
     return time_to_contact(pair, velocity, contact_tol=margin, rel_speed_tol=_STILL)

@@ -1,7 +1,6 @@
-"""Answers to questionnaires of one drive: NASA-TLX and USE. Answers are only read here.
+"""Questionnaires of one drive: read answers of NASA-TLX and USE.
 
-The metrics say whether an answer is valid (as a reason), so that one wrong form of many does not
-stop an evaluation.
+The metrics report invalid answers as a reason, so that one wrong form does not stop an evaluation.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from typing import Any
 from crowdbot.core.support.arguments import path_of
 from crowdbot.errors import InputError, UnknownNameError
 
-#: Scales of the NASA task load index; performance is rated low when it was good.
+#: Scales of the NASA task load index; a low rating of performance is good.
 TLX_SCALES = (
     "mental_demand",
     "physical_demand",
@@ -25,7 +24,7 @@ TLX_SCALES = (
     "effort",
     "frustration",
 )
-#: Dimensions of the USE questionnaire, and how many items each has.
+#: Dimensions of the USE questionnaire, and their numbers of items.
 USE_ITEMS = {"usefulness": 8, "ease_of_use": 11, "ease_of_learning": 4, "satisfaction": 7}
 
 _COLUMNS = ("questionnaire", "item", "value")
@@ -36,11 +35,11 @@ Answer = float | None
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Questionnaires:
-    """Answers; empty where there are none.
+    """Answers; empty if there are none.
 
     Attributes:
         tlx_ratings: scale -> 0..100.
-        tlx_weights: scale -> how often it was chosen in the 15 comparisons of pairs, 0..5.
+        tlx_weights: scale -> number of times chosen in the 15 pairwise comparisons, 0..5.
         use: dimension -> its items, 1..7.
     """
 
@@ -57,7 +56,7 @@ class Questionnaires:
         ``"ratings"``; ratings and weights may be six numbers in the order of `TLX_SCALES`.
 
         Raises:
-            InputError: no mapping, or not a number.
+            InputError: not a mapping, or not a number.
             UnknownNameError: no such questionnaire, scale or dimension.
         """
         _check_known("questionnaire", _mapping("questionnaires", data), ("nasa_tlx", "use"))
@@ -80,7 +79,7 @@ class Questionnaires:
         ``usefulness_1`` to ``usefulness_8`` and so on for `USE_ITEMS`.
 
         Raises:
-            InputError: it cannot be read, or a row is wrong; names the line.
+            InputError: it cannot be read, or a row is wrong (the message names the line).
         """
         path = path_of("path", path)
         try:
@@ -160,7 +159,7 @@ def _scales(what: str, data: Any) -> dict[str, Answer]:
 
 
 def _answer(name: str, value: Any) -> Answer:
-    """A number, or None; what is not finite is None."""
+    """Return a number or None; non-finite values become None."""
     if value is None:
         return None
     try:

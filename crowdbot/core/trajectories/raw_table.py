@@ -1,4 +1,4 @@
-"""Tables of recordings as people have them: cells of text, numbers or stamps, under any names."""
+"""Raw tables of recordings: cells of text, numbers or stamps, with any column names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from crowdbot.core.support.text_files import suggest_files
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
 
-#: Our name of a column -> the name that it has in a file.
+#: Our name of a column -> its name in the file.
 ColumnNames = Mapping[str, str]
 #: The cells of a column.
 Cells = Sequence[Any] | NDArray[Any]
@@ -34,10 +34,10 @@ class RawTable:
     """Columns of cells, under our names.
 
     Attributes:
-        name: what messages call it.
+        name: name for messages.
         columns: name -> cells.
-        lines: line of each row in a file; empty where it is not a file.
-        header: the names of all its columns there, also of those that nobody asked for.
+        lines: line of each row in the file; empty without a file.
+        header: names of all columns in the file, including unused ones.
     """
 
     name: str
@@ -52,18 +52,18 @@ class RawTable:
         return len(next(iter(self.columns.values()), ()))
 
     def where(self, row: int) -> str:
-        """What messages call a row."""
+        """Return the name of a row for messages."""
         return f"{self.name}:{self.lines[row]}" if len(self.lines) else f"{self.name}, row {row}"
 
     def require(self, role: str, *columns: str) -> None:
-        """Refuse a table that lacks a column.
+        """Require columns of a table.
 
         Args:
-            role: which of our tables it is: robot, agents, trips, contacts.
-            columns: what it must have.
+            role: kind of table: robot, agents, trips, contacts.
+            columns: required columns.
 
         Raises:
-            InputError: it does.
+            InputError: a column is missing.
         """
         missing = [c for c in columns if c not in self.columns]
         if missing:
@@ -76,16 +76,16 @@ class RawTable:
             )
 
     def numbers(self, column: str) -> Array:
-        """(K,) a column of numbers; what is not there is NaN.
+        """Return a column of numbers (K,); missing cells are NaN.
 
         Raises:
-            InputError: a cell is not a number, with its line.
+            InputError: a cell is not a number (the message names the line).
         """
         cells = self.columns[column]
         return np.array([self._number(column, i, cell) for i, cell in enumerate(cells)])
 
     def stamps(self, column: str = "t") -> NDArray[np.int64] | None:
-        """(K,) ns since 1970, UTC; None where the column holds numbers.
+        """Return stamps (K,) in ns since 1970, UTC; None if the column holds numbers.
 
         Stamps are ISO 8601 texts or dates of Python or numpy; without a zone they are UTC.
 
@@ -101,15 +101,15 @@ class RawTable:
         return np.array([self._stamp(column, i, cell) for i, cell in enumerate(cells)], np.int64)
 
     def times(self, column: str = "t", origin: int = 0) -> tuple[Array, bool]:
-        """(K,) times in s, and whether they are stamps, which are counted from an instant.
+        """Return times (K,) in s, and True if they are stamps.
 
         Args:
-            column: which.
-            origin: ns since 1970; subtracted before stamps become s, which from 1970 on would be
-                rounded to a quarter of a microsecond.
+            column: the column's name.
+            origin: ns since 1970; subtracted before conversion to s, which would round times since
+                1970 to a quarter of a microsecond.
 
         Raises:
-            InputError: a cell is neither a number nor a stamp, or empty.
+            InputError: a cell is neither number nor stamp, or empty.
         """
         cells, stamps = self.columns[column], self.stamps(column)
         if stamps is not None:
@@ -139,10 +139,10 @@ class RawTable:
 
 
 class Ids:
-    """Numbers for whatever people are called; whole numbers stay what they are."""
+    """Numbers for people's names; whole numbers are kept."""
 
     def __init__(self, table: RawTable, column: str = "id") -> None:
-        """Look at a column.
+        """Build from a column of a table.
 
         Raises:
             InputError: a cell is empty.
@@ -157,31 +157,31 @@ class Ids:
         self.rows: NDArray[np.int64] = np.array([self.number[t] for t in texts], dtype=np.int64)
 
     def of(self, table: RawTable, column: str) -> NDArray[np.int64]:
-        """(K,) numbers of the people whom another table names; -1 stays -1.
+        """Return the numbers (K,) of people in another table; -1 stays -1.
 
         Raises:
-            InputError: nobody is called so.
+            InputError: an unknown person is named.
         """
         found = []
         for row, cell in enumerate(table.columns[column]):
             text = _label(cell)
             if text not in self.number and text != "-1":
                 near = did_you_mean(nearest(text, self.number))
-                raise InputError(f"{table.where(row)}: {column}: nobody is called '{text}'{near}")
+                raise InputError(f"{table.where(row)}: {column}: no one is called '{text}'{near}")
             found.append(self.number.get(text, -1))
         return np.array(found, dtype=np.int64)
 
 
 def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable:
-    """A text file with a header row; separated by commas, semicolons, tabs or blanks.
+    """Read a text file with a header row, separated by commas, semicolons, tabs or blanks.
 
     Args:
         path: the file; UTF-8.
-        names: our name -> the file's, where they differ.
-        known: our names; other columns of the file are left out.
+        names: our name -> the file's name, if different.
+        known: our names; other columns are ignored.
 
     Raises:
-        InputError: it cannot be read, is not a table, or has no column of such a name.
+        InputError: it cannot be read, is not a table, or lacks a named column.
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -203,16 +203,16 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
 
 
 def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str]) -> RawTable:
-    """A data frame of pandas, or any mapping of columns.
+    """Read a pandas data frame, or any mapping of columns.
 
     Args:
-        name: what messages call it.
-        frame: what has columns by name.
-        names: our name -> the frame's, where they differ.
-        known: our names; other columns are left out.
+        name: name for messages.
+        frame: object with columns by name.
+        names: our name -> the frame's name, if different.
+        known: our names; other columns are ignored.
 
     Raises:
-        InputError: it is not a frame, or has no column of such a name.
+        InputError: it is not a frame, or lacks a named column.
     """
     try:
         header = [str(c) for c in frame]
@@ -227,10 +227,10 @@ def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str])
 
 
 def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapping[str, RawTable]:
-    """Tables whose times are numbers of frames, with times in s.
+    """Convert times in tables from frame numbers to s.
 
     Args:
-        tables: by what they are.
+        tables: tables by kind.
         frame_rate: frames per second; None: times are in seconds, or stamps.
 
     Raises:
@@ -254,7 +254,7 @@ def _without_frames(table: RawTable, frame_rate: float) -> RawTable:
 
 
 def _plain(series: Any) -> Any:
-    """Stamps with a zone as stamps of UTC."""
+    """Convert stamps with a zone to UTC."""
     if getattr(getattr(series, "dtype", None), "tz", None) is not None:
         return series.dt.tz_convert("UTC").dt.tz_localize(None).to_numpy()
     return series
@@ -263,7 +263,7 @@ def _plain(series: Any) -> Any:
 def _chosen(
     name: str, header: Sequence[str], names: ColumnNames, known: Iterable[str]
 ) -> dict[str, int]:
-    """Our names of the columns -> where they are."""
+    """Return our column names -> their index."""
     known = list(known)
     for ours, theirs in names.items():
         expect("a column's name", theirs, str)
@@ -283,7 +283,7 @@ def _chosen(
 
 
 def _separator(head: str) -> str:
-    """What separates the cells of a header row; a blank stands for any number of them."""
+    """Return the separator of a header row; a blank stands for any number of blanks."""
     counts = {mark: head.count(mark) for mark in ("\t", ";", ",")}
     best = max(counts, key=lambda mark: counts[mark])
     if counts[best]:
@@ -292,7 +292,7 @@ def _separator(head: str) -> str:
 
 
 def _rows(path: Path, text: str, mark: str) -> tuple[list[list[str]], list[int]]:
-    """Rows of cells, and their lines; blank rows are left out."""
+    """Return rows of cells and their lines, without blank rows."""
     rows, lines = [], []
     try:
         if mark == " ":
@@ -335,19 +335,19 @@ def _is_stamp(cell: Any) -> bool:
 
 
 def _as_stamp(cell: Any) -> int:
-    """Nanoseconds since 1970."""
+    """Return nanoseconds since 1970."""
     if isinstance(cell, np.datetime64):
         return int(cell.astype("datetime64[ns]").astype(np.int64))
     at = cell if isinstance(cell, datetime) else datetime.fromisoformat(str(cell).strip())
     at = at if at.tzinfo else at.replace(tzinfo=UTC)
-    # Dates of Python end at microseconds; those of pandas, and texts, may go on.
+    # Python's dates end at microseconds; pandas and texts may have more digits.
     rest = _BEYOND.search(cell) if isinstance(cell, str) else None
     more = int(rest[1].ljust(3, "0")) if rest else int(getattr(at, "nanosecond", 0))
     return 1000 * int((at - _EPOCH) // timedelta(microseconds=1)) + more
 
 
 def _label(cell: Any) -> str:
-    """The text of an id; 7.0 is 7."""
+    """Return the text of an id; 7.0 becomes 7."""
     if cell is None or (isinstance(cell, float) and math.isnan(cell)):
         return ""
     if isinstance(cell, float | np.floating) and float(cell).is_integer():

@@ -1,4 +1,4 @@
-"""Tracks at other times than those they were recorded at."""
+"""Resample tracks at other times."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
-#: Samples of one run: a day at 1000 Hz.
+#: Largest number of samples of a run: a day at 1000 Hz.
 _MOST = 1e8
 
 
 def steady_times(begin: float, end: float, rate: float) -> Array:
-    """(N,) times from ``begin`` on, 1 / ``rate`` apart, none after ``end``; s, Hz.
+    """Return (N,) times from ``begin``, 1 / ``rate`` apart, up to ``end``; s, Hz.
 
     Raises:
-        InputError: the rate is not positive, or makes more samples than can be held.
+        InputError: the rate is not positive, or gives too many samples.
     """
     if not (math.isfinite(rate) and rate > 0.0):
         raise InputError(f"resample: a rate is positive, in Hz, not {rate!r}")
@@ -32,13 +32,13 @@ def steady_times(begin: float, end: float, rate: float) -> Array:
 
 
 def interpolated(known: Array, values: Array, t: Array, max_gap: float = math.inf) -> Array:
-    """(N,) values at other times, on straight lines; NaN outside, and where nothing is known.
+    """Interpolate linearly at other times (N,); NaN outside and where values are unknown.
 
     Args:
         known: (K,) times of the values, increasing, s.
-        values: (K,) with NaN where they are not known.
-        t: (N,) wanted times, s.
-        max_gap: no line is drawn over a longer time, s.
+        values: (K,) values, NaN if unknown.
+        t: (N,) requested times, s.
+        max_gap: longest gap to interpolate over, s.
     """
     there = np.isfinite(values)
     known, values = known[there], values[there]

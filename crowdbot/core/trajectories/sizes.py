@@ -1,4 +1,4 @@
-"""Whether the numbers of a run can be computed with."""
+"""Refuse numbers that are too large to compute with."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 
-#: Largest number of a run; coordinates of maps in millimetres are smaller.
+#: Largest allowed number; map coordinates in millimetres are smaller.
 _MOST = 1e12
-#: The same of times, s; nanoseconds since 1970 are smaller.
+#: Largest allowed time, s; nanoseconds since 1970 are smaller.
 _LATEST = 1e20
 
 
 def check_sizes(run: Trajectories) -> None:
-    """Refuse numbers that nothing real has: their squares would overflow in metrics.
+    """Refuse unrealistic numbers, whose squares would overflow in metrics.
 
     Raises:
-        InputError: one is beyond 1e12, or 1e20 of a time.
+        InputError: a number exceeds 1e12, or a time 1e20.
     """
     _check("t", run.t, _LATEST)
     parts = {"robot": run.robot, "agent": run.agents, "trip": run.trips, "contacts": run.contacts}

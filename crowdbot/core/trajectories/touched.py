@@ -1,6 +1,6 @@
-"""Who is touched by something, so that he does not move by his own legs alone.
+"""Find steps on which something touches a person, so that the motion is not the person's own.
 
-N samples, M people; world frame, SI units. Steps, not samples, are asked about.
+N samples, M people; world frame, SI units. Results are per step, not per sample.
 """
 
 from __future__ import annotations
@@ -14,22 +14,22 @@ from crowdbot.core.trajectories.preprocess import inf_to_nan
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
-#: Surfaces this near may have touched between two samples, m.
+#: Surfaces closer than this may have touched between two samples, m.
 SLACK = 0.02
-#: Pairs of a step and a person that are looked at together: bounds the memory.
+#: Number of (step, person) pairs processed at once, to limit memory.
 _CHUNK = 4096
 
 
 def touched(run: Trajectories, asked: Mask, jump_speed: float) -> Mask:
-    """On which of the steps asked about (N-1, M) a person touches somebody, a wall or the robot.
+    """Return steps (N-1, M) among those requested on which anything touches the person.
 
-    People move along straight lines within a step, and are looked at all along it; walls and the
-    robot at both ends of it, and in the table of contacts.
+    People move straight within a step and are checked along all of it; walls and the robot are
+    checked at its ends, and in the table of contacts.
 
     Args:
-        run: has a robot.
-        asked: (N-1, M) steps; the others are False in the answer.
-        jump_speed: tells teleports where none were recorded, m/s.
+        run: a run with a robot.
+        asked: (N-1, M) steps; the others are False in the result.
+        jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     found = np.zeros(asked.shape, dtype=bool)
     step, who = np.nonzero(asked)
@@ -42,7 +42,7 @@ def touched(run: Trajectories, asked: Mask, jump_speed: float) -> Mask:
 
 
 def _by_people(run: Trajectories, step: Indices, who: Indices) -> Mask:
-    """Whether anybody else comes within the slack on the step; (K,)."""
+    """Return True for steps (K,) on which another person comes within the tolerance."""
     every = people(run)
     x, y = inf_to_nan(every.x), inf_to_nan(every.y)
     boxes = [_boxes(p, every.radius) for p in (x, y)]
@@ -63,9 +63,9 @@ def _by_people(run: Trajectories, step: Indices, who: Indices) -> Mask:
 
 
 def _boxes(p: Array, radius: Array) -> tuple[Array, Array]:
-    """Ends of what each body covers on each step, along one axis; (N-1, M), m.
+    """Return the range that each body covers on each step along one axis; (N-1, M), m.
 
-    With the slack at both, so twice: rounding must leave nobody out.
+    The tolerance is added on both sides, so that rounding excludes no pair.
     """
     least, most = np.minimum(p[:-1], p[1:]), np.maximum(p[:-1], p[1:])
     return least - (radius + SLACK), most + (radius + SLACK)
@@ -74,7 +74,7 @@ def _boxes(p: Array, radius: Array) -> tuple[Array, Array]:
 def _near(
     boxes: Sequence[tuple[Array, Array]], step: Indices, who: Indices
 ) -> tuple[Indices, Indices]:
-    """Who may come near on the steps, because the boxes overlap: indices of steps and people."""
+    """Return indices of steps and people whose boxes overlap, so that they may be near."""
     near = np.ones((len(step), boxes[0][0].shape[1]), dtype=bool)
     near[np.arange(len(who)), who] = False
     for low, high in boxes:
@@ -85,7 +85,7 @@ def _near(
 
 
 def _by_walls(run: Trajectories, walls: Array, step: Indices, who: Indices) -> Mask:
-    """Whether a wall is within the slack at either end of the step; (K,)."""
+    """Return True for steps (K,) with a wall within the tolerance at either end."""
     every = people(run)
     found = np.zeros(len(step), dtype=bool)
     ax, ay, bx, by = walls.T
@@ -100,7 +100,7 @@ def _by_walls(run: Trajectories, walls: Array, step: Indices, who: Indices) -> M
 
 
 def _in_table(run: Trajectories) -> Mask:
-    """Steps (N-1, M) on which the table of contacts has one of the robot with a person."""
+    """Return steps (N-1, M) on which the contact table has a contact of robot and person."""
     every = people(run)
     found = np.zeros((len(run.t) - 1, len(every.id)), dtype=bool)
     if run.contacts is None:

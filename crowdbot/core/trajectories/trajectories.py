@@ -1,6 +1,7 @@
-"""Trajectories: the typed arrays a run leaves behind; all that metrics may see.
+"""Trajectories: the typed arrays of a run, which are all that metrics may use.
 
-Layout of the metric specification, section 1. Arrays are float64, read-only, shape-checked.
+The layout is that of the metric specification, section 1. Arrays are float64, read-only,
+shape-checked.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
 
 
 def _for_all(value: _Cached) -> _Cached:
-    """The same with arrays that nobody can make writable."""
+    """Return the value with read-only arrays."""
     found: Any = value
     if isinstance(found, np.ndarray):
         return cast(_Cached, immutable(found))
@@ -45,7 +46,7 @@ def _for_all(value: _Cached) -> _Cached:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotTrack:
-    """One robot: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s.
+    """The robot's track: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s.
 
     ``vx``, ``vy`` (N,) are the world velocity (m/s) of a robot that also moves sideways; without
     them it is ``v`` along ``theta``.
@@ -67,7 +68,7 @@ class RobotTrack:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AgentTracks:
-    """People: id, radius, mass (M,); x, y, vx, vy (N, M), NaN = absent; jump (N-1, M)."""
+    """Tracks of people: id, radius, mass (M,); x, y, vx, vy (N, M), NaN = absent; jump (N-1, M)."""
 
     id: NDArray[np.int64]
     x: Array
@@ -81,7 +82,7 @@ class AgentTracks:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trips:
-    """Journeys to one goal: agent (id), t0, t1 (s), reached; each (K,)."""
+    """People's trips to one goal: agent (id), t0, t1 (s), reached; each (K,)."""
 
     agent: NDArray[np.int64]
     t0: Array
@@ -94,9 +95,8 @@ class ContactEvents:
     """Contacts of the robot, each (K,).
 
     t0, t1 (s), agent id (-1: a wall; -2, -3, …: another robot of the run), impulse (N s), peak
-    force (N), relative speed before (m/s), bearing of the point of the robot that was touched
-    first, in the robot's frame (rad; NaN: unknown), for which
-    `crowdbot.core.geometry.footprint.body_side` has names.
+    force (N), relative speed before (m/s), bearing of the robot's first point of contact in its
+    frame (rad; NaN: unknown), named by `crowdbot.core.geometry.footprint.body_side`.
     """
 
     t0: Array
@@ -120,7 +120,7 @@ class Trajectories(FromRecordings):
         robot_footprint: outline of the robot in its own frame (x forward), m: the (K, 2) corners
             of a polygon in either sense, K >= 3; or the (2, 2) ends of the axis of a capsule,
             whose radius is ``robot.radius``. None: a disc of ``robot.radius``.
-        robot_speed_limit: the fastest that the robot can go, m/s; None: unknown.
+        robot_speed_limit: the robot's top speed, m/s; None: unknown.
         signals: name -> (P, 2) time (s) and value.
     """
 
@@ -138,10 +138,10 @@ class Trajectories(FromRecordings):
     _cache: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def cached(self, key: Hashable, compute: Callable[[], _Cached]) -> _Cached:
-        """What ``compute`` makes of this run; computed once, for all metrics that ask.
+        """Return the result of ``compute`` for this run, cached for all metrics.
 
-        A run never changes, and its cache is dropped with it. Nobody can make arrays writable that
-        others get too: one alone, those of a tuple, those of a dataclass.
+        A run never changes, and its cache is freed with it. Cached arrays (single, in tuples or
+        dataclasses) are read-only.
         """
         if key not in self._cache:
             self._cache[key] = _for_all(compute())
@@ -193,7 +193,7 @@ class Trajectories(FromRecordings):
         `ContactEvents`, of which ``bearing`` may be left out.
 
         Raises:
-            InputError: a shape does not fit, time does not increase, a part is missing.
+            InputError: a shape is wrong, time does not increase, a part is missing.
         """
         arguments = locals()
         run = cls(
@@ -217,18 +217,18 @@ class Trajectories(FromRecordings):
 def cached_beside(
     run: Trajectories, other: Trajectories, key: Hashable, compute: Callable[[], _Cached]
 ) -> _Cached:
-    """As `Trajectories.cached`, what ``compute`` makes of a run and another one."""
+    """Return the result of ``compute`` for two runs, cached like `Trajectories.cached`."""
     done: dict[int, tuple[Trajectories, _Cached]] = run.cached(("beside", key), dict)
-    if id(other) not in done:  # the other run is kept as well, so that nothing else gets its id
+    if id(other) not in done:  # keep the other run as well, so that its id is not reused
         done[id(other)] = other, _for_all(compute())
     return done[id(other)][1]
 
 
 def _signals(signals: Mapping[str, ArrayLike]) -> dict[str, Array]:
-    """Signals by name.
+    """Return signals by name.
 
     Raises:
-        InputError: one is not a table of times and values.
+        InputError: a signal is not a table of times and values.
     """
     found = {}
     for name, rows in mapping_of("signals", signals, "names to arrays").items():
@@ -242,7 +242,7 @@ def _signals(signals: Mapping[str, ArrayLike]) -> dict[str, Array]:
 
 
 def _check_travellers(run: Trajectories) -> None:
-    """Trips of people who do not exist would be counted, and lengths looked up for others."""
+    """Refuse trips of unknown people, which would be counted with wrong lengths."""
     if run.trips is None or run.agents is None:
         return
     unknown = np.setdiff1d(run.trips.agent, run.agents.id)
@@ -280,7 +280,7 @@ def _robot(arguments: Mapping[str, Any]) -> RobotTrack:
 
 
 def _speed_limit(value: float | None) -> float | None:
-    """As a number.
+    """Convert the limit to a number.
 
     Raises:
         InputError: it is not positive.
@@ -294,7 +294,7 @@ def _speed_limit(value: float | None) -> float | None:
 
 
 def _forward(rows: Mapping[str, Array]) -> Array:
-    """Forward speed of a robot that gave its world velocity, m/s."""
+    """Return the forward speed of a robot given by its world velocity, m/s."""
     try:
         return _read_only(rows["vx"] * np.cos(rows["theta"]) + rows["vy"] * np.sin(rows["theta"]))
     except ValueError as error:
@@ -333,7 +333,7 @@ def _trips(arguments: Mapping[str, Any]) -> Trips:
 def _contacts(table: Mapping[str, ArrayLike]) -> ContactEvents:
     table = mapping_of("contacts", table, "columns to arrays")
     names = [f.name for f in fields(ContactEvents)]
-    if "bearing" not in table:  # tables of others, and of older recordings
+    if "bearing" not in table:  # in other tools' tables and older recordings
         table = {**table, "bearing": np.full(np.shape(table.get("t0", ())), np.nan)}
     if set(table) != set(names):
         raise InputError(f"trajectories: contacts needs the columns {', '.join(names)}")

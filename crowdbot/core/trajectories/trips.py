@@ -1,4 +1,4 @@
-"""Trips of people: durations, Kaplan-Meier means, and what people walked on each.
+"""Trips of people: durations, Kaplan-Meier means, and walked distances.
 
 K trips, N samples, M people; SI units.
 """
@@ -22,37 +22,37 @@ from crowdbot.core.types.arrays import Array, Mask
 
 #: Durations are compared after rounding to this many decimals of a second.
 DECIMALS = 9
-#: Slack of the neighbour rule, m.
+#: Tolerance of the neighbour rule, m.
 DISTANCE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Durations:
-    """Durations (K,) of trips, s, and whether each was completed; else it lasted longer."""
+    """Durations (K,) of trips, s, and if each was completed; otherwise it lasted longer."""
 
     seconds: Array
     reached: Mask
 
     def __len__(self) -> int:
-        """Number of trips."""
+        """Return the number of trips."""
         return len(self.seconds)
 
     @property
     def longest(self) -> float:
-        """Of all trips, completed or not, s."""
+        """Return the longest duration of all trips, completed or not, s."""
         return float(self.seconds.max())
 
     @property
     def open_ended(self) -> bool:
-        """Whether an unfinished trip is (among) the longest, so that the mean is unknown."""
+        """Return True if an unfinished trip is among the longest, so that the mean is unknown."""
         return bool(np.any(~self.reached & (self.seconds == self.longest)))
 
     def completed_mean(self) -> float | None:
-        """Arithmetic mean of completed trips, s; None if there is none."""
+        """Return the arithmetic mean of completed trips, s; None without any."""
         return float(self.seconds[self.reached].mean()) if self.reached.any() else None
 
     def restricted_mean(self, limit: float) -> float:
-        """Area under the product-limit (Kaplan-Meier) curve up to ``limit`` (s), in s.
+        """Return the area under the product-limit (Kaplan-Meier) curve up to ``limit`` (s), in s.
 
         At ties, completions come before censorings.
         """
@@ -65,12 +65,12 @@ class Durations:
         return float(survival @ np.diff(np.concatenate([[0.0], events, [limit]])))
 
     def select(self, rows: Mask) -> Durations:
-        """Some of the trips."""
+        """Return some of the trips."""
         return Durations(self.seconds[rows], self.reached[rows])
 
 
 def durations(run: Trajectories) -> Durations:
-    """Durations of all trips of a run that ends at the arrival."""
+    """Return durations of all trips of a run that ends at the arrival."""
     trips = run.trips
     if trips is None:
         return Durations(np.empty(0), np.empty(0, dtype=bool))
@@ -78,10 +78,10 @@ def durations(run: Trajectories) -> Durations:
 
 
 def meets_robot(run: Trajectories, radius: float) -> Mask:
-    """Trips (K,) on which the person is within ``radius`` (m) of the robot at some sample."""
+    """Return trips (K,) that bring the person within ``radius`` (m) of the robot at some sample."""
     if run.trips is None:
         return np.empty(0, dtype=bool)
-    # teleports play no part in distances, so any jump speed does
+    # teleports do not affect distances, so any jump speed works
     near = encounter(run, np.inf).distance <= radius + DISTANCE_TOLERANCE
     first, last, column = trip_samples(run)
     seen = np.concatenate([np.zeros((1, near.shape[1]), dtype=np.int64), near.cumsum(axis=0)])
@@ -92,7 +92,7 @@ def meets_robot(run: Trajectories, radius: float) -> Mask:
 
 
 def walked_distances(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
-    """Length of the path and straight displacement of each trip (K,), (K,), m.
+    """Return path length and straight displacement of each trip (K,), (K,), m.
 
     Both from the samples inside the trip; teleports add no length.
     """
@@ -113,7 +113,7 @@ def walked_distances(run: Trajectories, jump_speed: float) -> tuple[Array, Array
 
 
 def displacement(x: Array, y: Array) -> float:
-    """Distance of a body's last known position from its first one (N,), (N,), m."""
+    """Return the distance of a body's last known position from its first one (N,), (N,), m."""
     known = np.flatnonzero(present(x, y))
     if not len(known):
         return 0.0
@@ -127,7 +127,7 @@ def _displacement(
     valid: Mask,
     rows: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
 ) -> Array:
-    """From the first to the last known position between two samples of a column, m."""
+    """Return the distance from the first to the last known position between two samples, m."""
     first, last, column = rows
     here = present(x, y)
     index = np.arange(len(x))[:, None]
@@ -146,7 +146,7 @@ def _displacement(
 def trip_samples(
     run: Trajectories,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """First and last sample inside each trip, and the person's column (-1: not in the table)."""
+    """Return first and last sample of each trip, and the person's column (-1: unknown)."""
     trips, ids = run.trips, people(run).id
     if trips is None:
         none = np.empty(0, dtype=np.int64)

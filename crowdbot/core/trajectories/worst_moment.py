@@ -1,4 +1,4 @@
-"""The moment of a run that is worth looking at first."""
+"""The most interesting moment of a run."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from crowdbot.core.trajectories.preprocess import truncate_at_arrival
 from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.core.trajectories.trajectories import Trajectories
 
-#: As the metric ``contacts_at_fault`` has them by default; m, m, m/s. The slack of its speed is for
-#: rounding, which decides nothing.
+#: Defaults of the metric ``contacts_at_fault``; m, m, m/s. The tolerance of its speed covers
+#: rounding.
 CONTACT_TOL, RELEASE_GAP, JUMP_SPEED = 1e-9, 0.05, 10.0
 RULE = FaultRule(speed=0.05 + 1e-9, reaction=0.3, braking=1.0, margin=0.1)
 
@@ -21,10 +21,10 @@ What = Literal["contact at fault", "least clearance"]
 
 
 class WorstMoment(NamedTuple):
-    """When, what happened then, and how far the nearest person was away.
+    """Time, event, and distance of the nearest person.
 
-    ``t``: s, on the clock of the run. ``clearance``: between the surfaces, m; 0 or less in a
-    contact, None where nothing tells it.
+    ``t``: s, on the run's clock. ``clearance``: gap between surfaces, m; 0 or less in contact, None
+    if unknown.
     """
 
     t: float
@@ -33,14 +33,13 @@ class WorstMoment(NamedTuple):
 
 
 def worst_moment(run: Trajectories) -> WorstMoment | None:
-    """The first contact that the robot drove into, until it arrived; else the least clearance.
+    """Return the first contact that the robot caused, else the smallest clearance.
 
-    A contact at fault is what a planner has to answer for, and the first one is where its trouble
-    begins: later ones often follow from it. Without one, the nearest approach is where a little
-    more would have been a contact; if somebody walked into the robot, that is such a moment.
+    The first contact at fault is shown because later ones often follow from it. Otherwise the
+    nearest approach is shown, which includes a person walking into the robot.
 
     Returns:
-        None of a run without robot or people.
+        None for a run without robot or people.
     """
     if run.robot is None or run.agents is None:
         return None

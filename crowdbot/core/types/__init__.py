@@ -1,1 +1,1 @@
-"""Types: plain values that several folders share."""
+"""Types: plain values shared by several folders."""

@@ -12,10 +12,11 @@ class Appearance:
     """Bodies of people as sensors see them; what touches is a disc all the same.
 
     Attributes:
-        height: (N,) m; 0: the crowd's.
-        leg_length: (N,) from the floor to the hip, m; 0: the usual share of the height.
+        height: (N,) m; 0: the crowd's default.
+        leg_length: (N,) length from the floor to the hip, m; 0: the default share of the height.
         phase: (N,) of the legs at the start, rad.
-        look: names of what each looks like (`crowdbot.dsl.scenario.people_kinds`); "": an adult.
+        look: names of each person's appearance (`crowdbot.dsl.scenario.people_kinds`); "": an
+            adult.
     """
 
     height: Array

@@ -1,4 +1,4 @@
-"""Names for arrays; shapes stand in the docstrings of those who use them."""
+"""Names for arrays; their shapes are given in the docstrings of their users."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Velocities among which people choose, as what records them has to know them."""
+"""Velocities among which people choose, for use by recordings."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from crowdbot.core.types.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class VelocityCandidates:
-    """The same candidates for everybody who follows a policy, as seen along the way to the goal.
+    """Candidates for everyone who follows a policy, relative to the goal direction.
 
-    Somebody of preferred speed s whose goal lies in the direction (cos b, sin b) wants one of the
-    velocities s R(b) c, where c is one of the candidates and R(b) turns by b, and approaches it
-    as far as the largest acceleration allows: a = (s R(b) c - v) / ``relaxation_time``.
+    A person of preferred speed s whose goal lies in the direction (cos b, sin b) chooses one of the
+    velocities s R(b) c, where c is one of the candidates and R(b) turns by b, and approaches it as
+    far as the largest acceleration allows: a = (s R(b) c - v) / ``relaxation_time``.
 
     Attributes:
-        unit: (S, 2) candidates of somebody of speed 1 m/s who walks along x.
+        unit: (S, 2) candidates of a person with speed 1 m/s who walks along x.
         relaxation_time: s.
 
     Raises:

@@ -1,4 +1,4 @@
-"""How a run can end, in one table: words, order, texts, colours, and what counts as a failure."""
+"""Endings of a run in one table: names, order, texts, colours, and which count as failures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class Ending(StrEnum):
-    """How a run, or the attempt to make one, ended: the word that ``run.json`` has.
+    """The ending of a run, or of an attempt to make one, by its name in ``run.json``.
 
     Tables show endings in this order; the ending of a run of several robots is the last one that
     one of its robots has.

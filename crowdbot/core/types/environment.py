@@ -1,4 +1,4 @@
-"""What an environment is made of."""
+"""The parts of an environment."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.core.types.arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EnvironmentParts:
-    """Plain geometry; core makes plant boxes, ray targets, crowd obstacles and drawings from it.
+    """Plain geometry; core builds plant boxes, ray targets, crowd obstacles and drawings from it.
 
     Attributes:
         walls: (S, 4) segments x0, y0, x1, y1, m; the free side is on their left.
@@ -24,13 +24,12 @@ class EnvironmentParts:
         portals: name -> (x0, x1, y0, y1), m.
         pillars: (P, 3) x, y and radius of round obstacles for robot and people, m.
         pillar_heights: (P, 2) bottom and top, m.
-        solids: convex outlines (K, 2), counter-clockwise, of what the robot collides with as a
-            whole, m; sensors and people meet their sides, which are among ``walls``.
+        solids: convex outlines (K, 2), counter-clockwise, of obstacles that the robot collides with
+            as a whole, m; sensors and people use their sides, which are among ``walls``.
         solid_heights: (B, 2) bottom and top, m.
         solids_stop_crowd: (B,) bool, people go around the solid; all of them if left out.
-        periodic_boundary: (x0, x1, y0, y1) of a floor on which people who leave on one side come
-            back on the other and see each other across the border, m; None for a floor with
-            borders.
+        periodic_boundary: (x0, x1, y0, y1) of a floor with periodic boundaries, on which people who
+            leave on one side return on the other, m; else None.
         floor_friction: coefficient of a tyre on the floor; core takes it from the spec.
     """
 
@@ -53,7 +52,7 @@ class EnvironmentParts:
             object.__setattr__(self, "solids_stop_crowd", np.ones(len(self.solids), np.bool_))
 
     def sides(self) -> NDArray[np.bool_]:
-        """(S,) which walls are a side of a solid: the robot meets the solid in their place."""
+        """Return a mask (S,) of walls that are a side of a solid, which the robot meets instead."""
         corners = {_rounded(p) for outline in self.solids for p in outline.tolist()}
         return np.array(
             [
@@ -64,7 +63,7 @@ class EnvironmentParts:
         )
 
     def in_the_way(self, height: float) -> tuple[Array, Array, tuple[Array, ...]]:
-        """What people of a height (m) go around: walls (S, 4), pillars (P, 3) and solids."""
+        """Return obstacles for people of a height (m): walls (S, 4), pillars (P, 3) and solids."""
         low = self.stops_crowd & (self.wall_heights[:, 0] < height)
         solids = zip(self.solids, self.solids_stop_crowd, self.solid_heights[:, 0], strict=True)
         return (

@@ -1,4 +1,4 @@
-"""Arrays, where something is in the plane, and what a robot is told to do."""
+"""Arrays, planar poses, and robot commands."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Pose(NamedTuple):
-    """Pose in the plane."""
+    """A pose in the plane."""
 
     x: float
     y: float
@@ -16,7 +16,7 @@ class Pose(NamedTuple):
 class Command(NamedTuple):
     """Body velocity: v forward (m/s), w counter-clockwise (rad/s), vy to the left (m/s).
 
-    Only a holonomic drive can give vy; for all others it is clamped to 0.
+    Only a holonomic drive supports vy; for all others it is clamped to 0.
     """
 
     v: float

@@ -1,4 +1,4 @@
-"""What a robot is made of, and what is known about it at an instant."""
+"""A robot's model, limits, and state."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from crowdbot.core.types.arrays import Array
 class RobotLimits:
     """A box of velocities and slew limits: m/s, rad/s, m/s^2, rad/s^2.
 
-    |vy| is at most ``vy_max``, which is 0 where the drive does not go sideways. ``a_max`` limits
-    the change of the vector (v, vy), in the robot's frame. A robot that gets no command for
+    ``|vy|`` is at most ``vy_max``, which is 0 if the drive cannot go sideways. ``a_max`` limits the
+    change of the vector (v, vy), in the robot's frame. A robot that gets no command for
     ``command_timeout`` seconds brakes to a stop.
     """
 
@@ -29,7 +29,7 @@ class RobotLimits:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DifferentialDrive:
-    """Two driven wheels on one axis. ``command_radius`` turns commands into wheel rates."""
+    """Two driven wheels on one axis. ``command_radius`` converts commands to wheel rates."""
 
     left_joint: str
     right_joint: str
@@ -39,17 +39,17 @@ class DifferentialDrive:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HolonomicDrive:
-    """A base that goes in every direction, such as one on omni wheels.
+    """An omnidirectional base, such as one on omni wheels.
 
-    The wheels themselves are not simulated: a force moves the base (control ``force``), or the
-    command does (``kinematic``). What touches the floor must slide without friction.
+    The wheels are not simulated: a force (control ``force``) or the command (``kinematic``) moves
+    the base. Shapes that touch the floor must slide without friction.
 
     Attributes:
         max_force: the largest horizontal force, N, in any direction.
         max_torque: the largest torque about the vertical, N m.
-        wheel_radius: of the measuring wheels that odometry counts, m: two that roll forward,
+        wheel_radius: radius of the virtual wheels that odometry counts, m: two that roll forward,
             ``track`` apart, and one under the base's frame that rolls to the left.
-        track: m.
+        track: distance between the wheels, m.
     """
 
     max_force: float
@@ -63,14 +63,14 @@ class RobotModel:
     """A robot's body and drive.
 
     Attributes:
-        description: one robot in SDFormat or URDF. Joints with limits are held at zero; others
-            roll freely, but for the driven wheels. `crowdbot.core.robot_description` reads it.
-        base: name of the base link, which sensors are mounted on: x ahead, on the vertical of the
+        description: one robot in SDFormat or URDF. Joints with limits are held at zero; others roll
+            freely, except the driven wheels. `crowdbot.core.robot_description` reads it.
+        base: name of the base link, on which sensors are mounted: x ahead, on the vertical of the
             drive axis, ``base_height`` above the floor.
-        footprint_radius: radius of the physical disc, m; of a capsule with ``footprint``.
+        footprint_radius: radius of the physical disc, m; with ``footprint``, of the capsule.
         footprint: outline of a robot that is not a disc, in its own frame, m: (2, 2) is the segment
             of a capsule, (K, 2) with K > 2 a convex polygon, counter-clockwise.
-        height: of the whole robot, m.
+        height: height of the whole robot, m.
         force_height: height above the floor at which people push, m.
         skin_stiffness: of what people touch, in series with their own bodies, N/m; infinite of a
             rigid shell.
@@ -100,15 +100,15 @@ class RobotModel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotBody:
-    """What a planner is told about the robot that it drives.
+    """The planner's information about its robot.
 
     Attributes:
         drive: ``differential``, or ``holonomic``, which also goes sideways.
-        radius: of the disc, or of the capsule, m; with a polygon, of the circle around it.
+        radius: radius of the disc or capsule, or of the circle around a polygon, m.
         footprint: outline of a robot that is not a disc, in its own frame (x forward), m: (2, 2)
             is the segment of a capsule, (K, 2) with K > 2 a convex polygon. None: a disc.
-        front, back, half_width: how far it reaches ahead, behind and to either side of the middle
-            of its drive axis, m.
+        front, back, half_width: extent ahead, behind and to either side of the drive axis's centre,
+            m.
     """
 
     drive: Literal["differential", "holonomic"]
@@ -120,7 +120,7 @@ class RobotBody:
 
     @property
     def reach(self) -> float:
-        """Radius of the circle around the middle of the drive axis that holds all of it, m."""
+        """Return the radius of the circle around the drive axis's centre that holds the robot."""
         if self.footprint is None:
             return self.radius
         corners = max(math.hypot(x, y) for x, y in self.footprint.tolist())
@@ -128,7 +128,7 @@ class RobotBody:
 
 
 def robot_body(model: RobotModel) -> RobotBody:
-    """What planners are told of a robot."""
+    """Return the planner's information about a robot."""
     drive: Literal["differential", "holonomic"] = (
         "holonomic" if isinstance(model.drive, HolonomicDrive) else "differential"
     )
@@ -145,10 +145,10 @@ def robot_body(model: RobotModel) -> RobotBody:
 
 
 class RobotState(NamedTuple):
-    """What everything downstream of the robot reads; world frame, SI.
+    """The robot's state for all downstream users; world frame, SI.
 
-    The last three are angles of wheels, driven or measuring: left, right, and one that rolls to
-    the left, which only a robot with a holonomic drive has.
+    The last three are angles of driven or virtual wheels: left, right, and one that rolls to the
+    left, for holonomic drives only.
     """
 
     x: float

@@ -14,10 +14,12 @@ Status = Literal["ok", "undefined", "censored"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Score:
-    """A value if and only if ``status`` is ``ok``; otherwise a reason and perhaps bounds.
+    """One score: a value if and only if ``status`` is ``ok``.
 
-    ``extras`` are further numbers that help to read the value; ``parameters`` the fields of the
-    metric's spec that it was computed with.
+    Otherwise a reason and perhaps bounds.
+
+    ``extras`` holds further numbers that help to read the value; ``parameters`` the metric's
+    parameters.
     """
 
     metric: str

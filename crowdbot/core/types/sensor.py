@@ -20,7 +20,7 @@ class Pinhole:
     Attributes:
         width, height: pixels.
         focal: focal length, pixels; pixels are square and the axis goes through the centre.
-        colour: whether it takes colour images too.
+        colour: True if it also takes colour images.
     """
 
     width: int
@@ -53,7 +53,7 @@ class SensorMessage:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorInfo:
-    """What a planner or a recorder may know about a sensor.
+    """A sensor's description for planners and recorders.
 
     Attributes:
         category: ``lidar``, ``odometry``, ``ultrasound``, …
@@ -63,8 +63,8 @@ class SensorInfo:
         angles: in the sensor frame, rad: (R,) of the beams of a lidar, (L, C, 2) azimuth and
             elevation of each beam of a multi-layer lidar, (2,) edges of the zone of an ultrasound
             or an infrared sensor; or None.
-        sees: whether ``read`` looks at the people of the scene; if not, they may be out of date.
-        feels: whether ``read`` looks at the scene's ``push``; if not, it may be out of date.
+        sees: True if ``read`` uses the scene's people; otherwise they may be out of date.
+        feels: True if ``read`` uses the scene's ``push``; otherwise it may be out of date.
         memory: number of float64 the sensor keeps between readings (0: none).
         random: whether ``read`` draws from ``rng``; if not, it must leave it alone.
         camera: of a sensor whose readings are images. They are a pure function of what is seen
@@ -103,7 +103,7 @@ class SensorInfo:
 class Reading(NamedTuple):
     """A sensor's latest values and the simulated time at which they were taken (s).
 
-    Images are float32. ``colour`` is (height, width, 3) uint8 of a camera that has it.
+    Images are float32. ``colour`` is (height, width, 3) uint8 for a camera with colour.
     """
 
     stamp: float
@@ -112,12 +112,12 @@ class Reading(NamedTuple):
 
 
 class CameraFrame(NamedTuple):
-    """What a recording keeps of a camera's reading, and the time at which it was taken (s).
+    """A recorded camera image, and the time at which it was taken (s).
 
     Attributes:
-        depth_mm: (height, width) uint16, whole millimetres as ROS has them in ``16UC1``: 0
-            where nothing was measured.
-        colour: (height, width, 3) uint8 of a camera that has it.
+        depth_mm: (height, width) uint16, in whole millimetres as in ROS's ``16UC1``: 0 if nothing
+            was measured.
+        colour: (height, width, 3) uint8 for a camera with colour.
     """
 
     stamp: float

@@ -1,4 +1,4 @@
-"""A scenario drawn from above, before anything is simulated.
+"""Draw a scenario from above, before the simulation.
 
-A drawing is a list of shapes; SVG, PNG and the page show the same list.
+A drawing is a list of shapes, shared by SVG, PNG and the page.
 """

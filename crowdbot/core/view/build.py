@@ -1,6 +1,6 @@
-"""From a scenario to the content of its map.
+"""Build the content of a scenario's map.
 
-Sensors are drawn from their specs alone: building them would compile ray casting.
+Sensors are drawn from their specs alone: building sensors would compile ray casting.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from crowdbot.dsl.spec.spec import Mount
 
 
 def build_map_content(scenario: Scenario, people: Realisation, registry: Registry) -> MapContent:
-    """Build the environment and look up everything else.
+    """Build the environment and collect everything else on the map.
 
     Args:
-        scenario: what is drawn.
-        people: its agents, drawn or read from a lock.
+        scenario: the scenario to draw.
+        people: its agents, sampled or read from a lock.
         registry: the installed components.
     """
     areas = {} if scenario.crowd is None else _areas(scenario.crowd)
@@ -42,7 +42,7 @@ def build_map_content(scenario: Scenario, people: Realisation, registry: Registr
 
 
 def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
-    """Areas of their own; those that are zones are drawn as zones."""
+    """Return the crowd's own areas; those that are zones are drawn as zones."""
     spawns = {n: s.area.corners for n, s in crowd.spawns.items() if isinstance(s.area, Area)}
     goals = {n: g.area.corners for n, g in crowd.goal_areas.items() if isinstance(g.area, Area)}
     for name, stream in crowd.streams.items():
@@ -70,7 +70,7 @@ def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
 
 
 def _sectors(robot: Robot, x: float, y: float, yaw: float, base: float) -> Iterator[Sector]:
-    """What sensors see; ``base`` is the height of the base link above the floor, m."""
+    """Yield the views of sensors; ``base`` is the height of base_link above the floor, m."""
     for name, spec in robot.sensors.items():
         seen = field_of_view(spec)
         if seen is None:
@@ -94,11 +94,11 @@ def _sectors(robot: Robot, x: float, y: float, yaw: float, base: float) -> Itera
 
 
 def field_of_view(spec: SensorSpec) -> tuple[float, float, float] | None:
-    """First and last angle (rad) and reach (m) of a sensor.
+    """Return first and last angle (rad) and range (m) of a sensor.
 
-    A spec may say it by a method ``field_of_view()``. Otherwise the names of its fields do: a
-    largest range with ``angle_min`` and ``angle_max``, or with one opening angle; with neither it
-    looks all round. None for a sensor that looks nowhere, such as odometry.
+    A spec may define ``field_of_view()``. Otherwise its field names decide: a maximum range with
+    ``angle_min`` and ``angle_max``, or with an opening angle; with neither, the view is all round.
+    None for a sensor without a view, such as odometry.
     """
     own = getattr(spec, "field_of_view", None)
     if callable(own):
@@ -117,7 +117,7 @@ def field_of_view(spec: SensorSpec) -> tuple[float, float, float] | None:
     return -math.pi, math.pi, reach
 
 
-#: Fields that say how far a sensor sees, and how wide.
+#: Field names for a sensor's range and opening angle.
 _REACHES = ("range_max", "max_range", "reach", "max_distance", "range")
 _OPENINGS = (
     "horizontal_fov", "fov", "field_of_view", "opening_angle", "opening", "aperture", "beam_width",

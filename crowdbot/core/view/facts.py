@@ -1,4 +1,4 @@
-"""What is worth knowing of a scenario before it is run, as text."""
+"""Facts about a scenario before it is run, as text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.dsl.scenario.stream import Stream
 
 
 def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> dict[str, str]:
-    """Name -> text: counts, density, speeds, time limit, hashes."""
+    """Return name -> text: counts, density, speeds, time limit, hashes."""
     facts = {"title": scenario.title} if scenario.title else {}
     facts["people"] = str(len(people))
     flow = scenario.crowd.flow if scenario.crowd is not None else None
@@ -42,7 +42,7 @@ def scenario_facts(scenario: Scenario, people: Realisation, spec_hash: str) -> d
 
 
 def _stream(stream: Stream) -> str:
-    """Pattern and number of a stream of people."""
+    """Describe pattern and number of a stream of people."""
     density, arrivals = stream.people_per_area, stream.entering
     if density is not None:
         return f"{stream.kind}, {density:g} 1/m²"

@@ -1,4 +1,4 @@
-"""Everything that a scenario holds at its start, as shapes."""
+"""The contents of a scenario at its start, as shapes."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from crowdbot.core.view.ways import Ways
 from crowdbot.core.view.world import Map
 
 _ARC = 120  # corners of a full circle that is drawn as an area
-#: What is not higher is drawn as low, m.
+#: Obstacles that are not higher are drawn as low, m.
 LOW = 0.4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sector:
-    """What a sensor sees: a sector around a place, m and rad, world frame.
+    """A sensor's view: a sector around a position, m and rad, world frame.
 
     Attributes:
         axis: direction of its axis, before roll and pitch.
         tilt: roll and pitch of the sensor.
-        height: above the floor, of one that sees in one plane, which ends there; else None.
+        height: height above the floor for a planar sensor, whose view ends there; else None.
     """
 
     name: str
@@ -48,8 +48,8 @@ class Sector:
 class RobotView:
     """A robot at its start: x, y, heading; name of its goal zone.
 
-    ``radius`` reaches round the whole footprint, m; ``outline``, of a robot that is not a disc, are
-    points around it, world frame.
+    ``radius`` covers the whole footprint, m; ``outline`` holds points around a robot that is not a
+    disc, world frame.
     """
 
     name: str
@@ -64,11 +64,11 @@ class RobotView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapContent:
-    """What a map shows.
+    """The contents of a map.
 
     Attributes:
         areas: role -> name -> polygon, of spawns and goal areas.
-        ways: of people through their goals.
+        ways: paths of people through their goals.
     """
 
     parts: EnvironmentParts
@@ -81,7 +81,7 @@ class MapContent:
 
 
 def extent(content: MapContent) -> Iterator[Point]:
-    """Points whose bounds hold everything but the sensors' views."""
+    """Yield points whose bounds contain everything except the sensors' views."""
     parts, people = content.parts, content.people
     for x0, y0, x1, y1 in parts.walls.tolist():
         yield from ((x0, y0), (x1, y1))
@@ -105,7 +105,7 @@ def extent(content: MapContent) -> Iterator[Point]:
 
 
 def shapes(content: MapContent, world: Map) -> Iterator[Shape]:
-    """All shapes of the map, from the floor up."""
+    """Yield all shapes of the map, bottom layer first."""
     x, y, width, height = world.box
     corners = ((x, y), (x + width, y), (x + width, y + height), (x, y + height))
     yield Path(points=corners, role="floor", closed=True)
@@ -123,7 +123,7 @@ def shapes(content: MapContent, world: Map) -> Iterator[Shape]:
 
 
 def fastest(people: Realisation) -> float:
-    """Upper end of the colours' range, m/s: the largest preferred speed, rounded up to 0.2."""
+    """Return the top of the colour range, m/s: the largest preferred speed, rounded up to 0.2."""
     return math.ceil(float(people.speed.max(initial=0.0)) * 5.0 - 1e-9) / 5.0 or 1.0
 
 
@@ -141,7 +141,7 @@ def _places(content: MapContent, world: Map) -> Iterator[Shape]:
 
 
 def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
-    """Solids as areas, walls that are not a side of one as lines, pillars as discs."""
+    """Yield solids as areas, walls that are not a solid's side as lines, pillars as discs."""
     for outline, heights in zip(parts.solids, parts.solid_heights.tolist(), strict=True):
         yield world.path(outline.tolist(), solid_role(*heights), closed=True)
     alone = ~parts.sides()
@@ -156,7 +156,7 @@ def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
 
 
 def solid_role(bottom: float, top: float) -> str:
-    """How something is drawn: by whether it is raised, low, or neither."""
+    """Return the role of a solid in the drawing: raised, low, or neither."""
     return "solid-raised" if bottom > 0.0 else "solid-low" if top <= LOW else "solid"
 
 
@@ -168,7 +168,7 @@ def _mesh(ways: Ways, world: Map) -> Iterator[Shape]:
 
 
 def _routes(content: MapContent, world: Map) -> Iterator[Shape]:
-    """The way of each agent through its goals; one line for those who share it."""
+    """Yield each agent's path through its goals; one line for agents with the same path."""
     people = content.people
     for way in content.ways.of_agents:
         if way:
@@ -178,7 +178,7 @@ def _routes(content: MapContent, world: Map) -> Iterator[Shape]:
 
 
 def _people(content: MapContent, world: Map) -> Iterator[Shape]:
-    """Groups tied together, then everybody, then everybody's way: no disc hides an arrow."""
+    """Yield group links, then people, then their arrows, so that no disc hides an arrow."""
     people, top = content.people, fastest(content.people)
     for group in np.unique(people.group[people.group >= 0]):
         members = np.flatnonzero(people.group == group)
@@ -198,7 +198,7 @@ def _people(content: MapContent, world: Map) -> Iterator[Shape]:
 
 
 def _arrow(world: Map, x: float, y: float, heading: float, length: float) -> Iterator[Shape]:
-    """From a centre to where it is after ``length`` m; the head is never longer than the arrow."""
+    """Yield an arrow of ``length`` m from a centre; its head is never longer than the arrow."""
     c, s = math.cos(heading), math.sin(heading)
     tip = (x + length * c, y + length * s)
     head = min(6.0 / world.scale, 0.4 * length)
@@ -210,7 +210,7 @@ def _arrow(world: Map, x: float, y: float, heading: float, length: float) -> Ite
 
 
 def _heading(content: MapContent, i: int) -> float:
-    """Where an agent sets out to: its exit, its first goal, else where it looks."""
+    """Return an agent's starting direction: to its exit, its first goal, or its heading."""
     people = content.people
     x, y = float(people.x[i]), float(people.y[i])
     out = content.parts.portals.get(people.portals[i][1])
@@ -252,7 +252,7 @@ def _sector(sensor: Sector) -> list[Point]:
 
 
 def _tilted_arc(sensor: Sector, angles: Array) -> list[Point]:
-    """The far ends of rays of a tilted sensor, seen from above."""
+    """Return the far ends of a tilted sensor's rays, seen from above."""
     own = angles - sensor.axis
     fan = np.column_stack([np.cos(own), np.sin(own), np.zeros_like(own)])
     rays = fan @ rotation(*sensor.tilt, sensor.axis).T

@@ -1,4 +1,4 @@
-"""Names of areas on a map, none over another as far as there is room."""
+"""Names of areas on a map, placed without overlap where possible."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.shapes import Text
 from crowdbot.core.view.world import Map
 
-_TALL = 1.6  # an area this much taller than wide has its name turned
-#: px: of a letter, of a line, and between the border of an area and its name.
+_TALL = 1.6  # names of areas this much taller than wide are turned
+#: px: width of a letter, height of a line, and gap between an area's border and its name.
 _LETTER, _LINE, _INSET = 7.0, 14.0, 6.0
-#: So many lines below its first place a name is tried.
+#: Number of lines below the first position at which a name is tried.
 _MOST_LINES = 12
 
 #: left, top, right, bottom, px.
@@ -19,19 +19,19 @@ Box = tuple[float, float, float, float]
 
 
 class MapNames:
-    """The names that were put on a map so far."""
+    """The names placed on a map so far."""
 
     def __init__(self, world: Map) -> None:
         self._world = world
         self._taken: list[Box] = []
 
     def put(self, name: str, corners: Iterable[Point], role: str) -> Text:
-        """A name in the first corner of its area that is free, from the upper left.
+        """Place a name in the area's first free corner, starting at the upper left.
 
-        Along the left side where the area is narrow; below where no corner is free.
+        In a narrow area it goes along the left side; if no corner is free, below.
 
         Args:
-            corners: of the area, world frame, m.
+            corners: corners of the area, world frame, m.
         """
         paper = [self._world.at(x, y) for x, y in corners]
         xs, ys = [p[0] for p in paper], [p[1] for p in paper]
@@ -57,12 +57,12 @@ class MapNames:
 
 
 def _box(at: Point, width: float) -> Box:
-    """What a name covers whose first letter begins at a place."""
+    """Return the box covered by a name that starts at a position."""
     return (at[0], at[1] - 0.75 * _LINE, at[0] + width, at[1] + 0.25 * _LINE)
 
 
 def _places(area: Box, width: float) -> Iterator[Point]:
-    """Where a name may begin: the corners of its area, then line by line from the upper left."""
+    """Yield start positions of a name: the area's corners, then line by line from the top left."""
     left, right = area[0] + _INSET, area[2] - _INSET - width
     top, bottom = area[1] + _INSET + 10.0, area[3] - _INSET
     yield left, top

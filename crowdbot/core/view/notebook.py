@@ -13,10 +13,10 @@ from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def scenario_html(scenario: Scenario) -> str:
-    """The drawing of ``crowdbot view``, as an ``svg`` element with its own style.
+    """Return the drawing of ``crowdbot view`` as an ``svg`` element with its own style.
 
     Raises:
-        InputError: its lock does not fit it any more.
+        InputError: its lock is out of date.
         PluginError: its environment or robot cannot be built.
     """
     registry = discover()

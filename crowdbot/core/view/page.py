@@ -1,4 +1,4 @@
-"""A drawing on a page of its own: no script, no request, and the reader's light or dark."""
+"""A drawing on its own page, without scripts or requests, in the reader's light or dark mode."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crowdbot.core.view.svg import element, stylesheet
 
 
 def to_html(drawing: Drawing) -> str:
-    """One offline page; its policy allows its own style sheet, by hash, and nothing else."""
+    """Return one offline page; its policy allows only its own style sheet, by hash."""
     return render_page(
         __package__,
         more_style=stylesheet(),

@@ -1,4 +1,4 @@
-"""A drawing as PNG, by matplotlib's Agg renderer in the light colours."""
+"""A drawing as PNG by matplotlib's Agg renderer, in the light colours."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from matplotlib.text import Text as Label
 
 from crowdbot.core.view.shapes import LIGHT, STYLES, Disc, Drawing, Path, Style, Text
 
-#: DepthRenderer of the picture for each px of the drawing.
+#: Pixels of the image per pixel of the drawing.
 SCALE = 2.0
-_INCH = 100.0  # px of the drawing; points are 1/72 inch
+_INCH = 100.0  # px of the drawing per inch; points are 1/72 inch
 _POINT = 72.0 / _INCH
 
 
 def to_png(drawing: Drawing) -> bytes:
-    """The picture; equal drawings give equal bytes with equal versions of matplotlib."""
+    """Return the PNG image; equal drawings give equal bytes with the same version of matplotlib."""
     figure = Figure(figsize=(drawing.width / _INCH, drawing.height / _INCH), dpi=_INCH * SCALE)
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -50,7 +50,7 @@ def _artist(shape: Path | Disc | Text) -> Line2D | Polygon | Circle | Label:
     stroke = LIGHT[look.stroke] if look.stroke else "none"
     width = look.width * _POINT
     dashes: tuple[float, tuple[float, ...]] | Literal["solid"] = "solid"
-    if look.dash:  # matplotlib counts in widths of the line
+    if look.dash:  # matplotlib measures dashes in line widths
         dashes = (0.0, tuple(d / look.width for d in look.dash))
     if isinstance(shape, Path) and not shape.closed:
         xs, ys = zip(*shape.points, strict=True)

@@ -1,4 +1,4 @@
-"""The content of a map as a drawing: the map itself, its legend and its heading."""
+"""Render the content of a map as a drawing: map, legend and heading."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _LEAST_WIDTH = 720.0
 
 
 def render(content: MapContent, title: str, facts: Mapping[str, str], *, heading: bool) -> Drawing:
-    """The drawing of a map.
+    """Return the drawing of a map.
 
     Args:
         content: from `build_map_content`.
         title: the scenario's name.
         facts: name -> text, written below the title.
-        heading: whether title and facts are painted, for a picture that stands alone.
+        heading: True to draw title and facts, for a standalone picture.
     """
     top = _HEAD + _LINE * (len(_lines(facts)) - 1) if heading else TOP
     world = Map.around(extent(content), top)
@@ -53,7 +53,7 @@ def render(content: MapContent, title: str, facts: Mapping[str, str], *, heading
 
 
 def _lines(facts: Mapping[str, str]) -> list[str]:
-    """Short facts on one line, the hash on its own."""
+    """Return short facts on one line, and the hash on its own."""
     long = [f"{k}: {v}" for k, v in facts.items() if len(v) > 40]
     short = " · ".join(f"{k}: {v}" for k, v in facts.items() if len(v) <= 40)
     return [line for line in (short, *long) if line]
@@ -68,7 +68,7 @@ def _heading(title: str, facts: Mapping[str, str]) -> Iterator[Shape]:
 def _legend(
     content: MapContent, world: Map, left: float, top: float, right: float
 ) -> tuple[list[Shape], float]:
-    """Swatch and label of everything that the map has; and where the paper ends, px."""
+    """Return swatch and label of everything on the map, and the bottom edge, px."""
     made: list[Shape] = []
     x, y = left, top
     ruler = list(world.ruler(right, top + 4.0))
@@ -109,7 +109,7 @@ def _entries(content: MapContent) -> Iterator[tuple[str, str]]:
 
 
 def _wall_entries(parts: EnvironmentParts) -> Iterator[tuple[str, str]]:
-    """Of what stands there."""
+    """Yield legend entries of walls and obstacles."""
     solids = {solid_role(*heights) for heights in parts.solid_heights.tolist()}
     for role, label in (
         ("solid", "block"),

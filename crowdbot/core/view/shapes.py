@@ -1,4 +1,4 @@
-"""Shapes of a drawing, in pixels: x to the right, y down. What they look like is their role."""
+"""Shapes of a drawing, in pixels (x to the right, y down); their role decides the appearance."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.core.types.arrays import Point
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Path:
-    """A line, or an area if it is closed. ``inside``: nothing of it shows outside the map."""
+    """A line, or an area if closed. ``inside``: clipped at the map's border."""
 
     points: tuple[Point, ...]
     role: str
@@ -21,7 +21,7 @@ class Path:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Disc:
-    """A disc; ``about`` is shown on a hover."""
+    """A disc; ``about`` is its tooltip."""
 
     centre: Point
     radius: float
@@ -52,7 +52,7 @@ class Drawing:
     Attributes:
         width, height: px.
         map_box: x, y, width and height of the part that shows the world, px.
-        facts: name -> text, what the drawing says as text.
+        facts: name -> text, the drawing's content as text.
     """
 
     width: float
@@ -88,7 +88,7 @@ DARK = {
     "sensor": "#35d0d8", "person_edge": "#0f1b28", "arrow": "#9fc3e6", "route": "#e08cc2",
 }  # fmt: skip
 
-#: Colours of people from slow to fast, the same on both grounds.
+#: Colours of people from slow to fast, the same in light and dark mode.
 SPEEDS = ("#345a84", "#4a7097", "#6186aa", "#7a9dbd", "#94b3ce", "#afc8dd", "#c9dcec", "#e2eef8")
 for _palette in (LIGHT, DARK):
     _palette.update({f"speed_{i}": colour for i, colour in enumerate(SPEEDS)})

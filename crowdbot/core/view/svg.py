@@ -1,4 +1,4 @@
-"""A drawing as SVG text, with its own light and dark colours and no other file."""
+"""A drawing as SVG text with its own light and dark colours, without other files."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif"
 
 
 def to_svg(drawing: Drawing) -> str:
-    """A whole file; equal drawings give equal bytes."""
+    """Return a whole file; equal drawings give equal bytes."""
     style = f"<style>{stylesheet()}</style>"
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{element(drawing, style)}\n'
 
 
 def element(drawing: Drawing, style: str = "") -> str:
-    """The ``svg`` element, for a file of its own or inside a page that has the style sheet."""
+    """Return the ``svg`` element, for a standalone file or for a page with the style sheet."""
     width, height = _number(drawing.width), _number(drawing.height)
     x, y, w, h = (_number(v) for v in drawing.map_box)
     lines = [
@@ -44,9 +44,9 @@ def element(drawing: Drawing, style: str = "") -> str:
 
 
 def stylesheet() -> str:
-    """Classes of all roles; colours follow the reader's choice of light or dark.
+    """Return the classes of all roles; colours follow the reader's light or dark mode.
 
-    Colours are written out, as many programs that show SVG know no variables.
+    Colours are written out, since many SVG viewers do not support variables.
     """
     rules = [
         f".view text {{ font-family: {FONT}; stroke: none; }}",
@@ -80,7 +80,7 @@ def _colours(palette: Mapping[str, str]) -> list[str]:
 
 
 def _shapes(drawing: Drawing) -> Iterator[str]:
-    """Neighbours that are clipped alike share one group."""
+    """Yield the shapes; neighbours with the same clipping share one group."""
     open_group = False
     for shape in drawing.shapes:
         inside = not isinstance(shape, Text) and shape.inside

@@ -1,4 +1,4 @@
-"""The ways of people who find them, and the mesh that these ways are found on."""
+"""Paths of people with path finding, and the mesh used for it."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from crowdbot.core.crowd.routing.free_space import FreeSpace
     from crowdbot.core.crowd.routing.route_map import RouteMap
 
-#: More links than this are not drawn.
+#: Largest number of links that are drawn.
 _MOST_LINKS = 3000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ways:
-    """What is drawn of routing, world frame, m.
+    """Routing data that is drawn, world frame, m.
 
     Attributes:
-        of_agents: the way of each agent through its goals; empty without goals.
-        margins: outlines beyond which no centre of a body of the largest radius can be, of the
-            parts of the floor where anything is: not behind walls.
-        links: pairs of corners there between which ways may lead.
+        of_agents: each agent's path through its goals; empty without goals.
+        margins: limits for the centres of the largest bodies, in the occupied parts of the floor
+            only.
+        links: pairs of corners that paths may connect.
     """
 
     of_agents: tuple[tuple[Point, ...], ...]
@@ -38,11 +38,11 @@ class Ways:
 
 
 def ways_of(crowd: Crowd | None, people: Realisation, parts: EnvironmentParts) -> Ways:
-    """The ways as they are planned at the start; straight ones where nobody finds any other."""
+    """Return the paths as planned at the start; straight ones for agents without path finding."""
     straight = [_stops(people, i) for i in range(len(people))]
     if crowd is None or crowd.routing is None or crowd.routing.kind != "mesh":
         return Ways(of_agents=tuple(map(tuple, straight)))
-    # Compiled code, which only drawings of such ways wait for.
+    # Imports compiled code, which only these drawings need.
     from crowdbot.core.crowd.routing.route_map import RouteMap
     from crowdbot.core.crowd.routing.router import rounded
 
@@ -71,7 +71,7 @@ def ways_of(crowd: Crowd | None, people: Realisation, parts: EnvironmentParts) -
 
 
 def _stops(people: Realisation, i: int) -> list[Point]:
-    """Where an agent starts and its goals in turn, the first again for one who walks in a loop."""
+    """Return an agent's start and its goals in order, closed if it walks in a loop."""
     route = people.goals[i]
     if not route:
         return []

@@ -1,4 +1,4 @@
-"""From metres to pixels: the part of the world that is drawn, its grid and its scale."""
+"""Map from metres to pixels: the visible part of the world, its grid and its scale."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from dataclasses import dataclass
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.shapes import Path, Shape, Text
 
-#: px: the largest map, the largest metre, and the room around the map for the numbers.
+#: px: largest map, largest metre, and margin around the map for the numbers.
 _WIDTH, _HEIGHT, _METRE = 1500.0, 860.0, 110.0
 LEFT, TOP = 46.0, 22.0
-_MARGIN = 0.6  # m around everything
+_MARGIN = 0.6  # m, margin around everything
 
 
 @dataclass(frozen=True, slots=True)
 class Map:
-    """World x0, y0, x1, y1 (m) at ``scale`` px a metre; its upper left corner is at LEFT, top."""
+    """World x0, y0, x1, y1 (m) at ``scale`` px per metre; its upper left corner is at LEFT, top."""
 
     x0: float
     y0: float
@@ -28,7 +28,7 @@ class Map:
 
     @classmethod
     def around(cls, points: Iterable[tuple[float, float]], top: float) -> Map:
-        """The map of everything that is drawn."""
+        """Return the map of everything that is drawn."""
         listed = list(points) or [(0.0, 0.0)]
         xs, ys = [p[0] for p in listed], [p[1] for p in listed]
         x0, x1 = min(xs) - _MARGIN, max(xs) + _MARGIN
@@ -38,22 +38,25 @@ class Map:
 
     @property
     def box(self) -> tuple[float, float, float, float]:
-        """x, y, width and height on the paper, px."""
+        """Return x, y, width and height in the drawing, px."""
         width, height = (self.x1 - self.x0) * self.scale, (self.y1 - self.y0) * self.scale
         return (LEFT, self.top, width, height)
 
     def at(self, x: float, y: float) -> Point:
-        """A place of the world on the paper."""
+        """Return the position of a world point in the drawing."""
         return (LEFT + (x - self.x0) * self.scale, self.top + (self.y1 - y) * self.scale)
 
     def path(
         self, points: Iterable[tuple[float, float]], role: str, *, closed: bool = False
     ) -> Path:
-        """A line or an area of the world."""
+        """Return a line or an area of the world."""
         return Path(points=tuple(self.at(x, y) for x, y in points), role=role, closed=closed)
 
     def grid(self) -> Iterator[Shape]:
-        """Lines every metre, or as many metres as are far enough apart; numbers along two sides."""
+        """Yield grid lines every metre, or at a wider spacing if needed.
+
+        And numbers along two sides.
+        """
         step = max(1.0, nice(9.0 / self.scale))
         strong = max(step, nice(60.0 / self.scale))
         for role, every in (("grid", step), ("grid-strong", strong)):
@@ -63,7 +66,7 @@ class Map:
                 yield self.path([(self.x0, y), (self.x1, y)], role)
 
     def numbers(self) -> Iterator[Shape]:
-        """Metres below and to the left of the map."""
+        """Yield metre labels below and to the left of the map."""
         every = max(1.0, nice(60.0 / self.scale))
         left, top, width, height = self.box
         for x in _steps(self.x0, self.x1, every):
@@ -76,7 +79,7 @@ class Map:
         yield Text(at=corner, text="m", role="text-muted", size=11)
 
     def ruler(self, x: float, y: float) -> Iterator[Shape]:
-        """A scale bar that ends at a place on the paper, px."""
+        """Yield a scale bar that ends at a position in the drawing, px."""
         metres = nice(90.0 / self.scale)
         start = x - metres * self.scale
         ends = [(start, y - 5.0), (start, y), (x, y), (x, y - 5.0)]
@@ -86,7 +89,7 @@ class Map:
 
 
 def nice(least: float) -> float:
-    """The smallest of …, 0.5, 1, 2, 5, 10, … that is at least ``least``."""
+    """Return the smallest of …, 0.5, 1, 2, 5, 10, … that is at least ``least``."""
     power = 10.0 ** math.floor(math.log10(least))
     return next(p for k in (1, 2, 5, 10) if (p := k * power) >= least * (1 - 1e-9))
 

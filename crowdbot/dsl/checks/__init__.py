@@ -1,1 +1,1 @@
-"""Checks of a scenario beyond types, with positions."""
+"""Checks of a scenario beyond types, with source positions."""

@@ -15,7 +15,7 @@ Disc = tuple[float, float, float]
 
 
 def check_agents(facts: Facts) -> Iterator[Diagnostic]:
-    """Every explicit agent by itself, then all against each other and against the robots."""
+    """Check each explicit agent, and all against each other and the robots."""
     first: dict[int, int] = {}
     for i, agent in enumerate(facts.crowd.agents):
         if first.setdefault(agent.id, i) != i:
@@ -44,7 +44,7 @@ def _check_agent(facts: Facts, i: int, agent: Agent) -> Iterator[Diagnostic]:
 
 
 def _check_overlaps(facts: Facts) -> Iterator[Diagnostic]:
-    """Agents that enter at the same time must not overlap, nor stand where a robot starts."""
+    """Check that agents entering at the same time do not overlap each other or a robot's start."""
     agents, default = facts.crowd.agents, facts.crowd.body.radius
     waves: dict[float, list[int]] = {}
     for i, agent in enumerate(agents):
@@ -67,7 +67,10 @@ def _check_overlaps(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def overlapping(discs: Sequence[Disc]) -> Iterator[tuple[int, int]]:
-    """Each disc (x, y, radius) that overlaps one before it, with that one; they may touch."""
+    """Yield each disc (x, y, radius) that overlaps an earlier one, with that one.
+
+    They may touch.
+    """
     side = 2.0 * max((d[2] for d in discs), default=1.0)
     cells: dict[tuple[int, int], list[int]] = {}
     for k, (x, y, radius) in enumerate(discs):

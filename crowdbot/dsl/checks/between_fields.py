@@ -1,4 +1,4 @@
-"""Checks between fields that no single field can make, after a scenario is validated."""
+"""Checks across several fields, after a scenario is validated."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ Check = Callable[[Facts], Iterator[Diagnostic]]
 
 
 class Checks:
-    """The checks of a document's scenarios; what was in order is not looked at again.
+    """The checks of a document's scenarios; parts that passed are not checked again.
 
-    Each check says on which parts of a scenario it depends. A part is known by its node, which
-    scenarios share as far as no axis touches it; the caller keeps the nodes alive.
+    Each check declares the parts of a scenario that it depends on. A part is identified by its
+    node, which scenarios share if no axis changes it; the caller keeps the nodes alive.
     """
 
     def __init__(self) -> None:
         self._passed: set[tuple[object, ...]] = set()
 
     def of(self, scenario: Scenario, tree: Node) -> list[Diagnostic]:
-        """All contradictions of a scenario, each with its place in the tree it came from."""
+        """Return all contradictions of a scenario, with positions in its source tree."""
         found, facts = list[Diagnostic](), Facts(scenario, tree)
         for check, parts in _CHECKS:
             key = (check, *(id(tree.child(part)) for part in parts))
@@ -45,7 +45,7 @@ class Checks:
 
 
 def _check_kinds(part: str, facts: Facts) -> Iterator[Diagnostic]:
-    """A kind is always written: left out, it would mean something as long as one is installed."""
+    """Require explicit kinds: a default would change with the installation."""
     tree = facts.tree
     for path, _ in components(facts.scenario):
         if path[0] != part or _has_kind(tree, path):
@@ -56,7 +56,7 @@ def _check_kinds(part: str, facts: Facts) -> Iterator[Diagnostic]:
 
 
 def _has_kind(tree: Node, path: tuple[str, ...]) -> bool:
-    """Whether a kind is written at a path: the usual case, seen without looking for anything."""
+    """Return True if a kind is written at a path, which is the usual case."""
     node: Node | None = tree
     for name in (*path, "kind"):
         node = None if node is None else node.child(name)
@@ -75,12 +75,12 @@ def _check_tasks(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def _of_crowd(check: Check) -> Check:
-    """A check of scenarios that have people."""
+    """Return a check for scenarios that have people."""
     return lambda facts: check(facts) if facts.scenario.crowd is not None else iter(())
 
 
 _PLACE, _PEOPLE, _ROBOTS = ("environment",), ("environment", "crowd"), ("environment", "robots")
-#: Each check, and the parts of a scenario that it looks at.
+#: Each check, with the parts of a scenario that it uses.
 _CHECKS: tuple[tuple[Check, tuple[str, ...]], ...] = (
     *((partial(_check_kinds, part), (part,)) for part in ("environment", "crowd", "robots")),
     (_of_crowd(check_crowd), _PEOPLE),

@@ -1,4 +1,4 @@
-"""Checks of a crowd as a whole: its flow, its policies, whether there is anybody."""
+"""Checks of a whole crowd: its flow, its policies, and that it has people."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
 def check_crowd(facts: Facts) -> Iterator[Diagnostic]:
-    """Everything about a crowd that is in neither a spawn nor an agent of its own."""
+    """Check everything about a crowd except single spawns and agents."""
     crowd = facts.crowd
     if crowd.names_nobody and crowd.policy.record is None:
         hint = (
@@ -52,6 +52,6 @@ def _check_costs(
 
 
 def missing_speed(facts: Facts, who: str, *path: str | int) -> Diagnostic:
-    """People who have no preferred speed, neither of their own nor from the crowd."""
+    """Return the error for people without a preferred speed, of their own or the crowd's."""
     hint = "write crowd.speed, such as {mean: 1.3 m/s, std: 0.2 m/s}"
     return Diagnostic("E135", f"{who} has no speed, nor has the crowd", facts.mark(*path), hint)

@@ -1,4 +1,4 @@
-"""What all checks of a scenario look at, and the diagnostics that several of them make."""
+"""Facts shared by all checks of a scenario, and common diagnostics."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ _TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class Facts:
-    """A validated scenario and the tree it came from."""
+    """A validated scenario and its source tree."""
 
     scenario: Scenario
     tree: Node
 
     @property
     def crowd(self) -> Crowd:
-        """The crowd of a scenario that has one."""
+        """Return the crowd of a scenario that has one."""
         assert self.scenario.crowd is not None
         return self.scenario.crowd
 
     @property
     def bounds(self) -> Rectangle | None:
-        """The box around all zones, or around the environment where it knows; m; or None."""
+        """Return the box around all zones, or the environment if known; m; or None."""
         return bounds_of(self.scenario.environment)
 
     def mark(self, *path: str | int) -> Mark:
-        """Where a value is written, or its nearest parent."""
+        """Return the position of a value, or of its nearest parent."""
         return mark_of(self.tree, *path)
 
     def unknown(self, what: str, name: str, known: Iterable[str], *path: str | int) -> Diagnostic:
-        """A name that the environment or the crowd does not have."""
+        """Return the error for a name that the environment or the crowd does not have."""
         names = sorted(known)
         owner = "environment" if what in ("zone", "portal") else "crowd"
         hint = did_you_mean(nearest(name, names)).removeprefix("; ")
@@ -52,7 +52,7 @@ class Facts:
         return Diagnostic("E130", f"the {owner} has no {what} '{name}'", self.mark(*path), hint)
 
     def portals(self, names: tuple[str, str], who: str, *path: str | int) -> Iterator[Diagnostic]:
-        """Two different portals that the environment has."""
+        """Check for two different portals that the environment has."""
         known = self.scenario.environment.portals
         for i, name in enumerate(names):
             if name not in known:
@@ -63,10 +63,10 @@ class Facts:
     def outside(
         self, what: str, points: Iterable[tuple[float, float]], *path: str | int
     ) -> Iterator[Diagnostic]:
-        """The first point that is not within the box around all zones.
+        """Yield an error for the first point outside the box around all zones.
 
         Args:
-            what: names the point, ``{at}`` stands for its coordinates.
+            what: name of the point; ``{at}`` is replaced by its coordinates.
             points: x and y, m.
         """
         box = self.bounds
@@ -82,7 +82,7 @@ class Facts:
                 return
 
     def area(self, place: str | Area, who: str, *path: str | int) -> Iterator[Diagnostic]:
-        """A zone that is there, or an area inside the environment."""
+        """Check for an existing zone, or an area inside the environment."""
         zones = self.scenario.environment.zones
         if isinstance(place, Area):
             yield from self.outside(f"the corner {{at}} of {who}", place.corners, *path)
@@ -90,12 +90,12 @@ class Facts:
             yield self.unknown("zone", place, zones, *path)
 
     def resolve(self, place: str | Area) -> Area | None:
-        """A place as an area; None for an unknown zone."""
+        """Return a place as an area; None for an unknown zone."""
         zone = self.scenario.environment.zones.get(place) if isinstance(place, str) else None
         return place if isinstance(place, Area) else Area.of(zone) if zone else None
 
     def whole(self, density: float, floor: float, where: str, *path: str) -> Iterator[Diagnostic]:
-        """A density that is a whole number of people."""
+        """Check that a density gives a whole number of people."""
         count = density * floor
         if abs(count - round(count)) <= _WHOLE and round(count) >= 1:
             return
@@ -109,5 +109,5 @@ class Facts:
 
 
 def people(count: int) -> str:
-    """A number of people in words."""
+    """Return a number of people in words."""
     return "1 person" if count == 1 else f"{count} people"

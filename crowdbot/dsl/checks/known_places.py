@@ -1,7 +1,7 @@
-"""Places of environments that were made before, so that a suite makes each once.
+"""A cache of environments' places, so that a suite builds each once.
 
-Scenarios of a suite share the environment that no axis changes; it is known by its identity, and
-kept as long as it is remembered, so that no other gets its number.
+Scenarios of a suite share the environment that no axis changes; it is identified by ``id`` and kept
+alive in the cache, so that the id is not reused.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _MOST = 64
 
 
 class _Same:
-    """An environment that equals nothing but itself."""
+    """An environment that is equal only to itself."""
 
     __slots__ = ("environment",)
 
@@ -33,16 +33,16 @@ class _Same:
 
 
 def place_of(environment: EnvironmentSpec) -> Place | None:
-    """What an environment is made of.
+    """Return the parts of an environment.
 
     Raises:
-        InputError: as of `EnvironmentSpec.place`.
+        InputError: as in `EnvironmentSpec.place`.
     """
     return _place(_Same(environment))
 
 
 def known_place(environment: EnvironmentSpec) -> Place | None:
-    """As `place_of`; None also where it cannot be read."""
+    """Return `place_of`, or None if it cannot be read."""
     try:
         return place_of(environment)
     except InputError:
@@ -55,7 +55,7 @@ def _place(same: _Same) -> Place | None:
 
 
 def bounds_of(environment: EnvironmentSpec) -> Rectangle | None:
-    """The box around all zones, and around the environment where it knows; m; or None."""
+    """Return the box around all zones, and around the environment if known; m; or None."""
     return _bounds(_Same(environment))
 
 
@@ -64,7 +64,7 @@ def _bounds(same: _Same) -> Rectangle | None:
     zones = list(same.environment.zones.values())
     try:
         whole = same.environment.extent()
-    except InputError:  # which is reported with the environment
+    except InputError:  # reported with the environment
         return None
     zones += [] if whole is None else [whole]
     if not zones:
@@ -75,13 +75,13 @@ def _bounds(same: _Same) -> Rectangle | None:
 
 @lru_cache(maxsize=_MOST)
 def bodies_of(place: Place, height: float) -> Place:
-    """What people of a height (m) go around."""
+    """Return the obstacles for people of a height (m)."""
     return place.bodies(height)
 
 
 @lru_cache(maxsize=_MOST)
 def standing_in(place: Place) -> Place:
-    """What stops any robot: it stands on the floor, whatever its height."""
+    """Return the obstacles for any robot: those that stand on the floor."""
     return replace(
         place,
         faces=tuple(f for f in place.faces if f.stops_robot and f.heights[0] == 0.0),

@@ -20,10 +20,10 @@ from crowdbot.dsl.spec.place import Place
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError
 
-#: Kinds of people may be as thin as this, m.
+#: Smallest radius of any kind of people, m.
 _THINNEST = 0.1
 
-#: A body may touch a wall by rounding, m.
+#: Tolerance for a body that touches a wall, m.
 _SLACK = 1e-6
 
 
@@ -82,14 +82,14 @@ class _PathCheck:
             for field in stream.entrances():
                 area = self._resolve(getattr(stream, field))
                 if area is not None and not has_room(self.place, area, radius):
-                    text = f"nobody of stream '{name}' can come in around {_at(area)}"
+                    text = f"people of stream '{name}' cannot come in around {_at(area)}"
                     yield self._no_room(text, radius, "crowd", "streams", name, field)
             yield from self._check_spots(name, stream, radius)
         for path, pair, radius in self._users_of_portals():
             for i, portal in enumerate(pair):
                 area = self._resolve(portal)
                 if area is not None and not has_room(self.place, area, radius):
-                    text = f"nobody can walk through portal '{portal}' around {_at(area)}"
+                    text = f"people cannot walk through portal '{portal}' around {_at(area)}"
                     yield self._no_room(text, radius, *path, "portals", i)
 
     def _no_room(self, text: str, radius: float, *path: str | int) -> Diagnostic:
@@ -100,12 +100,12 @@ class _PathCheck:
         for field, points in stream.spots():
             for x, y in points:
                 if self.place.clearance(x, y) < radius - _SLACK:
-                    text = f"nobody can stand in the {stream.kind} '{name}' at ({x:g}, {y:g})"
+                    text = f"people cannot stand in the {stream.kind} '{name}' at ({x:g}, {y:g})"
                     yield self._no_room(text, radius, "crowd", "streams", name, *field)
                     break
 
     def _users_of_portals(self) -> Iterator[tuple[Path, tuple[str, str], float]]:
-        """Where each pair of portals is named, the pair, and how wide its people are, m."""
+        """Yield where each pair of portals is named, the pair, and its people's radius, m."""
         crowd, usual = self.facts.crowd, self._usual_radius
         if crowd.flow is not None:
             yield ("crowd", "flow"), crowd.flow.portals, usual
@@ -152,7 +152,7 @@ class _PathCheck:
         return stream.body.radius or self._usual_radius
 
     def _resolve(self, place: PlaceName) -> Area | None:
-        """A place as an area: of its own, a zone or a portal."""
+        """Return a place as an area: its own area, a zone or a portal."""
         portal = self.environment.portals.get(place) if isinstance(place, str) else None
         return self.facts.resolve(place) or (Area.of(portal) if portal else None)
 
@@ -199,7 +199,7 @@ class _PathCheck:
 
     @cached_property
     def _box(self) -> Box:
-        """Around everything that is named, m."""
+        """Return the box around everything that is named, m."""
         crowd = self.facts.crowd
         points = [(a.x, a.y) for a in crowd.agents]
         points += [goal for a in crowd.agents for goal in a.goals]

@@ -1,4 +1,4 @@
-"""pydantic's errors -> diagnostics: each with the place of its key, value or parent map."""
+"""Convert pydantic's errors to diagnostics, with the position of a key, value or parent map."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from crowdbot.errors import PluginError, did_you_mean, nearest
 M = TypeVar("M", bound=BaseModel)
 Error = Mapping[str, Any]
 
-#: More fields are too many for a hint.
+#: Largest number of fields in a hint.
 _FEW = 12
-#: Fields that people look for, and where they are.
+#: Fields that users often misplace, and their correct place.
 _ELSEWHERE = {
     "extends": "it stands at the top of a file and where fields of a scenario begin",
     "planner": "it is what you test: crowdbot simulate … --planner NAME",
@@ -38,10 +38,10 @@ _TYPES = {
 
 
 def validate(model: type[M], data: Any, tree: Node) -> tuple[M | None, list[Diagnostic]]:
-    """Validate data; errors point into the tree that the data came from.
+    """Validate data; errors point into the data's source tree.
 
     Raises:
-        PluginError: a validator failed with something else than a validation error.
+        PluginError: a validator raised something other than a validation error.
     """
     try:
         return model.model_validate(data), []
@@ -54,14 +54,14 @@ def validate(model: type[M], data: Any, tree: Node) -> tuple[M | None, list[Diag
 
 
 def _innermost(error: BaseException) -> str:
-    """`` (file:line)`` of the validator that raised."""
+    """Return `` (file:line)`` of the validator that raised."""
     frames = traceback.extract_tb(error.__traceback__)[1:]
     own = [f for f in frames if f"{os.sep}pydantic" not in f.filename and f.filename[0] != "<"]
     return f" ({own[-1].filename}:{own[-1].lineno})" if own else ""
 
 
 def _without_echoes(details: Sequence[Any]) -> list[Any]:
-    """Errors, but for lists that are too short only because of entries that are wrong."""
+    """Return errors without those for lists that are too short only because of invalid entries."""
     places = [tuple(detail["loc"]) for detail in details]
     parents = {place[:n] for place in places for n in range(len(place))}
     return [
@@ -72,14 +72,14 @@ def _without_echoes(details: Sequence[Any]) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class TreePlace:
-    """How far a path leads into a tree.
+    """The part of a path that exists in a tree.
 
     Attributes:
         node: the deepest value on the path.
-        entry: the entry that holds it, None at the root and in lists.
+        entry: the entry of that value, None at the root and in lists.
         path: the names followed, discriminator tags dropped.
-        rest: what the tree does not have.
-        types: what the model allows here.
+        rest: the part of the path that the tree lacks.
+        types: types that the model allows here.
     """
 
     node: Node
@@ -90,20 +90,20 @@ class TreePlace:
 
     @property
     def name(self) -> str:
-        """The path for people."""
+        """Return a readable path."""
         return ".".join(self.path) or "the document"
 
 
 def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None = None) -> TreePlace:
-    """Follow a path; pydantic's discriminator tags in it are dropped."""
+    """Follow a path, dropping pydantic's discriminator tags."""
     node, entry, path, rest = tree, None, [], list(loc)
     types: tuple[Any, ...] = (model,) if model else ()
     while rest:
         tag = kind_of(node)
         if tag is None and len(rest) > 1 and _is_usual_kind(types, rest[0]):
-            tag = rest[0]  # a kind that nobody wrote
+            tag = rest[0]  # a kind that is not written
         chosen = rest[0] == tag and (len(rest) > 1 or node.child(rest[0]) is None)
-        if chosen or str(rest[0]).startswith("<"):  # a member of a union, no name
+        if chosen or str(rest[0]).startswith("<"):  # a member of a union, not a name
             rest.pop(0)
             continue
         child = node.child(rest[0])
@@ -117,19 +117,19 @@ def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None =
 
 
 def mark_of(tree: Node, *path: str | int) -> Mark:
-    """Where a value is written; where its nearest parent is, if it is a default."""
+    """Return the position of a value, or of its nearest parent if it is a default."""
     return locate(tree, path).node.mark
 
 
 def field_names(place: TreePlace) -> list[str]:
-    """The fields that the model knows at a place."""
+    """Return the fields that the model has at a place."""
     tag = kind_of(place.node)
     models = [t for t in place.types if _is_model(t) and _has_kind(t, tag)]
     return [n for model in models for n, info in model.model_fields.items() if not info.exclude]
 
 
 def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
-    """One pydantic error as a diagnostic."""
+    """Convert one pydantic error to a diagnostic."""
     kind, loc = str(error["type"]), tuple(error["loc"])
     if kind == "extra_forbidden":
         return _unknown_field(locate(tree, loc[:-1], model), str(loc[-1]))
@@ -172,7 +172,7 @@ def _unknown_field(parent: TreePlace, name: str) -> Diagnostic:
 
 
 def _of_another_kind(parent: TreePlace, name: str) -> str:
-    """A hint where a kind that is not the one chosen has the field."""
+    """Return a hint if a kind other than the chosen one has the field."""
     tag = kind_of(parent.node)
     kinds = [k for t in parent.types if _is_model(t) for k in _kinds(t) if name in t.model_fields]
     usual = next((t.usual for t in parent.types if hasattr(t, "usual")), None)
@@ -183,7 +183,7 @@ def _of_another_kind(parent: TreePlace, name: str) -> str:
 
 
 def missing_field(tree: Node, place: TreePlace, name: str) -> Diagnostic:
-    """A field that is required at a place; an override that made the place up is to blame."""
+    """Return the error for a missing field, which blames an override that created the place."""
     node = tree
     for depth, key in enumerate(place.path):
         entry, siblings = node.entries.get(key), list(node.entries)
@@ -206,7 +206,7 @@ def missing_field(tree: Node, place: TreePlace, name: str) -> Diagnostic:
 
 
 def missing_package(kind: str) -> str:
-    """A hint for a kind with a plugin's name in front; nothing for one without."""
+    """Return a hint for a kind with a plugin's prefix; empty for one without."""
     prefix, dot, _ = kind.partition(".")
     return f"is the package providing '{prefix}' installed?" if dot else ""
 
@@ -229,7 +229,7 @@ def _unknown_kind(error: Error, place: TreePlace) -> Diagnostic:
 
 
 def _bad_value(error: Error, kind: str, place: TreePlace) -> tuple[str, str, str]:
-    """Code, message and hint for a value that is there and wrong."""
+    """Return code, message and hint for an existing but invalid value."""
     given, name, context = _describe(place.node), place.name, error.get("ctx", {})
     text = str(error["msg"]).removeprefix("Value error, ")
     if kind == "quantity":
@@ -262,7 +262,7 @@ def _bad_value(error: Error, kind: str, place: TreePlace) -> tuple[str, str, str
 
 
 def _as_map(wanted: str, place: TreePlace) -> str:
-    """How to write a map where there is something else."""
+    """Return how to write a map in place of another value."""
     if wanted == "a map of names":
         return "write {NAME: …}"
     if wanted != "a map of fields":
@@ -274,7 +274,7 @@ def _as_map(wanted: str, place: TreePlace) -> str:
 
 
 def _form(pattern: str) -> str:
-    """What a regular expression asks for; in words where it is a set of characters."""
+    """Describe a regular expression, in words if it is a character set."""
     found = re.fullmatch(r"\^\[A-Za-z0-9(.+)\]\+\$", pattern)
     if found is None:
         return f"does not match {pattern}"
@@ -297,7 +297,7 @@ def _describe(node: Node) -> str:
 
 
 def _step(annotation: Any, key: str | int, tag: object) -> list[Any]:
-    """The types below one type, under a key; ``tag`` is the kind of the map stepped into."""
+    """Return the types below one type, under a key; ``tag`` is the kind of the map entered."""
     if _is_model(annotation):
         field = annotation.model_fields.get(str(key)) if _has_kind(annotation, tag) else None
         return _flat(field.annotation) if field else []
@@ -308,13 +308,13 @@ def _step(annotation: Any, key: str | int, tag: object) -> list[Any]:
 
 
 def nested_model(annotation: Any) -> type[BaseModel] | None:
-    """The model of a field that is a map of fields itself, or None."""
+    """Return the model of a field that is itself a map of fields, or None."""
     models = [t for t in _flat(annotation) if _is_model(t)]
     return models[0] if len(models) == 1 else None
 
 
 def _flat(annotation: Any) -> list[Any]:
-    """Members of a union, annotations dropped."""
+    """Return members of a union without annotations."""
     origin = get_origin(annotation)
     if origin is Annotated:
         return _flat(get_args(annotation)[0])
@@ -333,12 +333,12 @@ def _has_kind(model: Any, tag: object) -> bool:
 
 
 def _kinds(model: Any) -> tuple[str, ...]:
-    """The kinds that a model is told apart by; none for one that is not."""
+    """Return the kinds that distinguish a model's types; empty if there are none."""
     field = model.model_fields.get("kind")
     named = field is not None and get_origin(field.annotation) is Literal
     return get_args(field.annotation) if field is not None and named else ()
 
 
 def _is_usual_kind(types: Iterable[Any], tag: object) -> bool:
-    """Whether a place takes models of several kinds, and this is the one that need not be named."""
+    """Return True if a place accepts several kinds and this is the default one."""
     return any(_is_model(t) and getattr(t, "usual", None) == tag for t in types)

@@ -1,8 +1,8 @@
-"""Reach: to which places of the floor a body can get, found without a numbers library.
+"""Reachability: which places of the floor a body can reach, without a numerical library.
 
-The floor is a grid whose rows are whole numbers, one bit for each cell. Cells are taken only where
-they certainly are: whoever can get somewhere is never told otherwise, while a gap that is too
-narrow by less than a cell may pass for one. What is placed and planned later is exact.
+The floor is a grid whose rows are whole numbers, one bit for each cell. Cells are blocked only if
+they certainly are: a reachable place is never reported as unreachable, but a gap that is too narrow
+by less than a cell may count as passable. Later placing and planning is exact.
 """
 
 from __future__ import annotations
@@ -15,31 +15,31 @@ from crowdbot.dsl.spec.areas import Area, places_in
 from crowdbot.dsl.spec.outlines import Outline, Point, sides
 from crowdbot.dsl.spec.place import Place
 
-#: Side of a cell, m; larger on floors that would have more than `_MOST` along one side.
+#: Side of a cell, m; larger on floors with more than `_MOST` cells along a side.
 _CELL = 0.1
 _MOST = 2000
-#: Side of a cell of the quick look, m.
+#: Side of a cell in the quick check, m.
 _WIDE_CELL = 0.2
 _AROUND = 1.0  # m
-#: From the middle of a cell to its corner, by its side.
+#: Distance from a cell's centre to its corner, relative to its side.
 _HALF_DIAGONAL = 0.7072
 
 
 #: x0, x1, y0, y1, m.
 Box = tuple[float, float, float, float]
-#: A body may touch a wall by rounding, m.
+#: Tolerance for a body that touches a wall, m.
 _SLACK = 1e-6
 
 
-@lru_cache(maxsize=1024)  # suites ask for the same places again and again
+@lru_cache(maxsize=1024)  # suites request the same places repeatedly
 def has_room(place: Place, area: Area, radius: float) -> bool:
-    """Whether a body of a radius (m) can be somewhere in an area."""
+    """Return True if a body of a radius (m) fits somewhere in an area."""
     return any(place.clearance(*at) >= radius - _SLACK for at in places_in(area, radius))
 
 
 @lru_cache(maxsize=1024)
 def areas_connected(place: Place, radius: float, box: Box, start: Outline, goal: Outline) -> bool:
-    """Whether a way might lead a body of a radius (m) from one convex outline into another."""
+    """Return True if a path may lead a body of a radius (m) from one convex outline to another."""
     if place.is_clear(_middle(start), _middle(goal), radius):
         return True
     if wide_reach_of(place, radius, box).connects_areas(start, goal):
@@ -54,28 +54,28 @@ def _middle(outline: Outline) -> Point:
 
 @lru_cache(maxsize=64)
 def reach_of(place: Place, radius: float, box: Box) -> Reach:
-    """The reach of bodies of a radius (m) on what a place and a box x0, x1, y0, y1 cover."""
+    """Return the reach of bodies of a radius (m) on a place and a box x0, x1, y0, y1."""
     return Reach(place, radius, box)
 
 
 @lru_cache(maxsize=64)
 def wide_reach_of(place: Place, radius: float, box: Box) -> Reach:
-    """A quick look first: a way in it there certainly is; where it has none, there may be one.
+    """Return a conservative quick check: its paths exist, but it may miss some.
 
-    Its cells are large, and those that are only partly within reach are taken, too.
+    Its cells are large, and partly blocked cells count as blocked.
     """
     return Reach(place, radius, box, cell=_WIDE_CELL, surely=True)
 
 
 class Reach:
-    """Cells that a body's centre can be in, and which of them hang together.
+    """Cells where a body's centre can be, and their connected components.
 
     Args:
-        place: what the body goes around.
-        radius: of the body, m.
-        box: x0, x1, y0, y1 that the floor covers besides, m.
-        cell: largest side of a cell, m; default: a quarter of the radius, and not more than 0.1 m.
-        surely: leave only cells that are wholly within reach, instead of all that partly are.
+        place: the obstacles.
+        radius: radius of the body, m.
+        box: additional floor x0, x1, y0, y1, m.
+        cell: largest side of a cell, m; default: a quarter of the radius, at most 0.1 m.
+        surely: keep only cells that are completely free, instead of partly free ones.
     """
 
     def __init__(
@@ -96,16 +96,16 @@ class Reach:
         self._floods: dict[tuple[int, int], list[int]] = {}
 
     def is_free(self, x: float, y: float) -> bool:
-        """Whether a body might stand at a point."""
+        """Return True if a body may stand at a point."""
         row, column = self._at(x, y)
         return 0 <= row < len(self._free) and bool(self._free[row] >> column & 1)
 
     def connects(self, start: Point, goal: Point) -> bool:
-        """Whether a way might lead from one point to another."""
+        """Return True if a path may lead from one point to another."""
         return self.is_free(*start) and self.is_free(*goal) and self._joins(start, goal)
 
     def connects_areas(self, start: Sequence[Point], goal: Sequence[Point]) -> bool:
-        """Whether a way might lead from somewhere in one convex outline into another."""
+        """Return True if a path may lead from one convex outline to another."""
         goals = self._cells(goal)
         seen = [0] * len(self._free)
         for row, bits in self._cells(start):
@@ -127,7 +127,7 @@ class Reach:
         return bool(self._flood(*self._at(*start))[row] >> column & 1)
 
     def _flood(self, row: int, column: int) -> list[int]:
-        """Everything that hangs together with a cell."""
+        """Return the connected component of a cell."""
         for flood in self._floods.values():
             if flood[row] >> column & 1:
                 return flood
@@ -146,7 +146,7 @@ class Reach:
         return self._floods.setdefault((row, column), found)
 
     def _spread(self, seeds: int, free: int) -> int:
-        """All cells of a row's free runs that hold a seed."""
+        """Return all cells of a row's free runs that contain a seed."""
         upwards = (free & ~(free + seeds)) | seeds
         runs, step = free, 1
         while step < self._columns:
@@ -170,12 +170,12 @@ class Reach:
                 self._free[row] &= ~bits
 
     def _take_around(self, ax: float, ay: float, bx: float, by: float, margin: float) -> None:
-        """Take what is nearer to a segment than a margin; in each row that is one run."""
+        """Block everything closer to a segment than a margin; in each row this is one run."""
         length = math.hypot(bx - ax, by - ay)
         nx, ny = (0.0, 0.0) if length == 0.0 else (-(by - ay) / length, (bx - ax) / length)
         nx, ny = nx * margin, ny * margin
         corners = ((ax + nx, ay + ny), (bx + nx, by + ny), (bx - nx, by - ny), (ax - nx, ay - ny))
-        # A side along x is crossed by no row; of a wall along an axis two are left, or none.
+        # No row crosses a side along x; of a wall along an axis two or no sides remain.
         upright = [side for side in sides(corners) if side[0][1] != side[1][1]]
         ends = ((ax, ay), (bx, by)) if length else ((ax, ay),)
         for row in self._rows_between(min(ay, by) - margin, max(ay, by) + margin):
@@ -189,14 +189,14 @@ class Reach:
                 self._free[row] &= ~self._bits(min(xs), max(xs))
 
     def _cells(self, outline: Sequence[Point]) -> list[tuple[int, int]]:
-        """Row and bits of the cells of an outline; one cell at least."""
+        """Return row and bits of the cells of an outline; at least one cell."""
         found = list(self._rows_of(list(sides(outline))))
         x, y = (sum(c) / len(outline) for c in zip(*outline, strict=True))
         row, column = self._at(x, y)
         return [*found, (row, 1 << column)] if 0 <= row < len(self._free) else found
 
     def _rows_of(self, listed: Sequence[tuple[Point, Point]]) -> Iterable[tuple[int, int]]:
-        """Row and bits of the cells whose middle lies between sides, by the even-odd rule."""
+        """Yield row and bits of the cells whose centre is inside, by the even-odd rule."""
         ys = [p[1] for side in listed for p in side]
         for row in self._rows_between(min(ys), max(ys)):
             y = self._y0 + (row + 0.5) * self._cell
@@ -210,14 +210,14 @@ class Reach:
         return range(max(0, first), min(len(self._free) - 1, last) + 1)
 
     def _bits(self, left: float, right: float) -> int:
-        """Cells of a row whose middle lies from left to right."""
+        """Return the cells of a row whose centre lies between left and right."""
         first = max(0, math.ceil((left - self._x0) / self._cell - 0.5))
         last = min(self._columns - 1, math.floor((right - self._x0) / self._cell - 0.5))
         return ((1 << (last - first + 1)) - 1) << first if last >= first else 0
 
 
 def _crossing(side: tuple[Point, Point], y: float) -> list[float]:
-    """Where a side crosses a height; an end belongs to the part below it."""
+    """Return where a side crosses a height; an end belongs to the part below it."""
     (ax, ay), (bx, by) = side
     if (ay > y) == (by > y):
         return []

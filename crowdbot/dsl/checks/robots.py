@@ -1,4 +1,4 @@
-"""Checks of zones and of robots' ways; nothing is built."""
+"""Checks of zones and of robots' paths; nothing is built."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from crowdbot.dsl.spec.spec import Rectangle
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError
 
-#: No robot is thinner, m: what such a one cannot reach, none can.
+#: Smallest radius of any robot, m: places out of its reach are out of reach for all.
 _THINNEST = 0.1
 
 
 def check_zones(facts: Facts) -> Iterator[Diagnostic]:
-    """Each zone that a document writes lies on the floor, where the environment knows its box."""
+    """Check that each written zone lies on the floor, if the environment knows its box."""
     environment = facts.scenario.environment
     try:
         whole = environment.extent()
-    except InputError:  # which is reported with the environment
+    except InputError:  # reported with the environment
         return
     if whole is None:
         return
@@ -44,9 +44,9 @@ def _overlap(one: Rectangle, other: Rectangle) -> bool:
 
 
 def check_robots(facts: Facts) -> Iterator[Diagnostic]:
-    """No robot starts in something, and a way leads to its goal.
+    """Check that no robot starts inside an obstacle, and that a path leads to its goal.
 
-    Only what stands on the floor counts: how tall a robot is is not known here.
+    Only obstacles on the floor count, since a robot's height is unknown here.
     """
     place = known_place(facts.scenario.environment)
     if place is None or place.torus is not None:
@@ -60,7 +60,7 @@ def _check_robot(facts: Facts, place: Place, name: str, task: TaskSpec) -> Itera
     x, y = task.start[:2]
     path = ("robots", name, "task")
     if any(facts.outside("", [(x, y)])):
-        return  # which is an error already
+        return  # already an error
     if place.clearance(x, y) < 0.0:
         text = f"robot '{name}' starts in a wall, a block or a pillar, at ({x:g}, {y:g})"
         yield Diagnostic("E143", text, facts.mark(*path, "start"))

@@ -88,21 +88,21 @@ def _check_room(facts: Facts, spawn: Spawn, area: Area, name: str) -> Iterator[D
     if wanted > most:
         size = f"{area.size[0]:g} m × {area.size[1]:g} m"
         text = f"{people(wanted)} of spawn '{name}' cannot fit into its {size}"
-        hint = f"there is room for at most {most}" if most else "nobody is so thin"
+        hint = f"there is room for at most {most}" if most else "there is no room for a person"
         mark = facts.mark(*path, "count" if spawn.count else "density")
         yield Diagnostic("E136", text, mark, hint)
 
 
 def most_points(size: tuple[float, float], margin: float, spacing: float) -> int:
-    """An upper bound on how many points lie in a rectangle, so far from its sides and each other.
+    """Return an upper bound on the number of points in a rectangle with these spacings.
 
     Oler's inequality for a convex region of area A and perimeter P: at most
     2 A / (√3 d²) + P / (2 d) + 1 points are d apart (Acta Mathematica 105, 1961).
 
     Args:
         size: sides of the rectangle, m.
-        margin: least distance from the sides, m.
-        spacing: least distance between two points, m.
+        margin: smallest distance from the sides, m.
+        spacing: smallest distance between two points, m.
     """
     a, b = size[0] - 2.0 * margin, size[1] - 2.0 * margin
     if a < -1e-9 or b < -1e-9:

@@ -88,7 +88,7 @@ def _check_number(facts: Facts, stream: Stream, name: str, path: Path) -> Iterat
     if (wanted or 1) > most:
         size = f"{area.size[0]:g} m × {area.size[1]:g} m"
         text = f"{people(wanted or 1)} of stream '{name}' cannot fit into its {size}"
-        hint = f"there is room for at most {most}" if most else "nobody is so thin"
+        hint = f"there is room for at most {most}" if most else "there is no room for a person"
         field = "density" if density is not None else "count" if stream.count else "arrivals"
         yield Diagnostic("E136", text, facts.mark(*path, field), hint)
 

@@ -1,6 +1,6 @@
-"""Parts of scenarios that were validated before, so that a large suite validates each once.
+"""A cache of validated parts, so that a large suite validates each once.
 
-Combinations share the nodes of what no axis touches. A part is known by its node; the caller keeps
+Combinations share nodes that no axis changes. A part is identified by its node; the caller keeps
 the nodes alive.
 """
 
@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from crowdbot.dsl.text.nodes import Node
 
-#: How deep parts are told apart: ``crowd.streams.in.origin`` is one, what is in it is not.
+#: Depth of parts: ``crowd.streams.in.origin`` is one, its members are not.
 _DEPTH = 4
 
 
@@ -24,11 +24,11 @@ class ValidParts:
         self._known: dict[int, Any] = {}
 
     def add(self, tree: Node, validated: object) -> None:
-        """Remember the parts of a validated document."""
+        """Add the parts of a validated document."""
         self._add(tree, validated, 0)
 
     def fill(self, tree: Node, data: Mapping[str, Any]) -> dict[str, Any]:
-        """The document's data with known parts in place of their data."""
+        """Return the document's data with known parts in place of their data."""
         filled: dict[str, Any] = self._fill(tree, data, 0)
         return filled
 

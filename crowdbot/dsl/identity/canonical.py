@@ -1,4 +1,4 @@
-"""Canonical form 1: the same scenario gives the same bytes, however it was written.
+"""Canonical form 1: the same scenario gives the same bytes, regardless of its notation.
 
 Changing this file changes every hash; golden hashes in the tests guard it.
 """
@@ -21,7 +21,7 @@ _HEADER = """\
 
 
 def canonical_bytes(scenario: Scenario, kinds: Mapping[str, int]) -> bytes:
-    """The bytes that are hashed: JSON, sorted keys, no spaces, shortest floats.
+    """Return the bytes that are hashed: JSON, sorted keys, no spaces, shortest floats.
 
     Args:
         scenario: a validated scenario.
@@ -34,16 +34,16 @@ def canonical_bytes(scenario: Scenario, kinds: Mapping[str, int]) -> bytes:
 
 
 def content_hash(scenario: Scenario, kinds: Mapping[str, int]) -> str:
-    """``cb1-sha256:<hex>`` of a scenario's content; id, title and references do not count."""
+    """Return ``cb1-sha256:<hex>`` of a scenario's content, without id, title and references."""
     return PREFIX + hashlib.sha256(canonical_bytes(scenario, kinds)).hexdigest()
 
 
 def dump_scenario_yaml(scenario: Scenario, kinds: Mapping[str, int] | None = None) -> str:
-    """A document that reads back to the same scenario, with references, and the same hash.
+    """Return a document with references that reads back to the same scenario and hash.
 
     Args:
         scenario: a validated scenario.
-        kinds: kind -> spec_version, which the document then asks for.
+        kinds: kind -> spec_version, which the document then requires.
     """
     content = plain(scenario)
     references = {
@@ -60,7 +60,7 @@ def dump_scenario_yaml(scenario: Scenario, kinds: Mapping[str, int] | None = Non
 
 
 def difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
-    """The overrides that turn one document into another."""
+    """Return the overrides that convert one document to another."""
     out: dict[str, Any] = {key: None for key in old if key not in new}
     for key, value in new.items():
         before = old.get(key)
@@ -74,13 +74,13 @@ def difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]
 
 
 def plain(scenario: Scenario) -> dict[str, Any]:
-    """All fields as plain data, defaults written out, minus zero folded."""
+    """Return all fields as plain data, with defaults and without minus zero."""
     content: dict[str, Any] = _fold(scenario.model_dump(mode="json"))
     return content
 
 
 def _fold(value: Any) -> Any:
-    """Minus zero is zero."""
+    """Convert minus zero to zero."""
     if isinstance(value, dict):
         return {key: _fold(item) for key, item in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Which crowds are alike wherever they walk: the same policy, costs, steering, speeds, bodies."""
+"""Similarity of crowds, regardless of the place: policy, costs, steering, speeds, bodies."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _LIKE = ("policy", "costs", "steering", "speed", "body")
 
 
 def fingerprint(crowd: Crowd) -> str:
-    """Equal for crowds that are alike, whoever walks where in them; 16 hex digits."""
+    """Return 16 hex digits, equal for similar crowds, regardless of their people's paths."""
     content = crowd.model_dump(mode="json", include=set(_LIKE))
     kept = {name: content[name] for name in _LIKE if content.get(name) is not None}
     text = json.dumps(_plain(kept), sort_keys=True, separators=(",", ":"))
@@ -21,7 +21,7 @@ def fingerprint(crowd: Crowd) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Numbers as floats: 1 and 1.0 are equal."""
+    """Convert numbers to floats, since 1 and 1.0 are equal."""
     if isinstance(value, Mapping):
         return {str(k): _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

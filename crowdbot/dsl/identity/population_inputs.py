@@ -1,4 +1,4 @@
-"""What the drawing of a crowd depends on."""
+"""The inputs for sampling a crowd."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.spawning import CLEAR_OF_ROBOT
 from crowdbot.dsl.spec.areas import Area
 
-#: What of a crowd has no part in its drawing; everything else of it, and the environment, has.
+#: Fields of a crowd that do not affect its sampling; all others, and the environment, do.
 NOT_SAMPLED = ("policy", "policies", "costs", "robot_response", "groups")
 
 
 def population_inputs(scenario: Scenario) -> str:
-    """Hash of everything that the drawing of a scenario's crowd may depend on."""
+    """Return the hash of everything that may affect the sampling of a scenario's crowd."""
     content = scenario.model_dump(mode="json", include={"environment", "crowd"})
     crowd = {k: v for k, v in (content["crowd"] or {}).items() if k not in NOT_SAMPLED}
     robots = {"robots": starts} if (starts := _starts_among_people(scenario)) else {}
@@ -23,11 +23,11 @@ def population_inputs(scenario: Scenario) -> str:
 
 
 def _starts_among_people(scenario: Scenario) -> list[tuple[float, float]]:
-    """Starts of robots that are so near to an area of people that they may move somebody."""
+    """Return robots' starts that are so near an area of people that they may move someone."""
     crowd, zones = scenario.crowd, scenario.environment.zones
     if crowd is None:
         return []
-    if crowd.streams:  # they may begin anywhere
+    if crowd.streams:  # they may start anywhere
         return sorted(robot.task.start[:2] for robot in scenario.robots.values())
     places = [*([crowd.flow.area] if crowd.flow else []), *(s.area for s in crowd.spawns.values())]
     areas = [Area.of(zones[p]) if isinstance(p, str) else p for p in places]

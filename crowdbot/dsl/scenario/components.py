@@ -1,4 +1,4 @@
-"""The components of a scenario, and where in its document they stand."""
+"""The components of a scenario, and their paths in its document."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Path = tuple[str, ...]
 
 
 def components(scenario: Scenario) -> Iterator[tuple[Path, ComponentSpec]]:
-    """Path and spec of every component; those that others are made of follow them."""
+    """Yield path and spec of every component; nested ones follow their owner."""
     for path, spec in _stated(scenario):
         yield path, spec
         for name, part in spec.parts().items():

@@ -1,4 +1,4 @@
-"""How groups hold together: the forces of Moussaïd et al. 2010, as a spec."""
+"""Cohesion of groups: the forces of Moussaïd et al. 2010, as a spec."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Strength = Annotated[float, Ge(0), Le(100)]
 
 
 class GroupForces(Spec):
-    """Accelerations that keep groups together, added to those of any policy.
+    """Accelerations that hold groups together, added to those of any policy.
 
     Source of strengths, angle and distance: Moussaïd et al., PLoS ONE 5(4), 2010, e10047.
     """

@@ -20,7 +20,7 @@ from crowdbot.dsl.scenario.field_hashes import Values, changed_fields
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.errors import InputError
 
-#: The version of the lock format that this release reads and writes.
+#: Version of the lock format of this release.
 LOCK = 2
 
 
@@ -36,7 +36,7 @@ class LockedScenario(Spec):
 
     spec: str = Field(description="Hash of the scenario.")
     realisation: str = Field(description="Hash of its agents.")
-    draw: str | None = Field(description="Name of its table; null: nobody walks here.")
+    draw: str | None = Field(description="Name of its table; null: no people.")
     varied: list[str] = Field(description="Hash of its fields at each of 'places'.")
 
 
@@ -90,8 +90,8 @@ class LockFiles:
     """The two files of a lock, each read when it is needed.
 
     Args:
-        document: the suite file that they stand beside.
-        spec: how users name the suite; messages say what to call again.
+        document: the suite file beside them.
+        spec: the user's name of the suite, for messages.
     """
 
     def __init__(self, document: Path, spec: str) -> None:
@@ -105,7 +105,7 @@ class LockFiles:
 
     @cached_property
     def lock(self) -> Lock:
-        """The lock.
+        """Return the lock.
 
         Raises:
             InputError: there is none, it is not a lock, or its format is another.
@@ -141,7 +141,7 @@ class LockFiles:
         """Name -> table as text; "" -> an empty table.
 
         Raises:
-            InputError: the file is missing, or is not such a file.
+            InputError: the file is missing or invalid.
         """
         return split_tables(_read(self.agents_path), self.agents_path.name)
 
@@ -149,7 +149,7 @@ class LockFiles:
         """Check that the file of the tables is such a file, at little cost.
 
         Raises:
-            InputError: as of `tables`.
+            InputError: as in `tables`.
         """
         if "tables" not in self.__dict__ and not is_plain(_read(self.agents_path)):
             _ = self.tables

@@ -53,7 +53,7 @@ MassChoice = Annotated[
 
 
 class PeopleKind(Spec):
-    """One kind of people in a mixture; what is left out is as its look has it."""
+    """One kind of people in a mixture; missing fields have the defaults of its look."""
 
     look: AppearanceName = Field(
         default="adult", description="What sensors see, and usual numbers."
@@ -75,12 +75,12 @@ class PeopleKind(Spec):
 
 @dataclass(frozen=True, slots=True)
 class UsualBody:
-    """Usual numbers of a look; None is as in `crowd.body`.
+    """Default body of a look; None as in `crowd.body`.
 
     Attributes:
         height, mass: mean and standard deviation, m and kg.
-        radius: of the disc that touches, m.
-        pace: preferred speed as a multiple of what others draw.
+        radius: radius of the contact disc, m.
+        pace: preferred speed as a multiple of others' samples.
     """
 
     height: tuple[float, float]

@@ -1,6 +1,6 @@
-"""The field ``crowd.robot_response``: how people behave towards robots, contact apart.
+"""The field ``crowd.robot_response``: people's behaviour towards robots, except contact.
 
-Sources of the numbers: docs/reference/crowd.md.
+For the sources of the numbers, see docs/reference/crowd.md.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 class RobotResponse(Spec):
-    """People notice a robot, react after a while, and evade it no faster than legs can.
+    """People notice a robot, react after a delay, and evade it as fast as people can.
 
     They look ahead, step aside in time and brake; some notice late. People who ignore the robot
-    walk as if it were not there, until they touch it. People who are distracted ignore a robot that
-    moves, but stop short of one that stands, as of anything that stands in their way.
+    walk as if it were not there, until they touch it. Distracted people ignore a moving robot, but
+    stop in front of a standing one, as in front of any obstacle.
     """
 
     category: ClassVar[str] = "robot response"
     kind: Literal["human"] = Field(default="human", description="Name of the response.")
     reaction: Literal["yield", "ignore", "mixed", "distracted"] = Field(
         default="yield",
-        description="Who takes notice of the robot: all, nobody, or some; with `distracted`, "
+        description="Who notices the robot: all, none, or some; with `distracted`, "
         "some while it moves and all when it stands.",
     )
     ignoring_fraction: Annotated[float, Gt(0), Lt(1)] | None = Field(
@@ -131,17 +131,17 @@ class RobotResponse(Spec):
 
     @property
     def all_stop_short(self) -> bool:
-        """True if those who ignore a robot that moves stop short of one that stands."""
+        """Return True if people who ignore a moving robot stop in front of a standing one."""
         return self.reaction == "distracted"
 
     @property
     def ignoring(self) -> float:
-        """Fraction of people who ignore the robot."""
+        """Return the fraction of people who ignore the robot."""
         if self.ignoring_fraction is not None:
             return self.ignoring_fraction
         return 1.0 if self.reaction == "ignore" else 0.0
 
     @property
     def late(self) -> float:
-        """Fraction of those who do not ignore the robot who notice it late."""
+        """Return the fraction of late ones among people who do not ignore the robot."""
         return self.late_fraction

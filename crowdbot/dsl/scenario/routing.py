@@ -1,6 +1,6 @@
-"""How people find their way to their goals; chosen by ``kind``, straight where none is named.
+"""Path finding of people, chosen by ``kind``; straight by default.
 
-The numbers of `mesh` are proposed here; decision 0020 says what they do.
+The parameters of `mesh` are proposed here; see decision 0020 for their effect.
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 class Routing(Spec):
-    """How people find their way."""
+    """Path finding of people."""
 
     category: ClassVar[str] = "routing"
-    #: The kind of a routing that names none.
+    #: The default kind of routing.
     usual: ClassVar[str] = "straight"
     kind: str = Field(description="Name of the routing.")
 
 
 class StraightRouting(Routing):
-    """Straight to the goal; what is in between is left to the crowd policy and to contact."""
+    """Straight paths to the goal; obstacles are left to the crowd policy and to contact."""
 
     kind: Literal["straight"] = Field(default="straight", description="Name of the routing.")
 
 
 class MeshRouting(Routing):
-    """Shortest ways around walls and pillars, for bodies of each person's radius."""
+    """Shortest paths around walls and pillars, for each person's radius."""
 
     kind: Literal["mesh"] = Field(default="mesh", description="Name of the routing.")
     spread: NonNegativeLength = Field(
@@ -42,7 +42,7 @@ class MeshRouting(Routing):
         default=5.0, description="After this time without progress people look for another way, s."
     )
     detour: Annotated[float, Ge(1)] = Field(
-        default=1.5, description="Another way is at most so many times as long as the shortest."
+        default=1.5, description="Largest length of another path, relative to the shortest."
     )
 
 
@@ -50,7 +50,7 @@ def _usual(value: Any) -> Any:
     return {"kind": Routing.usual, **value} if isinstance(value, dict) else value
 
 
-#: One of the routings; of the usual kind where none is named.
+#: One of the routings, or the default kind.
 RoutingChoice = Annotated[
     Annotated[StraightRouting | MeshRouting, Field(discriminator="kind")],
     BeforeValidator(_usual),

@@ -1,7 +1,7 @@
-"""Scenario: everything the robot meets, fully explicit. No planner.
+"""Scenario: the complete explicit environment of a robot, without a planner.
 
 The classes here are typed with abstract component specs. `crowdbot.core.registry.registry` narrows
-them to the components that are installed; the base classes refuse to validate.
+them to the installed components; the base classes refuse to validate.
 """
 
 from __future__ import annotations
@@ -54,20 +54,20 @@ from crowdbot.dsl.spec.quantities import (
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.text.path_names import PathName
 
-#: What an agent does at the end of its route. Those of streams: come in again where it came from;
-#: walk on in its direction for ever.
+#: An agent's behaviour at the end of its route. For streams: enter again at its origin, or walk on
+#: in its direction forever.
 AtGoal = Literal["portal", RouteEnd, "return", "onward"]
 
 
 class CrowdSeed(Spec):
-    """Where the crowd's random numbers come from; equal seeds draw equal people."""
+    """The seed of the crowd's random numbers; equal seeds sample equal people."""
 
     root: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(default=0, description="Root seed.")
     key: str = Field(default="", description="Draw within the root: labels of the seed axes.")
 
 
 class Flow(Spec):
-    """A stream of people from one portal to the other, or two that meet."""
+    """A stream of people from one portal to another, or two opposite ones."""
 
     direction: Literal["in", "counter", "both"] = Field(
         description="in: from the first portal to the second; counter: the other way; both: every "
@@ -81,7 +81,7 @@ class Flow(Spec):
 
 
 class Body(Spec):
-    """What every agent of the crowd has in common."""
+    """Properties shared by all agents of the crowd."""
 
     radius: PositiveLength = Field(default=0.33, description="Radius of the disc, m.")
     avoided_radius: PositiveLength | None = Field(
@@ -100,7 +100,7 @@ class Body(Spec):
 
 
 class NamedPolicy(Spec):
-    """A policy that some agents follow instead of the crowd's own."""
+    """A policy for some agents, in place of the crowd's own."""
 
     policy: SerializeAsAny[CrowdPolicySpec]
     costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
@@ -109,9 +109,9 @@ class NamedPolicy(Spec):
 
 
 class Crowd(Spec):
-    """Who walks, from where to where, and how they decide: a flow, streams, spawns, agents.
+    """The people, their paths and their decisions: a flow, streams, spawns, agents.
 
-    Fields that came after the first locks are outside the hash while they are as usual.
+    Fields added after the first locks are outside the hash while they have their default.
     """
 
     flow: Flow | None = None
@@ -173,18 +173,18 @@ class Crowd(Spec):
 
     @property
     def names_nobody(self) -> bool:
-        """Whether there is neither a flow, nor a stream, nor a spawn, nor an explicit agent."""
+        """Return True if there is neither a flow, nor a stream, a spawn, or an explicit agent."""
         return self.flow is None and not (self.streams or self.spawns or self.agents)
 
 
 class Goal(Spec):
-    """The zone in which the robot's centre has to be."""
+    """The zone that the robot's centre has to reach."""
 
     zone: str = Field(description="Name of the goal zone.")
 
 
 class TaskSpec(Spec):
-    """What the robot is asked to do."""
+    """The robot's task."""
 
     start: tuple[Length, Length, Angle] = Field(
         strict=False, description="x, y (m) and heading (rad) at t = 0, world frame."
@@ -205,7 +205,7 @@ class Robot(Spec):
     model: SerializeAsAny[RobotSpec]
     control: Literal["kinematic", "force", "differential_drive"] = Field(
         default="differential_drive",
-        validate_default=False,  # where it does not fit, another one takes its place
+        validate_default=False,  # a mismatch is replaced
         description="How commands become motion. Default of a holonomic robot: force.",
     )
     sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(default={}, description="Named sensors.")
@@ -244,7 +244,7 @@ class Contact(Spec):
 
 
 class Rates(Spec):
-    """How often things happen; powers of two, so that Drake's events coincide exactly."""
+    """Rates of events; powers of two, so that Drake's events coincide exactly."""
 
     crowd: PositiveFrequency = Field(default=16.0, description="Decisions of the crowd, Hz.")
     planner: PositiveFrequency = Field(default=16.0, description="Steps of the planner, Hz.")
@@ -260,12 +260,12 @@ class Rates(Spec):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Locked:
-    """Where a scenario is locked.
+    """The lock of a scenario.
 
     Attributes:
-        files: of the suite.
-        origin: gives the scenario as the suite has it, without ``--set`` and whatever else was
-            changed since.
+        files: files of the suite's lock.
+        origin: function that returns the scenario as in the suite, without ``--set`` and later
+            changes.
     """
 
     files: LockFiles
@@ -290,39 +290,39 @@ class Scenario(Spec):
     #: Draws a scenario as HTML, for notebooks; registered by the Python API.
     draw_html: ClassVar[Callable[[Scenario], str] | None] = None
 
-    _locked: Locked | None = PrivateAttr(default=None)  # where its agents are frozen
-    _hidden: str = PrivateAttr(default="")  # commitment to a seed that nobody knows yet
+    _locked: Locked | None = PrivateAttr(default=None)  # the lock with its agents
+    _hidden: str = PrivateAttr(default="")  # commitment to a seed that is not revealed yet
 
     def __eq__(self, other: object) -> bool:
-        """Equal in content; where the agents are frozen does not count."""
+        """Return True if the content is equal; the lock is ignored."""
         return isinstance(other, Scenario) and self.__dict__ == other.__dict__
 
     @property
     def locked(self) -> Locked | None:
-        """Where its agents are frozen, if they are."""
+        """Return the lock of its agents, if any."""
         return self._locked
 
     @property
     def hidden(self) -> str:
-        """The commitment to the seed of its people, where that has not been revealed; else ""."""
+        """Return the commitment to the seed of its people, until that is revealed; else ""."""
         return self._hidden
 
     def hide(self, commitment: str) -> None:
-        """Say that the seed of its people is hidden."""
+        """Mark the seed of its people as hidden."""
         self._hidden = commitment
 
     def lock_to(self, locked: Locked) -> None:
-        """Say where the agents are frozen, also those of the references."""
+        """Set the lock of its agents, also for the references."""
         for scenario in (self, *self.references.values()):
             scenario._locked = locked
 
     def _repr_html_(self) -> str | None:
-        """A drawing for notebooks; None where nothing has registered how to draw."""
+        """Return a drawing for notebooks; None if no renderer is registered."""
         draw = type(self).draw_html
         return None if draw is None else draw(self)
 
 
-#: Fields of a scenario that do not change what happens in it.
+#: Fields of a scenario that do not affect the simulation.
 OUTSIDE_HASH = ("id", "title", "references")
 
 __all__ = [

@@ -1,6 +1,6 @@
 """People of a crowd beside its flow and streams: spawns, goal areas, explicit agents.
 
-Everything is drawn once by `crowdbot.core.population.realise`; these are its specs.
+`crowdbot.core.population.realise` samples everything once from these specs.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ from crowdbot.dsl.spec.quantities import (
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.spec.unions import AnyOf
 
-#: What an agent with a route does at its end.
+#: An agent's behaviour at the end of its route.
 RouteEnd = Literal["stop", "remove", "loop"]
-#: More people than this are a mistake, and would take hours to place.
+#: More people are a mistake, and would take hours to place.
 MAX_PEOPLE = 100_000
 
 #: Least distance of people from a robot's start, centre to centre, m.
@@ -57,7 +57,7 @@ def _heading_tag(value: Any) -> str:
     return "<word>" if word else "<angle>"
 
 
-#: An angle, or how to find one.
+#: An angle, or a rule to determine it.
 Heading = Annotated[
     Annotated[Literal["goal", "random"], Tag("<word>")] | Annotated[Angle, Tag("<angle>")],
     Discriminator(_heading_tag),
@@ -77,7 +77,7 @@ Names = Annotated[
 
 
 class GroupSize(Spec):
-    """How often groups of one size are."""
+    """Frequency of groups of one size."""
 
     size: Annotated[int, Ge(1), Le(1000)] = Field(description="People in a group; 1: alone.")
     frequency: Annotated[float, Ge(0)] = Field(
@@ -86,7 +86,7 @@ class GroupSize(Spec):
 
 
 class Goals(Spec):
-    """The route of people: points in goal areas, drawn once for each group or single person."""
+    """The route of people: points in goal areas, sampled once per group or single person."""
 
     areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
         strict=False, description="Names of goal areas; of a `linked` walk, where it may begin."
@@ -107,12 +107,12 @@ class Goals(Spec):
 
     @property
     def length(self) -> int:
-        """How many points a route has, a way back not counted."""
+        """Return the number of points of a route, without the way back."""
         return len(self.areas) if self.count is None else self.count
 
 
 class Spawn(Spec):
-    """People who start in one area. What is left out is as in the crowd."""
+    """People who start in one area; missing fields are as in the crowd."""
 
     area: Place = Field(description="Name of a zone, or an area written here; bodies lie inside.")
     count: Count | None = Field(default=None, description="How many; this or `density`.")
@@ -188,7 +188,7 @@ class Spawn(Spec):
 
 
 class Agent(Spec):
-    """One explicit agent; what is left out is as in the crowd."""
+    """One explicit agent; missing fields are as in the crowd."""
 
     id: Annotated[int, Ge(0), Le(2**31 - 1)] = Field(
         description="Number of this agent; no other has it."
@@ -268,7 +268,7 @@ def _rows(value: Any) -> Any:
     return value
 
 
-#: Rows; documents may name a CSV instead, which `crowdbot.dsl.suite.include` replaces by its rows.
+#: Rows; documents may name a CSV instead, which `crowdbot.dsl.suite.include` replaces by rows.
 Agents = Annotated[
     tuple[Agent, ...],
     BeforeValidator(_rows, json_schema_input_type=tuple[Agent, ...] | AgentsFile),

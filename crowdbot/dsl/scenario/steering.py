@@ -1,4 +1,4 @@
-"""Steering parts: what people do beside their crowd policy, whatever that is; off by default.
+"""Steering parts: behaviour besides the crowd policy; off by default.
 
 Formulas and sources: docs/reference/crowd/steering.md.
 """
@@ -21,12 +21,12 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 def unset(value: Any) -> bool:
-    """Whether an optional field says nothing; then a scenario's hash does not know it."""
+    """Return True if an optional field is unset, and so not part of the hash."""
     return value is None
 
 
 class TimeGapSpec(Spec):
-    """Nobody walks faster than the room ahead allows: (distance ahead - room) / time."""
+    """Limits speed by the room ahead: (distance ahead - room) / time."""
 
     time: PositiveDuration = Field(default=1.0, description="Time gap kept to people ahead, s.")
     oncoming_time: PositiveDuration = Field(
@@ -42,7 +42,7 @@ class TimeGapSpec(Spec):
 
 
 class PersonalSpaceSpec(Spec):
-    """A push away from where others are going to be, stronger ahead than behind."""
+    """A push away from others' future positions, stronger ahead than behind."""
 
     strength: PositiveAcceleration = Field(
         default=1.13, description="Push where discs are going to touch, ahead, m/s^2."
@@ -59,7 +59,7 @@ class PersonalSpaceSpec(Spec):
 
 
 class LanesSpec(Spec):
-    """Among people who come the other way, a person steps behind those who walk the same way."""
+    """In opposing flow, a person steps behind others who walk the same way."""
 
     strength: PositiveAcceleration = Field(
         default=1.0, description="Largest acceleration to the side, m/s^2."
@@ -98,7 +98,7 @@ class WanderSpec(Spec):
 
 
 class SteeringSpec(Spec):
-    """Steering parts, each off unless it is named."""
+    """Steering parts; each is off unless named."""
 
     time_gap: TimeGapSpec | None = Field(
         default=None, exclude_if=unset, description="Slow down behind others."

@@ -52,10 +52,10 @@ class Arrivals(Spec):
         default=(), strict=False, description="Scheduled arrivals, s; in any order."
     )
     begin: NonNegativeDuration = Field(
-        default=0.0, description="With `rate` and `every`: nobody arrives before this time, s."
+        default=0.0, description="With `rate` and `every`: no one arrives before this time, s."
     )
     until: PositiveDuration | None = Field(
-        default=None, description="With `rate` and `every`: nobody arrives from then on, s."
+        default=None, description="With `rate` and `every`: no one arrives from then on, s."
     )
 
     @model_validator(mode="after")

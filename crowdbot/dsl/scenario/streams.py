@@ -35,7 +35,7 @@ _POINT = (0.01, 0.01)
 
 
 class Lanes(Spec):
-    """Lanes of equal width beside each other, across an area's own y."""
+    """Lanes of equal width, side by side across an area's own y."""
 
     of: Annotated[int, Ge(1), Le(64)] = Field(description="How many lanes there are.")
     use: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = Field(
@@ -80,12 +80,12 @@ class ThroughStream(PopulatedStream):
 
     @property
     def end(self) -> StreamEnd:
-        """What they do at the destination."""
+        """Return their behaviour at the destination."""
         return self.at_destination or ("leave" if self.arrivals else "return")
 
     @property
     def starts_in(self) -> Place:
-        """Where they are at the start."""
+        """Return where they are at the start."""
         return self.start if self.start is not None and not self.arrivals else self.origin
 
     def places(self) -> Iterator[tuple[FieldPath, Place]]:
@@ -126,9 +126,10 @@ class ThroughStream(PopulatedStream):
 
 
 class DirectionsStream(Stream):
-    """Two-dimensional flow: each person walks in a direction that is drawn.
+    """Two-dimensional flow: each person walks in a random direction.
 
-    On a torus for ever; elsewhere to the border of the area, where each turns to a new direction.
+    On a torus they walk forever; elsewhere to the border of the area, where each gets a new
+    direction.
     """
 
     begin_fields: ClassVar[tuple[str, ...]] = ("area",)
@@ -161,7 +162,7 @@ class DirectionsStream(Stream):
 
 
 class QueueStream(Stream):
-    """People in a line, who move up, are served at its head one after the other, and go."""
+    """People in a line, who move up, are served at its head one by one, and leave."""
 
     goal_fields: ClassVar[tuple[str, ...]] = ("destination",)
     kind: Literal["queue"] = Field(default="queue", description="Pattern of the stream.")
@@ -257,7 +258,7 @@ class TalkingStream(Stream):
 
 
 class WanderingStream(PopulatedStream):
-    """People who stroll from goal area to goal area, by chance, and linger there."""
+    """People who stroll between goal areas at random, and stay there for a while."""
 
     begin_fields: ClassVar[tuple[str, ...]] = ("area",)
     kind: Literal["wandering"] = Field(default="wandering", description="Pattern of the stream.")
@@ -293,7 +294,7 @@ class WanderingStream(PopulatedStream):
             yield [(("area",), area_of(self.area)), (field, goal)]
 
 
-#: A stream of one of the patterns.
+#: A stream with one of the patterns.
 StreamChoice = Annotated[
     ThroughStream | DirectionsStream | QueueStream | TalkingStream | WanderingStream,
     Field(discriminator="kind"),

@@ -1,1 +1,1 @@
-"""JSON Schemas of the documents."""
+"""JSON Schemas of documents."""

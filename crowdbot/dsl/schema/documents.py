@@ -1,11 +1,11 @@
-"""JSON Schemas (draft 2020-12) of what people write and of what crowdbot writes.
+"""JSON Schemas (draft 2020-12) of documents that users write and crowdbot writes.
 
-The *authoring* schema is for editors: every field may be missing, because ``extends``, a matrix
-or a dotted key may supply it; quantities may be text; ``null`` goes back to the default. The
-*canonical* one describes ``scenario.yaml`` of a run: numbers only, every field written out.
+The *authoring* schema is for editors: every field may be missing, because ``extends``, a matrix or
+a dotted key may supply it; quantities may be text; ``null`` restores the default. The *canonical*
+one describes ``scenario.yaml`` of a run: numbers only, every field written out.
 
-What a schema says is wrong, ``validate`` refuses as well. The reverse does not hold: rules
-between fields, whole documents and positions are ``validate``'s alone.
+Everything that a schema refuses, ``validate`` refuses as well. The reverse does not hold: only
+``validate`` checks rules between fields, whole documents and positions.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _VERSION: Json = {"const": FORMAT, "description": "Version of the format."}
 
 
 def suite_schema(scenario: type[Scenario], metrics: Iterable[str]) -> Json:
-    """The schema of a suite document.
+    """Return the schema of a suite document.
 
     Args:
         scenario: `Scenario`, narrowed to the installed components.
@@ -52,7 +52,7 @@ def suite_schema(scenario: type[Scenario], metrics: Iterable[str]) -> Json:
 
 
 def scenario_schema(scenario: type[Scenario], metrics: Iterable[str]) -> Json:
-    """The schema of a document that holds one scenario; arguments as for `suite_schema`."""
+    """Return the schema of a document with one scenario; arguments as for `suite_schema`."""
     parts = Parts(scenario)
     body = _body(parts, ("references",))
     whole = _if_plain({"required": ["id", "environment"]})
@@ -63,13 +63,13 @@ def scenario_schema(scenario: type[Scenario], metrics: Iterable[str]) -> Json:
 
 
 def part_schema(scenario: type[Scenario]) -> Json:
-    """The schema of a file that others name in ``extends``: some fields of a scenario."""
+    """Return the schema of a file for ``extends``: some fields of a scenario."""
     parts = Parts(scenario)
     return _head("part", "crowdbot part", _body(parts, ("references",)), parts)
 
 
 def planner_schema(planners: Sequence[type[ComponentSpec]], *, canonical: bool = False) -> Json:
-    """The schema of a planner file: ``kind`` and its parameters.
+    """Return the schema of a planner file: ``kind`` and its parameters.
 
     Args:
         planners: specs of the installed planners.
@@ -80,7 +80,7 @@ def planner_schema(planners: Sequence[type[ComponentSpec]], *, canonical: bool =
 
 
 def canonical_scenario_schema(scenario: type[Scenario]) -> Json:
-    """The schema of a resolved scenario document, such as ``scenario.yaml`` of a run."""
+    """Return the schema of a resolved scenario, such as ``scenario.yaml`` of a run."""
     parts = Parts(scenario, canonical=True)
     content = {
         "type": "object",
@@ -112,7 +112,7 @@ def _document(
     metrics: Iterable[str],
     fields: Mapping[str, Json],
 ) -> Json:
-    """A document's outermost fields, taken from their model; some are known better here."""
+    """Return a document's outermost fields from their model; some are refined here."""
     outer = parts.outer(model)
     known = {
         "crowdbot": _VERSION,
@@ -137,7 +137,7 @@ def _head(name: str, title: str, content: Json, parts: Parts, *, canonical: bool
 
 
 def _body(parts: Parts, without: tuple[str, ...]) -> Json:
-    """All fields of a scenario, and ``extends``."""
+    """Return all fields of a scenario, and ``extends``."""
     body = parts.root(without=without)
     return {**body, "properties": {"extends": _EXTENDS, **body["properties"]}}
 
@@ -147,7 +147,7 @@ def _override(parts: Parts) -> Json:
 
 
 def _map_of(member: Json, name: str = "^[^.]+$") -> Json:
-    """A map of named members; what dotted names in it lead to is left to ``validate``."""
+    """Return a map of named members; targets of dotted names are left to ``validate``."""
     return {
         "type": "object",
         "patternProperties": {name: member, _DOTTED: True},
@@ -156,7 +156,7 @@ def _map_of(member: Json, name: str = "^[^.]+$") -> Json:
 
 
 def _if_plain(then: Json) -> Json:
-    """What holds where neither ``extends`` nor a dotted key may supply the rest."""
+    """Return a rule that applies if neither ``extends`` nor a dotted key may supply the rest."""
     plain = {"not": {"required": ["extends"]}, "propertyNames": {"pattern": "^[^.]*$"}}
     return {"if": plain, "then": then}
 

@@ -1,8 +1,8 @@
-"""The parts that schemas are made of: pydantic's JSON Schema, opened for people who write.
+"""Parts of schemas: pydantic's JSON Schema, adapted to hand-written documents.
 
-pydantic describes complete documents. Here every map of fields becomes partial, learns dotted
-keys (``flow.density``, by pattern), and a place that takes one of several components asks for
-``kind`` first, so that an editor offers the fields of that kind alone.
+pydantic describes complete documents. Here every map of fields becomes partial and accepts dotted
+keys (``flow.density``, by pattern), and a place for one of several components requires ``kind``
+first, so that an editor offers only the fields of that kind.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ Json = dict[str, Any]
 
 _REF = "#/$defs/"
 _NULL: Json = {"type": "null"}
-#: The scenario's field that no document writes there; its abstract type is of no use.
+#: The scenario's field that no document writes there; its abstract type is useless.
 _ELSEWHERE = "references"
 
 
 class Parts:
-    """Definitions made from models.
+    """Definitions built from models.
 
     Args:
         models: the first one is the root.
         canonical: numbers only, every field required.
-        layered: documents are laid over each other, so that fields may be missing, removed by
-            ``null`` or written with dots.
+        layered: documents are merged, so fields may be missing, removed by ``null`` or written with
+            dots.
     """
 
     def __init__(
@@ -49,29 +49,29 @@ class Parts:
         self._unions: dict[tuple[str, ...], str] = {}
 
     def root(self, without: Sequence[str]) -> Json:
-        """The first root's fields, some left out."""
+        """Return the first root's fields, without some."""
         raw = self._raw[self._roots[0]]
         fields = {k: v for k, v in raw["properties"].items() if k not in without}
         return self._model({**raw, "properties": fields})
 
     def union(self) -> Json:
-        """A document that is one of the roots, told apart by ``kind``."""
+        """Return a document that is one of the roots, distinguished by ``kind``."""
         return self.one_of(self._roots)
 
     def outer(self, model: type[BaseModel]) -> Json:
-        """A document's outermost fields with ``required`` as the model has it."""
+        """Return a document's outermost fields with the model's ``required``."""
         raw = _without_titles(model.model_json_schema())
         self._raw |= raw.pop("$defs", {})
         made = {k: self._place(v, k) for k, v in raw["properties"].items()}
         return {**raw, "properties": made}
 
     def named(self, name: str, schema: Json) -> Json:
-        """A reference to a definition that is written once."""
+        """Return a reference to a definition that is written once."""
         self._made[name] = schema
         return {"$ref": _REF + name}
 
     def used_by(self, content: Json) -> Json:
-        """The definitions that a schema needs, directly or not, sorted by name."""
+        """Return the definitions that a schema needs, directly or not, sorted by name."""
         found: Json = {}
         waiting = list(_refs(content))
         while waiting:
@@ -82,7 +82,7 @@ class Parts:
         return dict(sorted(found.items()))
 
     def one_of(self, names: Sequence[str]) -> Json:
-        """A component of one of several kinds, told apart by ``kind``."""
+        """Return a component of one of several kinds, distinguished by ``kind``."""
         kinds = {self._kind(n): n for n in names}
         words = [
             {"const": k, "description": self._raw[n].get("description", "")}
@@ -110,14 +110,14 @@ class Parts:
         return made
 
     def _model(self, raw: Json) -> Json:
-        """A map of fields as it is written."""
+        """Return the schema of a map of fields as written."""
         if "properties" not in raw:
             return raw
         made = {k: v for k, v in raw.items() if k not in ("required", "short", "left_out")}
         fields = raw["properties"]
         places = {k: self._place(v, k) for k, v in fields.items()}
         if not self._layered:
-            always = sorted(set(fields) - set(raw.get("left_out", ())))  # those while as usual
+            always = sorted(set(fields) - set(raw.get("left_out", ())))  # omitted while default
             required = always if self._canonical else raw.get("required", [])
             return {**made, "properties": places, "required": required}
         kept = "kind" if "const" in fields.get("kind", {}) else None
@@ -127,7 +127,7 @@ class Parts:
         return {**made, "properties": places, **patterns}
 
     def _place(self, raw: Json, name: str) -> Json:
-        """The schema of a field's value."""
+        """Return the schema of a field's value."""
         extra = {k: v for k, v in raw.items() if k in ("description", "default")}
         names = self._components(raw)
         if names:
@@ -145,7 +145,7 @@ class Parts:
         return raw
 
     def _union(self, names: tuple[str, ...], field: str) -> Json:
-        """A reference to one definition for each set of components, named after a field."""
+        """Return a reference to one definition per set of components, named after a field."""
         if names not in self._unions:
             others = (f"{field}{i}" for i in count(2))
             free = next(n for n in chain([field], others) if n not in self._made)
@@ -154,7 +154,7 @@ class Parts:
         return {"$ref": _REF + self._unions[names]}
 
     def _with_short_form(self, name: str) -> Json:
-        """A part; or, where it has a short form, the one field that is enough."""
+        """Return a part, or the single sufficient field if there is a short form."""
         field = self._raw[name].get("short")
         if field is None or self._canonical:
             return {"$ref": _REF + name}
@@ -162,7 +162,7 @@ class Parts:
         return {"anyOf": [*short.get("anyOf", [short]), whole]}
 
     def _map(self, raw: Json, name: str) -> Json:
-        """Named members; a dotted key leads into one of them."""
+        """Return the schema of named members; a dotted key leads into one of them."""
         member = self._place(raw["additionalProperties"], name)
         made = {k: v for k, v in raw.items() if k != "additionalProperties"}
         if not self._layered:
@@ -173,13 +173,13 @@ class Parts:
 
     # ------------------------------------------------------------------- dotted keys
     def _paths(self, fields: Json) -> Iterator[tuple[str, Json]]:
-        """Pattern and schema of every dotted key into some fields."""
+        """Yield pattern and schema of every dotted key into some fields."""
         for name, raw in fields.items():
             for path, schema in self._below(raw, name):
                 yield f"^{name}\\.{path}$", schema
 
     def _below(self, raw: Json, name: str) -> Iterator[tuple[str, Json]]:
-        """Paths below a value, as patterns without anchors."""
+        """Yield paths below a value, as patterns without anchors."""
         models = self._components(raw) or self._models(raw)
         fields = list(dict.fromkeys(f for m in models for f in self._raw[m]["properties"]))
         for field in fields:
@@ -198,13 +198,13 @@ class Parts:
                 yield f"[^.]+\\.{path}", schema
 
     def _components(self, raw: Json) -> list[str]:
-        """Definitions of the components that a place takes; none for another place."""
+        """Return the definitions of components allowed at a place; empty elsewhere."""
         listed = raw.get("oneOf", [raw])
         names = [_short(one["$ref"]) for one in listed if "$ref" in one]
         return [n for n in names if "const" in self._raw[n].get("properties", {}).get("kind", {})]
 
     def _models(self, raw: Json) -> list[str]:
-        """Definitions of plain maps of fields that a place takes."""
+        """Return the definitions of plain maps of fields allowed at a place."""
         names = [_short(one["$ref"]) for one in raw.get("anyOf", [raw]) if "$ref" in one]
         return [n for n in names if "properties" in self._raw[n]]
 
@@ -217,12 +217,12 @@ class Parts:
 
 
 def described(schema: Json) -> Json:
-    """A copy without the double backticks of docstrings."""
+    """Return a copy without the double backticks of docstrings."""
     return json.loads(json.dumps(schema).replace("``", "`"))  # type: ignore[no-any-return]
 
 
 def _or_null(schema: Json) -> Json:
-    """A value, or ``null``, which goes back to the default."""
+    """Return a value or ``null``, which restores the default."""
     if "$ref" in schema:
         rest = {k: v for k, v in schema.items() if k != "$ref"}
         return {**rest, "anyOf": [{"$ref": schema["$ref"]}, _NULL]}
@@ -249,7 +249,7 @@ def _short(reference: str) -> str:
 
 
 def _refs(schema: Any) -> Iterator[str]:
-    """Names of the definitions that a schema refers to."""
+    """Yield the names of the definitions that a schema refers to."""
     if isinstance(schema, dict):
         for key, value in schema.items():
             if key == "$ref" and isinstance(value, str):
@@ -262,7 +262,7 @@ def _refs(schema: Any) -> Iterator[str]:
 
 
 def _without_titles(schema: Any, *, names: bool = False) -> Any:
-    """A copy without the titles that pydantic makes of names; ``names``: keys are names."""
+    """Return a copy without pydantic's titles; ``names``: keys are names."""
     if isinstance(schema, list):
         return [_without_titles(item) for item in schema]
     if not isinstance(schema, dict):
@@ -275,7 +275,7 @@ def _without_titles(schema: Any, *, names: bool = False) -> Any:
 
 
 def _short_names(defs: Json, roots: Sequence[str]) -> dict[str, str]:
-    """Definition -> class name, for those in use; the long name where two classes share one."""
+    """Return definition -> class name, if used; the long name if two classes share one."""
     used, waiting = set[str](), list(roots)
     while waiting:
         name = waiting.pop()
@@ -288,7 +288,7 @@ def _short_names(defs: Json, roots: Sequence[str]) -> dict[str, str]:
 
 
 def _renamed(schema: Any, names: dict[str, str]) -> Any:
-    """The definitions that have a name, under that name."""
+    """Return the definitions with new names."""
     text = json.dumps({new: schema[old] for old, new in sorted(names.items())})
     reference = re.compile(rf'"{re.escape(_REF)}([^"]+)"')
     renamed = reference.sub(lambda m: f'"{_REF}{names.get(m[1], m[1])}"', text)

@@ -1,4 +1,4 @@
-"""Areas of the floor that may be turned, for starts and for goals."""
+"""Rotatable areas of the floor, for starts and goals."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from crowdbot.dsl.spec.quantities import Angle, Length, PositiveLength
 from crowdbot.dsl.spec.spec import Rectangle, Spec
 from crowdbot.dsl.spec.unions import AnyOf
 
-#: Places at which room is looked for are so far apart, m, and at most so many along each side.
+#: Spacing of positions that are tried, m, and their largest number along each side.
 _APART, _MOST_PLACES = 0.2, 100
 
 
 class Area(Spec):
-    """A rectangle of the floor that may be turned, world frame."""
+    """A rectangle of the floor, optionally rotated, world frame."""
 
     centre: tuple[Length, Length] = Field(strict=False, description="x and y of its middle, m.")
     size: tuple[PositiveLength, PositiveLength] = Field(
@@ -28,30 +28,30 @@ class Area(Spec):
 
     @classmethod
     def of(cls, box: Rectangle) -> Area:
-        """A zone as an area."""
+        """Return a zone as an area."""
         (x0, x1), (y0, y1) = box.x, box.y
         return cls(centre=(0.5 * (x0 + x1), 0.5 * (y0 + y1)), size=(x1 - x0, y1 - y0))
 
     def point(self, u: float, v: float) -> tuple[float, float]:
-        """World coordinates of a point in the area's own frame, from its middle; m."""
+        """Return world coordinates of a point in the area's frame, from its centre; m."""
         cos, sin = math.cos(self.rotation), math.sin(self.rotation)
         return self.centre[0] + cos * u - sin * v, self.centre[1] + sin * u + cos * v
 
     def own(self, x: float, y: float) -> tuple[float, float]:
-        """A point of the world in the area's own frame, from its middle; m."""
+        """Return a world point in the area's frame, from its centre; m."""
         cos, sin = math.cos(self.rotation), math.sin(self.rotation)
         dx, dy = x - self.centre[0], y - self.centre[1]
         return cos * dx + sin * dy, cos * dy - sin * dx
 
     def distance(self, x: float, y: float) -> float:
-        """From a point of the world to the area, m; 0 inside."""
+        """Return the distance from a world point to the area, m; 0 inside."""
         u, v = self.own(x, y)
         out = (max(abs(w) - 0.5 * s, 0.0) for w, s in zip((u, v), self.size, strict=True))
         return math.hypot(*out)
 
     @property
     def corners(self) -> tuple[tuple[float, float], ...]:
-        """The corners, counter-clockwise, m."""
+        """Return the corners, counter-clockwise, m."""
         return _corners(*self.centre, *self.size, self.rotation)
 
 
@@ -65,7 +65,7 @@ def _corners(
 
 
 def places_in(area: Area, radius: float) -> Iterator[tuple[float, float]]:
-    """Places all over an area at which a body can be told to come in, 20 cm apart up to 20 m; m."""
+    """Yield positions all over an area where a body can enter, 20 cm apart up to 20 m; m."""
     half = [max(0.0, 0.5 * side - radius) for side in area.size]
     counts = [min(_MOST_PLACES, math.ceil(2.0 * h / _APART)) for h in half]
     for i in range(counts[0] + 1):
@@ -79,7 +79,7 @@ def _place_tag(value: Any) -> str:
     return "<area>" if isinstance(value, dict | Area) else "<zone>"
 
 
-#: The name of a zone, or a rectangle that may be turned.
+#: The name of a zone, or a rectangle, optionally rotated.
 Place = Annotated[
     Annotated[str, Tag("<zone>")] | Annotated[Area, Tag("<area>")],
     Discriminator(_place_tag),
@@ -88,7 +88,7 @@ Place = Annotated[
 
 
 class GoalArea(Spec):
-    """An area in which goals are drawn, evenly."""
+    """An area in which goals are drawn uniformly."""
 
     area: Place = Field(description="Name of a zone, or an area written here.")
     next: tuple[str, ...] = Field(

@@ -1,8 +1,8 @@
 """Files that components read, such as a record of people.
 
 A document names a file by a path, as in ``extends``. The path from the top-level document and the
-SHA-256 of the content are part of the scenario and of its hash; where the file lies on this
-machine is not.
+SHA-256 of the content are part of the scenario and of its hash; the file's location on this machine
+is not.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MAX_BYTES = 1 << 30
 
 
 class Asset(Spec):
-    """A file that a component reads. A bare path is short for it."""
+    """A file that a component reads. A bare path is its short form."""
 
     model_config = ConfigDict(json_schema_extra={"short": "path"})
 
@@ -42,7 +42,7 @@ class Asset(Spec):
         return {"path": value} if isinstance(value, str | int | float) else value
 
     def __eq__(self, other: object) -> bool:
-        """Equal in what is written; where the file lies does not count."""
+        """Return True if the written content is equal; the file's location is ignored."""
         return isinstance(other, Asset) and self.__dict__ == other.__dict__
 
     def __hash__(self) -> int:
@@ -50,14 +50,14 @@ class Asset(Spec):
 
     @property
     def is_found(self) -> bool:
-        """Whether a document said where the file lies."""
+        """Return True if the file's location is known."""
         return self._file is not None
 
     @property
     def file(self) -> Path:
-        """The file, unchanged since the document was read.
+        """Return the file, unchanged since the document was read.
 
-        Without a document the path is taken from the working directory.
+        Without a document the path is relative to the working directory.
 
         Raises:
             InputError: it cannot be read, or has another content.
@@ -73,12 +73,12 @@ class Asset(Spec):
 
     @classmethod
     def at(cls, file: Path, path: str, sha256: str) -> Asset:
-        """A file that was found.
+        """Return an asset for a file that was found.
 
         Args:
-            file: where it lies on this machine.
-            path: by which the top-level document names it.
-            sha256: of its content.
+            file: its location on this machine.
+            path: path in the top-level document.
+            sha256: hash of its content.
         """
         found = cls(path=path, sha256=sha256)
         found._file = file
@@ -86,7 +86,7 @@ class Asset(Spec):
 
 
 def sha256_of(file: Path) -> str:
-    """SHA-256 of a file's content, in hexadecimal digits.
+    """Return the SHA-256 of a file's content, in hexadecimal digits.
 
     Raises:
         OSError: it cannot be read, is not a plain file or larger than 1 GiB.

@@ -1,8 +1,8 @@
-"""How stiff the regions of a human body are: names for a stiffness.
+"""Names for the stiffness of the human body's regions.
 
-The values are the effective spring constants of the body model of ISO/TS 15066:2016, annex A,
-table A.3, which go back to BG/BGIA recommendations U 001/2009. The standard itself is not free;
-docs/reference/robots_and_sensors.md says where its numbers were read.
+The values are the effective spring constants of the body model of ISO/TS 15066:2016, annex A, table
+A.3, based on BG/BGIA recommendations U 001/2009. They were not checked against the standard, which
+is not free; sources: docs/reference/robots_and_sensors.md.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ STIFFNESS = {
 
 
 class BodyRegion:
-    """Annotation that makes a stiffness accept the name of a body region for its value."""
+    """Annotation that lets a stiffness accept the name of a body region."""
 
     def __get_pydantic_core_schema__(
         self, source: type[Any], handler: GetCoreSchemaHandler
@@ -47,7 +47,7 @@ class BodyRegion:
 
     @staticmethod
     def parse(value: object) -> object:
-        """The stiffness of a region (N/m); what is not a bare word is left alone.
+        """Return the stiffness of a region (N/m); other values are unchanged.
 
         Raises:
             PydanticCustomError: ``quantity``, the word is not a region.

@@ -18,7 +18,7 @@ S_co = TypeVar("S_co", bound=ComponentSpec, covariant=True)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Component(Generic[S_co]):
-    """What a plugin provides: a spec, the name of its build function, a summary.
+    """A plugin's component: a spec, the name of its build function, a summary.
 
     Attributes:
         spec: pydantic model whose ``kind`` is a Literal, e.g. ``Literal["acme.swarm"]``.
@@ -26,11 +26,11 @@ class Component(Generic[S_co]):
         summary: one line, shown by ``crowdbot plugins``.
         spec_version: raised when the meaning of a field changes.
         examples: valid documents without ``kind``, fed to docs and conformance checks.
-        experimental: whether its meaning may still change; such metrics are scored on request.
-        successor: what replaced this kind, which is retired: naming it is an error that says so.
-        card: what a metric's numbers mean; Markdown, or ``"package:folder/name.md"``, a file of
-            a package. Default: ``cards/NAME.md`` beside the spec's module, where NAME is the kind
-            without the plugin's name. A metric without a card is refused.
+        experimental: True if its meaning may still change; such metrics are scored on request.
+        successor: replacement of this retired kind, named in the error for using it.
+        card: explanation of a metric's numbers; Markdown, or ``"package:folder/name.md"``, a file
+            of a package. Default: ``cards/NAME.md`` beside the spec's module, where NAME is the
+            kind without the plugin's name. A metric without a card is refused.
         exceptions: conformance check -> why this component cannot pass it; then it must fail.
     """
 
@@ -46,25 +46,25 @@ class Component(Generic[S_co]):
 
     @property
     def kind(self) -> str:
-        """The component's name in YAML."""
+        """Return the component's name in YAML."""
         (kind,) = self.spec.model_fields["kind"].annotation.__args__  # type: ignore[union-attr]
         return str(kind)
 
     @property
     def category(self) -> str:
-        """What can be plugged: environment, robot, sensor and so on."""
+        """Return the category: environment, robot, sensor and so on."""
         return self.spec.category
 
     @property
     def card_place(self) -> str:
-        """Where the card is: ``package:path``; empty where it is the Markdown itself."""
+        """Return the card's location: ``package:path``; empty if it is the Markdown itself."""
         if self.card:
             return "" if any(c.isspace() for c in self.card) else self.card
         package = getattr(sys.modules.get(self.spec.__module__), "__package__", None)
         return f"{package}:cards/{self.kind.rpartition('.')[2]}.md" if package else ""
 
     def has_card(self) -> bool:
-        """Whether there is a card; costs one look at the file system."""
+        """Return True if there is a card; requires one file system access."""
         if not self.card_place:
             return bool(self.card)
         try:
@@ -73,7 +73,7 @@ class Component(Generic[S_co]):
             return False
 
     def read_card(self) -> str:
-        """The card as Markdown.
+        """Return the card as Markdown.
 
         Raises:
             PluginError: there is none, or it cannot be read.

@@ -14,14 +14,13 @@ if TYPE_CHECKING:
     from crowdbot.dsl.spec.place import Place
 
 
-#: What a planner is there for. ``floor``: every planner worth the name beats it; ``ceiling``: it
-#: knows more than any other may; ``baseline``: an honest one to measure against; ``candidate``:
-#: all others.
+#: Role of a planner. ``floor``: any useful planner beats it; ``ceiling``: it has privileged
+#: information; ``baseline``: a fair reference; ``candidate``: all others.
 PlannerRole = Literal["floor", "baseline", "ceiling", "candidate"]
 
 
 class FloorContact(Spec):
-    """How wheels grip the floor. It is level: ramps do not exist."""
+    """Grip of wheels on the floor, which is level: there are no ramps."""
 
     friction: float = Field(
         default=1.0,
@@ -32,7 +31,10 @@ class FloorContact(Spec):
 
 
 class EnvironmentSpec(ComponentSpec):
-    """Abstract: a place. Its spec has zones and portals; its walls come from the build function."""
+    """Abstract environment.
+
+    Its spec has zones and portals; its walls come from the build function.
+    """
 
     category: ClassVar[str] = "environment"
     zones: dict[str, Rectangle] = Field(default={}, description="Named areas of the floor.")
@@ -47,33 +49,33 @@ class EnvironmentSpec(ComponentSpec):
     )
 
     def place(self) -> Place | None:
-        """What it is made of, if its spec can tell; then documents are checked against it.
+        """Return its parts, if its spec knows them; then documents are checked against them.
 
         Raises:
-            InputError: a file that it is made of cannot be read.
+            InputError: a file of the environment cannot be read.
         """
         return None
 
     @property
     def periodic_floor(self) -> Rectangle | None:
-        """The floor, if people who leave it on one side come in again on the other."""
+        """Return the floor, if people who leave it on one side enter again on the other."""
         return None
 
     def extent(self) -> Rectangle | None:
-        """The box around it where its zones do not say; None where they do.
+        """Return its box if its zones do not give it, else None.
 
         Raises:
-            InputError: as of `place`.
+            InputError: as in `place`.
         """
         return None
 
 
 class RobotSpec(ComponentSpec):
-    """Abstract: a robot's body, drive and limits."""
+    """Abstract robot: body, drive and limits."""
 
     category: ClassVar[str] = "robot"
-    #: Control modes that fit the drive; the first is the default. A holonomic robot says
-    #: ``("force", "kinematic")``.
+    #: Supported control modes; the first is the default. For a holonomic robot ``("force",
+    #: "kinematic")``.
     controls: ClassVar[tuple[str, ...]] = ("differential_drive", "force", "kinematic")
     #: Radius and track of the wheels, m, that wheel odometry computes with where its spec leaves
     #: them open; None: those of the drive, once the robot is built.
@@ -81,14 +83,14 @@ class RobotSpec(ComponentSpec):
 
 
 class SensorSpec(ComponentSpec):
-    """Abstract: one sensor on a robot."""
+    """Abstract sensor on a robot."""
 
     category: ClassVar[str] = "sensor"
 
     @model_validator(mode="before")
     @classmethod
     def _rest_of_the_mount(cls, data: Any) -> Any:
-        """A mount that says some of its numbers keeps the sensor's own defaults for the others."""
+        """Fill missing numbers of a mount from the sensor's defaults."""
         field = cls.model_fields.get("mount")
         if not isinstance(data, Mapping) or field is None or not isinstance(field.default, Spec):
             return data
@@ -109,39 +111,39 @@ class SensorSpec(ComponentSpec):
 
 
 class NoiseSpec(ComponentSpec):
-    """Abstract: one error in the readings of a sensor."""
+    """Abstract noise: one error in the readings of a sensor."""
 
     category: ClassVar[str] = "noise"
 
 
 class PlannerSpec(ComponentSpec):
-    """Abstract: the thing under test. Never part of a scenario."""
+    """Abstract planner, the thing under test; never part of a scenario."""
 
     category: ClassVar[str] = "planner"
     role: ClassVar[PlannerRole] = "candidate"
 
 
 class CrowdPolicySpec(ComponentSpec):
-    """Abstract: how people decide where to walk."""
+    """Abstract crowd policy: decides where people walk."""
 
     category: ClassVar[str] = "crowd policy"
-    #: Whether the policy is nothing without cost functions.
+    #: True if the policy requires cost functions.
     needs_costs: ClassVar[bool] = False
 
     @property
     def record(self) -> Asset | None:
-        """Recorded people who walk where the crowd names nobody; None without a record."""
+        """Return recorded people, used if the crowd names none; None without a record."""
         return None
 
 
 class CostFunctionSpec(ComponentSpec):
-    """Abstract: one cost over candidate velocities."""
+    """Abstract cost function over candidate velocities."""
 
     category: ClassVar[str] = "cost function"
 
 
 class MetricSpec(ComponentSpec):
-    """Abstract: one metric and its parameters."""
+    """Abstract metric with its parameters."""
 
     category: ClassVar[str] = "metric"
 

@@ -1,4 +1,4 @@
-"""How a metric is declared: `declare_metric`, and the `MetricComponent` that it makes."""
+"""Declaration of metrics: `declare_metric`, and the resulting `MetricComponent`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.dsl.spec.metric_invariants import InvariantOptions, MetricInvarian
 from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.errors import PluginError, did_you_mean, nearest
 
-#: Which values are better; ``reference``: the nearer to the reference run's.
+#: Which values are better; ``reference``: those nearer to the reference run's.
 Better = Literal["higher", "lower", "reference", "none"]
 
 _S = TypeVar("_S", bound=MetricSpec)
@@ -21,11 +21,12 @@ _S = TypeVar("_S", bound=MetricSpec)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MetricVariant:
-    """One of the numbers that a metric gives: its unit, direction and invariants.
+    """One number of a metric: its unit, direction and invariants.
 
     Attributes:
-        rate_over: variant whose value it is a rate over, such as the way of contacts per way. Many
-            runs are then summed up as one: all contacts over all of the way. Empty: by the mean.
+        rate_over: variant by which the rate is divided, such as the distance for contacts per
+            distance. Many runs are then pooled: all contacts over the total distance. Empty: by the
+            mean.
     """
 
     unit: str
@@ -35,7 +36,7 @@ class MetricVariant:
 
 
 class VariantOptions(InvariantOptions, total=False):
-    """What one variant has different from its metric, as `declare_metric` takes it."""
+    """Differences of one variant from its metric, as arguments of `declare_metric`."""
 
     unit: str
     better: Better
@@ -44,14 +45,14 @@ class VariantOptions(InvariantOptions, total=False):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MetricComponent(Component[S_co]):
-    """A metric: a component, and what all its scores have in common; see `declare_metric`.
+    """A metric: a component, and properties shared by all its scores; see `declare_metric`.
 
     Attributes:
         symbol: short form of its name, such as ``T_nm``.
-        score_category: under which its scores are listed, such as ``motion``.
-        unit, better: of all variants that do not have others.
+        score_category: category of its scores, such as ``motion``.
+        unit, better: defaults for its variants.
         variants: name -> variant, in the order in which they are scored.
-        signals: names of the signals that it reads; the runs of the conformance kit have them.
+        signals: names of the signals that it reads; the conformance kit's runs contain them.
 
     Raises:
         PluginError: a text is empty, there is no variant, or no such direction.
@@ -105,21 +106,21 @@ def declare_metric(
     """Declare a metric; arguments with defaults may be left out.
 
     Args:
-        spec: its parameters; the first line of the docstring says what it measures.
+        spec: its parameters; the first line of the docstring describes the metric.
         symbol: short form of its name, such as ``T_nm``.
-        unit: of its values; ``"1"`` for a plain number.
+        unit: unit of its values; ``"1"`` for a plain number.
         better: which values are better.
-        category: under which its scores are listed, such as ``motion``.
-        variants: names of the variants in the order in which they are scored; or name -> what is
-            different there: ``unit``, ``better``, ``rate_over`` (see `MetricVariant`) and fields
-            of `MetricInvariants`.
+        category: category of its scores, such as ``motion``.
+        variants: names of the variants in the order in which they are scored; or name ->
+            differences: ``unit``, ``better``, ``rate_over`` (see `MetricVariant`) and fields of
+            `MetricInvariants`.
         signals: names of the signals that it reads.
         build: ``"package.module:function"``. Default: beside the spec; that of
             ``package.motion:SpeedSpec`` is ``package.motion_build:Speed``.
         summary: one line. Default: the symbol and the first line of the spec's docstring.
         spec_version, examples, experimental, successor, card, exceptions: as in
             `crowdbot.plugin.Component`.
-        invariants: fields of `MetricInvariants` that all variants have.
+        invariants: fields of `MetricInvariants` for all variants.
 
     Raises:
         PluginError: a text is empty, there is no variant, no such direction or option, or an
@@ -149,7 +150,7 @@ def declare_metric(
 def _by_name(
     spec: type[MetricSpec], variants: Sequence[str] | Mapping[str, VariantOptions]
 ) -> Mapping[str, VariantOptions]:
-    """Name -> what is different in this variant."""
+    """Return name -> differences of this variant."""
     if isinstance(variants, Mapping):
         return variants
     if isinstance(variants, str):
@@ -180,7 +181,7 @@ def _variant(spec: type[MetricSpec], name: str, options: VariantOptions) -> Metr
 
 
 def _summary(spec: type[MetricSpec], symbol: str) -> str:
-    """The symbol, and the first line of the docstring as a part of a sentence."""
+    """Return the symbol, and the first line of the docstring as part of a sentence."""
     line = inspect.cleandoc(spec.__doc__ or "").partition("\n")[0].rstrip(".")
     starts_with_acronym = line[:2].isupper()
     text = line if starts_with_acronym else line[:1].lower() + line[1:]

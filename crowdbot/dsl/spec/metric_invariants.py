@@ -1,6 +1,6 @@
-"""MetricInvariants: what holds for every value of a metric; `crowdbot.testing` checks it.
+"""MetricInvariants: properties of every value of a metric, checked by `crowdbot.testing`.
 
-The defaults hold for any sound metric, so that only what differs is declared.
+The defaults hold for any sound metric, so only differences are declared.
 """
 
 from __future__ import annotations
@@ -12,32 +12,32 @@ from typing import Literal, TypedDict
 
 from crowdbot.errors import did_you_mean, nearest
 
-#: Changes of a run that leave what happens in it as it is.
+#: Transformations of a run that do not change its events.
 SYMMETRIES = ("translate", "rotate", "reflect", "shift_time", "permute")
-#: What `MetricInvariants.changes_with` may name.
+#: Names allowed in `MetricInvariants.changes_with`.
 CHANGES = (*SYMMETRIES, "teleport")
 
-#: One person more never lowers the value (``up``), never raises it (``down``), or either.
+#: An additional person never lowers the value (``up``), never raises it (``down``), or either.
 Monotony = Literal["up", "down", "free"]
-#: At twice the sampling rate the value stays, comes within 5 %, doubles, or does anything.
+#: At twice the sampling rate the value stays, stays within 5 %, doubles, or changes freely.
 Refinement = Literal["same", "near", "double", "free"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MetricInvariants:
-    """What holds for the values with status ``ok`` of one variant of a metric.
+    """Properties of the values with status ``ok`` of one variant of a metric.
 
     Attributes:
         minimum, maximum: bounds of the value, inclusive.
         integer: the value is a whole number.
         self_value: the value of a run that is its own reference; None: any.
-        more_people: one person more never lowers the value (``up``), never raises it (``down``),
-            or either (``free``).
+        more_people: an additional person never lowers the value (``up``), never raises it
+            (``down``), or either (``free``).
         refinement: the same straight motion sampled twice as often: the value stays the ``same``,
-            comes ``near`` (5 %), becomes ``double``, or does anything (``free``).
+            comes ``near`` (5 %), becomes ``double``, or changes freely (``free``).
         mass_exponent: all masses times c multiply the value by c to this power.
-        changes_with: name of a symmetry (`SYMMETRIES`), or ``teleport``, -> why it may change the
-            value.
+        changes_with: name of a symmetry (`SYMMETRIES`), or ``teleport``, -> reason why it may
+            change the value.
 
     Raises:
         ValueError: no value can satisfy them, or there is no such symmetry.
@@ -62,7 +62,7 @@ class MetricInvariants:
 
 
 class InvariantOptions(TypedDict, total=False):
-    """Some fields of `MetricInvariants`, as `declare_metric` takes them."""
+    """Some fields of `MetricInvariants`, as arguments of `declare_metric`."""
 
     minimum: float
     maximum: float

@@ -1,6 +1,6 @@
-"""Outlines: closed polygons of the floor as tuples of points, without a numbers library.
+"""Outlines: closed polygons as tuples of points, without a numerical library.
 
-An outline is simple if no two of its sides meet but neighbours in their corner.
+An outline is simple if its sides meet only in the corners of neighbours.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ Side = tuple[Point, Point]
 
 
 def sides(outline: Sequence[Point]) -> Iterator[Side]:
-    """The sides in turn, the last back to the first corner."""
+    """Yield the sides in order, the last one back to the first corner."""
     yield from pairwise((*outline, outline[0]))
 
 
 def signed_area(outline: Sequence[Point]) -> float:
-    """Above 0 for an outline that runs counter-clockwise, m^2."""
+    """Return the signed area, positive for counter-clockwise outlines, m^2."""
     x0, y0 = outline[0]  # near zero, where floats are finest
     return 0.5 * sum(
         (ax - x0) * (by - y0) - (bx - x0) * (ay - y0) for (ax, ay), (bx, by) in sides(outline)
@@ -28,17 +28,17 @@ def signed_area(outline: Sequence[Point]) -> float:
 
 
 def counter_clockwise(outline: Sequence[Point]) -> Outline:
-    """The same outline, counter-clockwise."""
+    """Return the same outline, counter-clockwise."""
     return tuple(outline) if signed_area(outline) > 0.0 else tuple(outline)[::-1]
 
 
 def turn(a: Point, b: Point, c: Point) -> float:
-    """Above 0 for a turn to the left at b, m^2."""
+    """Return a positive number for a left turn at b, m^2."""
     return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
 
 
 def is_convex(outline: Sequence[Point]) -> bool:
-    """Whether a simple, counter-clockwise outline nowhere turns to the right."""
+    """Return True if a simple, counter-clockwise outline never turns right."""
     count = len(outline)
     return all(
         turn(outline[i - 1], outline[i], outline[(i + 1) % count]) >= 0.0 for i in range(count)
@@ -46,7 +46,7 @@ def is_convex(outline: Sequence[Point]) -> bool:
 
 
 def contains(outline: Sequence[Point], x: float, y: float) -> bool:
-    """Whether a point lies inside; on the border it may be either. Even-odd rule."""
+    """Return True if a point lies inside; undefined on the border. Even-odd rule."""
     odd = False
     for (ax, ay), (bx, by) in sides(outline):
         if (ay > y) != (by > y) and x < ax + (y - ay) * (bx - ax) / (by - ay):
@@ -55,7 +55,7 @@ def contains(outline: Sequence[Point], x: float, y: float) -> bool:
 
 
 def distance_to_side(x: float, y: float, side: Side) -> float:
-    """Distance from a point to a segment, m."""
+    """Return the distance from a point to a segment, m."""
     (ax, ay), (bx, by) = side
     ex, ey = bx - ax, by - ay
     square = ex * ex + ey * ey
@@ -65,7 +65,7 @@ def distance_to_side(x: float, y: float, side: Side) -> float:
 
 
 def distance_between(one: Side, other: Side) -> float:
-    """Distance between two segments, m; 0 where they have a point in common."""
+    """Return the distance between two segments, m; 0 if they share a point."""
     if touch(one, other):
         return 0.0
     ends = ((one, other), (other, one))
@@ -73,8 +73,8 @@ def distance_between(one: Side, other: Side) -> float:
 
 
 def along(line: Sequence[Point], gap: float) -> Iterator[Point]:
-    """Places on a line of straight pieces, so far from each other, from its beginning."""
-    behind = 0.0  # what of the gap lies before the piece
+    """Yield positions at a fixed spacing along a polyline, from its start."""
+    behind = 0.0  # part of the gap before this segment
     for (x0, y0), (x1, y1) in pairwise(line):
         length = math.hypot(x1 - x0, y1 - y0)
         at = behind
@@ -86,9 +86,9 @@ def along(line: Sequence[Point], gap: float) -> Iterator[Point]:
 
 
 def first_crossing(outline: Sequence[Point]) -> tuple[int, int] | None:
-    """Numbers of two sides that meet where they must not; None for a simple outline.
+    """Return the indices of two sides that intersect; None for a simple outline.
 
-    Sides are looked at from left to right, so that long outlines take little time.
+    Sides are processed from left to right, so that long outlines take little time.
     """
     listed = list(sides(outline))
     order = sorted(range(len(listed)), key=lambda k: min(listed[k][0][0], listed[k][1][0]))
@@ -104,18 +104,18 @@ def first_crossing(outline: Sequence[Point]) -> tuple[int, int] | None:
 
 
 def _clash(listed: Sequence[Side], j: int, k: int) -> bool:
-    """Whether two sides meet in more than the corner between neighbours."""
+    """Return True if two sides meet in more than a shared corner."""
     count = len(listed)
     if (j + 1) % count == k or (k + 1) % count == j:
         first, second = (j, k) if (j + 1) % count == k else (k, j)
         (a, b), (_, c) = listed[first], listed[second]
         back = (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]) > 0.0
-        return back and turn(a, b, c) == 0.0  # straight back over the side before
+        return back and turn(a, b, c) == 0.0  # straight back over the previous side
     return touch(listed[j], listed[k])
 
 
 def touch(one: Side, other: Side) -> bool:
-    """Whether two segments have a point in common."""
+    """Return True if two segments share a point."""
     (a, b), (c, d) = one, other
     if max(a[0], b[0]) < min(c[0], d[0]) or max(c[0], d[0]) < min(a[0], b[0]):
         return False

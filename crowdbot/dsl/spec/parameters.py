@@ -1,4 +1,4 @@
-"""Parameters that each agent draws for itself."""
+"""Parameters that each agent samples for itself."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from crowdbot.dsl.spec.unions import AnyOf
 
 
 class Sample(Spec):
-    """A number that each agent draws: even between value - spread and value + spread.
+    """A number that each agent samples uniformly between value - spread and value + spread.
 
-    A bare number is short for one without spread.
+    A bare number is the short form without spread.
     """
 
     model_config = ConfigDict(json_schema_extra={"short": "value"})
@@ -47,21 +47,21 @@ class Sample(Spec):
 
 
 class LengthSample(Sample):
-    """A length, m; each agent draws evenly between value - spread and value + spread."""
+    """A length, m; each agent samples uniformly between value - spread and value + spread."""
 
     value: PositiveLength = Field(description="Middle, m.")
     spread: NonNegativeLength = Field(default=0.0, description="Largest difference from it, m.")
 
 
 class SpeedSample(Sample):
-    """A speed, m/s; each agent draws evenly between value - spread and value + spread."""
+    """A speed, m/s; each agent samples uniformly between value - spread and value + spread."""
 
     value: PositiveSpeed = Field(description="Middle, m/s.")
     spread: NonNegativeSpeed = Field(default=0.0, description="Largest difference from it, m/s.")
 
 
 class AccelerationSample(Sample):
-    """An acceleration, m/s^2; each agent draws evenly between value - spread and value + spread."""
+    """An acceleration, m/s^2; sampled uniformly between value - spread and value + spread."""
 
     value: PositiveAcceleration = Field(description="Middle, m/s^2.")
     spread: Annotated[float, Ge(0), Quantity("acceleration")] = Field(
@@ -70,7 +70,7 @@ class AccelerationSample(Sample):
 
 
 class MassSample(Sample):
-    """A mass, kg; each agent draws evenly between value - spread and value + spread."""
+    """A mass, kg; each agent samples uniformly between value - spread and value + spread."""
 
     value: PositiveMass = Field(description="Middle, kg.")
     spread: Annotated[float, Ge(0), Quantity("mass")] = Field(
@@ -79,7 +79,7 @@ class MassSample(Sample):
 
 
 class DurationSample(Sample):
-    """A duration, s; each agent draws evenly between value - spread and value + spread."""
+    """A duration, s; each agent samples uniformly between value - spread and value + spread."""
 
     may_be_zero: ClassVar[bool] = True
     value: NonNegativeDuration = Field(description="Middle, s.")
@@ -100,7 +100,7 @@ def _speed_tag(value: Any) -> str:
     return "<normal>" if normal else "<uniform>"
 
 
-#: Preferred speeds: normal, or even around a value.
+#: Preferred speeds: normal, or uniform around a value.
 SpeedChoice = Annotated[
     Annotated[SpeedSample, Tag("<uniform>")] | Annotated[SpeedDistribution, Tag("<normal>")],
     Discriminator(_speed_tag),

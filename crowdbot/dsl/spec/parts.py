@@ -1,4 +1,4 @@
-"""Specs that hold other specs: from an abstract one to those that are installed."""
+"""Specs that contain other specs: narrow abstract ones to installed ones."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from crowdbot.dsl.spec.spec import ComponentSpec
 
 
 def parts_category(spec: type[ComponentSpec]) -> str:
-    """The category of a spec's parts; empty where it has none.
+    """Return the category of a spec's parts; empty if it has none.
 
     Raises:
-        TypeError: its field of parts does not exist, or does not hold specs of one category.
+        TypeError: its field of parts does not exist, or does not contain specs of one category.
     """
     if not spec.parts_field:
         return ""
@@ -31,7 +31,7 @@ def parts_category(spec: type[ComponentSpec]) -> str:
 
 
 def narrowed(field: FieldInfo, member: Any) -> Any:
-    """The annotation of a field of parts, with another type for the abstract one."""
+    """Return the annotation of a field of parts, with another type for the abstract one."""
     metadata = [
         replace(m, json_schema_input_type=_narrowed(m.json_schema_input_type, member))
         if isinstance(m, BeforeValidator)
@@ -49,7 +49,7 @@ def _abstract_specs(annotation: Any) -> list[type[ComponentSpec]]:
 
 
 def _narrowed(annotation: Any, member: Any) -> Any:
-    """The annotation, with ``member`` wherever an abstract spec stands, described or bare."""
+    """Return the annotation with ``member`` in place of each abstract spec."""
     if not _abstract_specs(annotation):
         return annotation
     origin, args = get_origin(annotation), get_args(annotation)

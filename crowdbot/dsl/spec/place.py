@@ -1,8 +1,8 @@
-"""Place: what an environment is made of, in plain numbers; world frame, m.
+"""Place: the geometry of an environment, in plain numbers; world frame, m.
 
-Specs say what their place is made of, so that documents can be checked before anything is built.
-`crowdbot.core.environments.place_parts` makes the arrays of it that plant, sensors, crowd, routes,
-drawings and scores read.
+Specs give their place so that documents can be checked before anything is built.
+`crowdbot.core.environments.place_parts` converts it to arrays for plant, sensors, crowd, routes,
+drawings and scores.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ Heights = tuple[float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Face:
-    """A wall that is seen from one side: a line of points with the free side on its left.
+    """A one-sided wall: a polyline with the free side on its left.
 
     Attributes:
         points: two or more.
         heights: bottom and top.
-        stops_robot, stops_crowd: whom it stops.
+        stops_robot, stops_crowd: True if it stops the robot, or people.
     """
 
     points: tuple[Point, ...]
@@ -43,13 +43,13 @@ class Face:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solid:
-    """Something with an outline that stands, lies or hangs; the outline need not be convex.
+    """An obstacle with an outline that stands, lies or hangs; it need not be convex.
 
     Attributes:
-        outline: a simple polygon, in either sense.
+        outline: a simple polygon, in either orientation.
         holes: simple polygons within it, apart from each other.
         heights: bottom and top.
-        stops_crowd: False for what people step over, such as a kerb.
+        stops_crowd: False if people step over it, such as a kerb.
     """
 
     outline: Outline
@@ -59,14 +59,14 @@ class Solid:
 
     @property
     def rings(self) -> tuple[Outline, ...]:
-        """Outline and holes; the free side of each is on its left."""
+        """Return outline and holes; the free side of each is on its left."""
         outer = counter_clockwise(self.outline)[::-1]
         return (outer, *(counter_clockwise(hole) for hole in self.holes))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pillar:
-    """Something round that stands, lies or hangs."""
+    """A round obstacle that stands, lies or hangs."""
 
     x: float
     y: float
@@ -76,12 +76,12 @@ class Pillar:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Place:
-    """Everything that a place is made of; what is not filled is floor.
+    """The complete geometry of a place; everything that is not filled is floor.
 
-    Told apart by identity, so that what was found out about a place is remembered at no cost.
+    Compared by identity, so that results about a place can be cached cheaply.
 
     Attributes:
-        torus: x0, x1, y0, y1 of a floor whose opposite borders are one, m.
+        torus: x0, x1, y0, y1 of a floor with periodic boundaries, m.
     """
 
     faces: tuple[Face, ...] = ()
@@ -90,7 +90,7 @@ class Place:
     torus: tuple[float, float, float, float] | None = None
 
     def bodies(self, height: float) -> Place:
-        """What people of a height go around: it begins below their heads, and is not a step."""
+        """Return obstacles for people of a height: below their heads, and not steps."""
         return Place(
             faces=tuple(f for f in self.faces if f.stops_crowd and f.heights[0] < height),
             solids=tuple(s for s in self.solids if s.stops_crowd and s.heights[0] < height),
@@ -99,7 +99,7 @@ class Place:
         )
 
     def segments(self) -> Iterator[tuple[Point, Point]]:
-        """Sides of everything that is not round."""
+        """Yield the sides of everything that is not round."""
         for face in self.faces:
             yield from zip(face.points, face.points[1:], strict=False)
         for solid in self.solids:
@@ -107,7 +107,7 @@ class Place:
                 yield from sides(ring)
 
     def clearance(self, x: float, y: float) -> float:
-        """Distance from a point to the nearest surface, m; below 0 inside something."""
+        """Return the distance from a point to the nearest surface, m; negative inside."""
         gap = min((distance_to_side(x, y, side) for side in self.segments()), default=math.inf)
         inside = any(
             contains(s.outline, x, y) and not any(contains(hole, x, y) for hole in s.holes)
@@ -118,7 +118,7 @@ class Place:
         return min(gap, *round_, math.inf)
 
     def is_clear(self, start: Point, goal: Point, radius: float) -> bool:
-        """Whether a body of a radius (m) can walk straight from one point to another."""
+        """Return True if a body of a radius (m) can walk straight from one point to another."""
         way = (start, goal)
         if any(distance_between(way, side) < radius for side in self.segments()):
             return False

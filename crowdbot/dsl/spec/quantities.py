@@ -1,9 +1,9 @@
-"""Physical quantities: SI floats that also read ``"0.8 m/s"``.
+"""Physical quantities: SI floats that also accept ``"0.8 m/s"``.
 
 A bare number is in the SI unit of its dimension. Text is a decimal number and a unit of that
 dimension, with or without blanks between them (``30deg``; a unit that begins with a digit, like
-``1/m^2``, needs one). ``m/s²`` is ``m/s^2``, ``µs`` is ``us``, ``30°`` is ``30 deg``. Text
-without a unit is an error: whoever writes text wants to say a unit.
+``1/m^2``, needs one). ``m/s²`` is ``m/s^2``, ``µs`` is ``us``, ``30°`` is ``30 deg``. Text without
+a unit is an error: text implies a unit.
 
 The value is the float nearest to the exact product of number and factor, so that ``5 cm`` is
 0.05. In angles pi is the float ``math.pi``, so that ``30 deg`` is ``math.pi / 6`` to the last bit.
@@ -55,30 +55,30 @@ UNITS: dict[str, dict[str, Fraction]] = {
 
 _NUMBER = r"[+-]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _TEXT = re.compile(rf"({_NUMBER})( *)(.*)", re.DOTALL)
-#: Other ways to write a part of a unit.
+#: Other spellings of parts of a unit.
 _SPELLINGS = {"²": "^2", "µ": "u", "μ": "u", "°": "deg"}
-#: Longer numbers are nobody's measurement, and powers of ten beyond a float's cost memory.
+#: Largest number of digits; longer ones are not measurements, and huge powers of ten cost memory.
 _MAX_DIGITS, _MAX_EXPONENT = 100, 400
-#: Dimension -> largest amount, in SI units. Beyond, squares of lengths, which geometry is full of,
-#: leave a float no digits for people.
+#: Dimension -> largest amount, in SI units. Beyond it, squares of lengths, frequent in geometry,
+#: lose too many digits.
 MOST = {"length": 1e6}
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """Annotation that makes a float field accept text with a unit of one dimension."""
+    """Annotation that lets a float field accept text with a unit of one dimension."""
 
     dimension: str
-    #: The largest amount, in SI units; None: as `MOST` says.
+    #: Largest amount, in SI units; None: as in `MOST`.
     most: float | None = None
 
     @property
     def si_unit(self) -> str:
-        """The unit of a bare number."""
+        """Return the unit of a bare number."""
         return next(iter(UNITS[self.dimension]))
 
     def parse(self, value: object) -> object:
-        """Turn text into an SI float; leave everything else to the float schema.
+        """Convert text to an SI float; other values are left to the float schema.
 
         Raises:
             PydanticCustomError: ``quantity``, the text is not a number with a unit of this
@@ -92,10 +92,10 @@ class Quantity:
         raise self._error(value, result or self._advice(value))
 
     def within_reach(self, value: float) -> float:
-        """The value, unless no world is that large.
+        """Return the value, unless it is unrealistically large.
 
         Raises:
-            PydanticKnownError: it is beyond `MOST` of this dimension.
+            PydanticKnownError: it exceeds `MOST` of this dimension.
         """
         most = self.most or MOST.get(self.dimension, math.inf)
         if math.isfinite(value) and abs(value) > most:
@@ -116,7 +116,7 @@ class Quantity:
         )
 
     def _advice(self, text: str) -> str:
-        """What to write instead."""
+        """Return what to write instead."""
         match = _TEXT.fullmatch(text)
         if match is None:
             return f"write a number and a unit, such as '1 {self.si_unit}'"
@@ -145,7 +145,7 @@ class Quantity:
         )
 
     def pattern(self, above: float | None = None, least: float | None = None) -> str:
-        """Regular expression of the texts that `parse` takes, for JSON Schema.
+        """Return a regular expression of the texts that `parse` accepts, for JSON Schema.
 
         Args:
             above: if 0, neither minus signs nor zeros fit.
@@ -162,19 +162,19 @@ class Quantity:
 
 @cache
 def _spellings(dimension: str) -> tuple[str, ...]:
-    """All spellings of all units of a dimension."""
+    """Return all spellings of all units of a dimension."""
     return tuple(text for unit in UNITS[dimension] for text in _written(unit))
 
 
 def plain_unit(unit: str) -> str:
-    """A unit as `UNITS` spells it."""
+    """Return a unit as `UNITS` spells it."""
     for written, plain in _SPELLINGS.items():
         unit = unit.replace(written, plain)
     return unit
 
 
 def _written(unit: str) -> list[str]:
-    """All spellings of a unit that read back to it."""
+    """Return all spellings of a unit."""
     found = [unit]
     for written, plain in _SPELLINGS.items():
         if plain != "u" or unit == "us":
@@ -183,7 +183,7 @@ def _written(unit: str) -> list[str]:
 
 
 def _near(name: str, units: dict[str, Fraction]) -> str | None:
-    """The unit that a typing error was meant to be, or None."""
+    """Return the likely intended unit of a typing error, or None."""
     loose = {re.sub(r"[\^*·. ]", "", u).lower(): u for u in units}
     short = re.sub(r"[\^*·. ]", "", name).lower()
     short = short.replace("secs", "s").replace("sec", "s").replace("hr", "h")
@@ -200,9 +200,9 @@ def _near(name: str, units: dict[str, Fraction]) -> str | None:
     return next(iter(nearest(name, units, 1)), None) if len(name) > 2 else None
 
 
-@lru_cache(maxsize=4096)  # a suite writes the same few amounts thousands of times
+@lru_cache(maxsize=4096)  # a suite contains the same few amounts thousands of times
 def _in_si(dimension: str, text: str) -> float | str:
-    """The nearest float in SI units, or what is wrong; empty: it is not a quantity at all."""
+    """Return the nearest float in SI units, or the error; empty: it is not a quantity."""
     match = _TEXT.fullmatch(text)
     number, blank, unit = match.groups() if match else ("", "", "")
     factor = UNITS[dimension].get(plain_unit(unit))
@@ -214,7 +214,7 @@ def _in_si(dimension: str, text: str) -> float | str:
 
 
 def _exact(number: str) -> Fraction | None:
-    """The number as it is written; None if it is out of every float's reach."""
+    """Return the exact number; None if it is outside the range of floats."""
     exponent = re.split("[eE]", number)[1:] or ["0"]
     if len(number) > _MAX_DIGITS or abs(int(exponent[0])) > _MAX_EXPONENT:
         return None
@@ -222,7 +222,7 @@ def _exact(number: str) -> Fraction | None:
 
 
 def _float(value: Fraction) -> float | None:
-    """The nearest float; None if it is infinite, or zero for something that is not."""
+    """Return the nearest float; None if it overflows or underflows."""
     try:
         result = float(value)  # a quotient of integers, which Python rounds correctly
     except OverflowError:

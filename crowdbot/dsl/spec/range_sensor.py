@@ -1,4 +1,4 @@
-"""What all sensors that measure distances have in common."""
+"""Fields shared by all range sensors."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from crowdbot.dsl.spec.quantities import (
 )
 from crowdbot.dsl.spec.spec import Mount
 
-#: Rays that one reading of a sensor may take; more is a slip of the pen.
+#: Largest number of rays per reading; more is a typing error.
 MOST_RAYS = 200_000
 
 Incidence = Annotated[float, Gt(0), Le(math.pi / 2), Quantity("angle")]
 
 
 def _short_form(value: Any) -> Any:
-    """A bare length is the standard deviation of one Gaussian, called ``range``."""
+    """Convert a bare length to the standard deviation of a Gaussian named ``range``."""
     is_length = isinstance(value, int | float | str) and not isinstance(value, bool)
     if value in (0, "0") and is_length:
         return {}
@@ -35,7 +35,7 @@ NoiseMap = dict[str, SerializeAsAny[NoiseSpec]]
 
 
 class RangeSensorSpec(SensorSpec):
-    """Abstract: a sensor that measures distances."""
+    """Abstract sensor that measures distances."""
 
     parts_field: ClassVar[str] = "noise"
     mount: Mount = Field(default=Mount(), description="Pose on the robot.")

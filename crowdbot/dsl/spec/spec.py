@@ -1,4 +1,4 @@
-"""The base of every spec: strict, frozen, no unknown field, no NaN."""
+"""The base of every spec: strict, frozen, no unknown fields, no NaN."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class Spec(BaseModel):
         extra="forbid",
         allow_inf_nan=False,
         validate_default=True,
-        defer_build=True,  # a document uses few of the specs that are installed
+        defer_build=True,  # a document uses few of the installed specs
     )
 
     @classmethod
     def __get_pydantic_json_schema__(
         cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        """With the names of fields that are left out while they are as usual."""
+        """Return the schema with the names of fields that are omitted while default."""
         made = handler(core_schema)
         left_out = [name for name, f in cls.model_fields.items() if f.exclude_if is not None]
         if left_out:
@@ -38,38 +38,38 @@ class Spec(BaseModel):
 
 
 class ComponentSpec(Spec):
-    """Spec of something pluggable, told apart by ``kind``.
+    """Spec of a component, distinguished by ``kind``.
 
-    Abstract specs only say which category a component belongs to. They refuse documents: the
-    union of concrete specs is assembled from the registry.
+    Abstract specs only define a component's category. They refuse documents: the registry builds
+    the union of concrete specs.
     """
 
     category: ClassVar[str] = "component"
-    #: Name of the field that holds this component's parts, if it has any: a map of names to specs
-    #: of one other category. Parts are built first, and the build function is handed them.
+    #: Name of the field with this component's parts, if it has any: a map of names to specs of one
+    #: other category. Parts are built first, and passed to the build function.
     parts_field: ClassVar[str] = ""
     kind: str = Field(description="Name of the component.")
 
     @model_validator(mode="before")
     @classmethod
     def _refuse_abstract(cls, value: Any) -> Any:
-        abstract = cls.model_fields["kind"].annotation is str  # concrete ones name theirs
+        abstract = cls.model_fields["kind"].annotation is str  # concrete specs set their kind
         if abstract and not isinstance(value, cls):
             raise ValueError(f"{cls.__name__} is abstract; build the model from a registry")
         return value
 
     def beside(self, name: str, file: Path) -> Mapping[str, str]:
-        """Further assets that a file names and the document does not, by field, as paths from it.
+        """Return further assets that a file names and the document does not, by field.
 
         Args:
-            name: field of the asset that was found.
-            file: where it lies.
+            name: field of the found asset.
+            file: its location.
         """
         del name, file
         return {}
 
     def parts(self) -> Mapping[str, ComponentSpec]:
-        """Specs that are built before this one, by name; empty where there are none."""
+        """Return specs that are built before this one, by name; empty if there are none."""
         found: Mapping[str, ComponentSpec] = (
             getattr(self, self.parts_field) if self.parts_field else {}
         )
@@ -86,9 +86,9 @@ class Mount(Spec):
 
 
 class TiltableMount(Mount):
-    """Pose of a sensor that may look up, down or aslant.
+    """Pose of a sensor that may be tilted.
 
-    Turned first by roll about x, then by pitch about y, then by yaw about z, as in URDF: with a
+    Rotated first by roll about x, then by pitch about y, then by yaw about z, as in URDF: with a
     positive pitch it looks down, with a roll of half a turn it hangs upside down.
     """
 
@@ -106,7 +106,7 @@ class TiltableMount(Mount):
     @model_validator(mode="before")
     @classmethod
     def _level(cls, value: Any) -> Any:
-        """A `Mount` made in Python is one without roll and pitch."""
+        """Accept a `Mount` from Python as one without roll and pitch."""
         if isinstance(value, Mount) and not isinstance(value, cls):
             return {name: getattr(value, name) for name in value.model_fields_set}
         return value
@@ -126,24 +126,24 @@ class Rectangle(Spec):
 
     @property
     def area(self) -> float:
-        """Area, m^2."""
+        """Return the area, m^2."""
         return (self.x[1] - self.x[0]) * (self.y[1] - self.y[0])
 
     @property
     def polygon(self) -> tuple[tuple[float, float], ...]:
-        """The corners, counter-clockwise, m."""
+        """Return the corners, counter-clockwise, m."""
         (x0, x1), (y0, y1) = self.x, self.y
         return ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
 
     def contains(self, x: float, y: float) -> bool:
-        """Whether a point lies inside or on the border."""
+        """Return True if a point lies inside or on the border."""
         return self.x[0] <= x <= self.x[1] and self.y[0] <= y <= self.y[1]
 
 
 class Range(Spec):
-    """How far a cost function looks, and from where to where it measures.
+    """Range of a cost function, and the points between which it measures.
 
-    A bare length is short for a range between centres.
+    A bare length is the short form for a range between centres.
     """
 
     model_config = ConfigDict(json_schema_extra={"short": "value"})

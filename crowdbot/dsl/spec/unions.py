@@ -1,4 +1,4 @@
-"""Unions whose members are told apart by a function of ours."""
+"""Unions whose members are distinguished by our own function."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """JSON Schema of a union that is told apart by more than a field: ``anyOf``."""
+    """JSON Schema ``anyOf`` of a union that is distinguished by more than one field."""
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler

@@ -1,8 +1,8 @@
-"""Explicit agents as CSV -> a list node; every cell knows its place.
+"""Convert explicit agents in CSV to a list node; every cell knows its position.
 
 The first line names the columns, which are the fields of an agent. A number is in SI units, text
-such as ``80 cm/s`` has its own; an empty cell is a field left out. ``goals`` holds points as
-``x y; x y``, ``portals`` two names as ``a>b``.
+such as ``80 cm/s`` has its own; an empty cell is a missing field. ``goals`` holds points as ``x y;
+x y``, ``portals`` two names as ``a>b``.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ class _Cell:
 
 
 def read_agents(text: str, source: Source, problems: list[Diagnostic]) -> Node:
-    """The rows as a list of maps, as if they were written in the document.
+    """Return the rows as a list of maps, as if they were written in the document.
 
     Args:
         text: lines end with a line feed.
-        source: what the marks point at.
-        problems: what is wrong with the table is added here.
+        source: source of the marks.
+        problems: errors are added here.
     """
     return _Table(source, problems).node(text.split("\n"))
 
@@ -47,7 +47,7 @@ class _Table:
     problems: list[Diagnostic]
 
     def node(self, lines: Sequence[str]) -> Node:
-        """All rows; a broken one is left out and named."""
+        """Return all rows; invalid ones are reported and left out."""
         top = Mark(self.source)
         rows = ((n, line) for n, line in enumerate(lines) if line.strip())
         number, first = next(rows, (0, ""))
@@ -60,7 +60,7 @@ class _Table:
         return Node(top, tuple(found))
 
     def _columns(self, number: int, line: str) -> list[str | None] | None:
-        """Names of the columns, None for one of no use; None for a header that is not one."""
+        """Return column names, None for unusable ones; None for an invalid header."""
         if not line:
             self._add(
                 "the table is empty", Mark(self.source), f"columns: {', '.join(_REQUIRED)}, …"
@@ -100,7 +100,7 @@ class _Table:
         return Node(mark, entries)
 
     def _cells(self, number: int, line: str) -> list[_Cell] | None:
-        """The cells of a line; None if its quotes do not match."""
+        """Return the cells of a line; None if its quotes do not match."""
         cells, at = [], 0
         while True:
             match = _CELL.match(line, at)
@@ -150,7 +150,7 @@ class _Table:
 
 
 def _parts(text: str, separator: str) -> Iterator[tuple[int, str]]:
-    """The parts between separators, each with its offset."""
+    """Yield the parts between separators, with their offsets."""
     at = 0
     for part in text.split(separator):
         yield at, part
@@ -167,7 +167,7 @@ def _within(cell: _Cell, at: int, text: str) -> Mark:
 
 
 def _scalar(text: str) -> Scalar:
-    """A number where it is one, else the text itself."""
+    """Return a number if it is one, else the text."""
     if _INT.fullmatch(text):
         return int(text)
     if _FLOAT.fullmatch(text) and math.isfinite(value := float(text)):

@@ -1,4 +1,4 @@
-"""Finds the assets of a scenario and hashes them."""
+"""Find and hash the assets of a scenario."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class AssetFiles:
     def fill(
         self, scenario: Scenario, tree: Node, data: dict[str, Any], problems: list[Diagnostic]
     ) -> dict[str, Any]:
-        """The data of a scenario with its assets found; ``data`` itself if it has none to find.
+        """Return a scenario's data with its assets found, or ``data`` itself if it has none.
 
         Args:
             scenario: validated.
-            tree: knows which file names the asset.
-            data: of the tree; it stays as it is.
+            tree: source tree, which knows the file that names the asset.
+            data: data of the tree; not changed.
             problems: errors are added.
         """
         for path, asset, spec in self._waiting(scenario):
@@ -50,18 +50,21 @@ class AssetFiles:
     def _waiting(
         self, scenario: Scenario
     ) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec]]:
-        """Assets to find. Scenarios share components: one that waits for none is seen once."""
+        """Yield assets to find. Scenarios share components: a complete one is checked once."""
         for path, spec in components(scenario):
             if id(spec) in self._complete:
                 continue
             names = [n for n, v in vars(spec).items() if isinstance(v, Asset) and not v.is_found]
             if not names:
-                self._complete[id(spec)] = spec  # kept, so that no other gets its number
+                self._complete[id(spec)] = spec  # kept so that its id is not reused
             for name in names:
                 yield (*path, name), getattr(spec, name), spec
 
     def _found(self, asset: Asset, mark: Mark, problems: list[Diagnostic]) -> Asset | None:
-        """None: there is none, or a resolved scenario that was moved names it by its content."""
+        """Return a found asset.
+
+        None if missing, or if a moved scenario identifies it by content.
+        """
         file = self._finder.find(asset.path, mark)
         if isinstance(file, Diagnostic):
             if not (file.code == "E201" and asset.sha256):
@@ -82,11 +85,11 @@ class AssetFiles:
 
 
 def _mark(tree: Node, path: tuple[str, ...]) -> Mark:
-    """Where the path of an asset is written, in either of its forms."""
+    """Return the position of an asset's path, in either of its forms."""
     return mark_of(tree, *path, "path")
 
 
 def _replaced(data: dict[str, Any], path: tuple[str, ...], value: object) -> dict[str, Any]:
-    """A copy with another value under a path."""
+    """Return a copy with another value under a path."""
     key, *rest = path
     return {**data, key: _replaced(data[key], tuple(rest), value) if rest else value}

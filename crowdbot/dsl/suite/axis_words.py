@@ -1,4 +1,4 @@
-"""What the axes of a suite vary, in words: ``c20`` of ``coeff`` is "20" of "ttca_dca weight"."""
+"""Readable names for a suite's axes: ``c20`` of ``coeff`` is "20" of "ttca_dca weight"."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from crowdbot.dsl.suite.matrix import Axis
 from crowdbot.dsl.text.merge import kind_of
 from crowdbot.dsl.text.nodes import Node
 
-#: A value that is longer than this is told by the label's title, or by the label.
+#: Longer values are replaced by the label's title, or by the label.
 LONGEST = 80
-#: Fields that are for people, not for the simulator.
+#: Fields for people, not for the simulator.
 _FOR_PEOPLE = ("title", "description")
-#: Maps of parts with names of their own; each part is called by its kind.
+#: Maps of named parts; each part is called by its kind.
 _SEVERAL = frozenset(("costs", "sensors"))
-#: Parts of a path that say nothing to somebody who knows the suite.
+#: Parts of a path that carry no information for readers.
 _SILENT = frozenset(("crowd", "robots", "task"))
 
 _Path = tuple[str, ...]
 
 
 class AxisWords(NamedTuple):
-    """One label: what its axis varies, and the value that the label stands for."""
+    """One label: the quantity that its axis varies, and the label's value."""
 
     title: str
     value: str
@@ -32,16 +32,16 @@ class AxisWords(NamedTuple):
 def axis_words(
     base: Node, axes: Sequence[Axis], changed: Node | None = None
 ) -> dict[str, dict[str, AxisWords]]:
-    """Axis -> label -> words.
+    """Return axis -> label -> readable names.
 
-    The title is the field that all labels of the axis write, or the innermost map around all
-    fields that they write; a cost function or sensor is called by its kind. The value is what the
-    document says, with its unit; where that is long, the title of the label.
+    The title is the field that all labels of the axis write, or the innermost map around all fields
+    that they write; a cost function or sensor is called by its kind. The value is the document's,
+    with its unit; if long, the label's title.
 
     Args:
-        base: of the suite, which says of what kind each part is.
-        axes: of its matrix.
-        changed: what lies over all scenarios (``--set``); axes that it changes have no words.
+        base: base of the suite, with the kind of each part.
+        axes: axes of its matrix.
+        changed: overrides of all scenarios (``--set``); axes that they change get no names.
     """
     return {
         axis.name: _of(base, axis)
@@ -55,7 +55,7 @@ def _paths(axis: Axis) -> set[_Path]:
 
 
 def _reaches(changed: Node, path: _Path) -> bool:
-    """Whether a change writes a field, or something around or below it."""
+    """Return True if a change writes a field, or something around or below it."""
     node: Node | None = changed
     for name in path:
         if node is None or not node.entries:
@@ -70,7 +70,7 @@ def _of(base: Node, axis: Axis) -> dict[str, AxisWords]:
     common = _common(paths)
     title = _title(base, common)
     if len({path[-1] for path in paths}) == 1 and all(map(_agree, written.values())):
-        # several parts get the same value of the same field: one of them tells all
+        # several parts get the same value of the same field: one is enough
         written = {label: dict(list(fields.items())[:1]) for label, fields in written.items()}
         last = paths[0][-1]
         title = title if common[-1:] == (last,) else f"{title} {last.replace('_', ' ')}".strip()
@@ -89,7 +89,7 @@ def _agree(fields: dict[_Path, Node]) -> bool:
 
 
 def _leaves(path: _Path, node: Node) -> Iterator[tuple[_Path, Node]]:
-    """Fields that a label writes, those for people left out."""
+    """Yield fields that a label writes, except those for people."""
     if not node.entries:
         if path and path[-1] not in _FOR_PEOPLE:
             yield path, node
@@ -106,7 +106,7 @@ def _common(paths: Sequence[_Path]) -> _Path:
 
 
 def _title(base: Node, path: _Path) -> str:
-    """The last two names of a path; one of several parts is called by its kind."""
+    """Return the last two names of a path; one of several parts is called by its kind."""
     told, node, above = list[str](), base, ""
     for name in path:
         below = node.child(name)
@@ -119,7 +119,7 @@ def _title(base: Node, path: _Path) -> str:
 
 
 def _value(label: Node, fields: dict[_Path, Node], depth: int) -> str:
-    """The only field as it is written, or each with its name; else the title of the label."""
+    """Return the only field's value, or each with its name; else the label's title."""
     texts = {path: _text(node) for path, node in fields.items()}
     parts = [
         f"{' '.join(path[depth:]).replace('_', ' ')} {text}".strip() for path, text in texts.items()
@@ -132,7 +132,7 @@ def _value(label: Node, fields: dict[_Path, Node], depth: int) -> str:
 
 
 def _text(node: Node) -> str:
-    """A value as it is written; empty where it has parts with names."""
+    """Return a value as written; empty if it has named parts."""
     if isinstance(node.value, tuple):
         texts = [_text(item) for item in node.value]
         return ", ".join(texts) if all(texts) else ""

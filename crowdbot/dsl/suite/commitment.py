@@ -1,9 +1,9 @@
-"""Commit and reveal: a suite's seed that is fixed before a deadline, and known after it.
+"""Commit and reveal: a suite's seed is fixed before a deadline and revealed after it.
 
 An organiser publishes ``suite.commitment``, the hash of a seed, a salt and the document, and
-reveals ``suite.seed`` and ``suite.salt`` when nobody can tune to them any more. Whoever reads the
-revealed document checks that they are what was committed to. The salt keeps the seed from being
-found by trying: seeds are few, 2**63 at most, and people like small ones.
+reveals ``suite.seed`` and ``suite.salt`` when tuning to them is no longer possible. Readers of the
+revealed document can check them against the commitment. The salt prevents finding the seed by brute
+force: there are at most 2**63 seeds, and people like small ones.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import Any
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.text.nodes import Node, to_data
 
-#: Form of a commitment, and of a salt of at least 128 bits.
+#: Format of a commitment, and of a salt with at least 128 bits.
 COMMITMENT = r"^sha256:[0-9a-f]{64}$"
 SALT = r"^[0-9a-f]{32,128}$"
-#: A random salt has hardly ever fewer different digits: chance 4e-8 at 32 digits.
+#: Fewest different digits of a random salt: fewer have probability 4e-8 at 32 digits.
 LEAST_DIGITS = 8
 
 _FORMAT = 1
@@ -26,11 +26,11 @@ _SECRET = ("seed", "salt", "commitment")
 
 
 def commitment_of(content: Any, seed: int, salt: str) -> str:
-    """The commitment to a seed.
+    """Return the commitment to a seed.
 
     Args:
-        content: of the document, from `committed_content`.
-        seed: root of the crowd's random numbers.
+        content: content of the document, from `committed_content`.
+        seed: root seed of the crowd.
         salt: hexadecimal digits, from the system's entropy.
     """
     committed = {"commitment": _FORMAT, "document": content, "salt": salt, "seed": seed}
@@ -39,9 +39,9 @@ def commitment_of(content: Any, seed: int, salt: str) -> str:
 
 
 def committed_content(root: Node) -> dict[str, Any]:
-    """What a document says, all it extends included, without seed, salt and commitment.
+    """Return a document's content, including ``extends``, without seed, salt and commitment.
 
-    Comments, order and the files it is spread over do not count.
+    Comments, order and distribution over files do not matter.
     """
     content: dict[str, Any] = to_data(root)
     head = content.get("suite")
@@ -51,15 +51,15 @@ def committed_content(root: Node) -> dict[str, Any]:
 
 
 def is_random(salt: str) -> bool:
-    """Whether a salt looks as if nobody had chosen it."""
+    """Return True if a salt looks random rather than chosen."""
     return len(set(salt)) >= LEAST_DIGITS
 
 
 def read_commitment(root: Node, problems: list[Diagnostic]) -> tuple[str, bool]:
-    """The commitment of a document, or "", and whether its seed is hidden still.
+    """Return a document's commitment, or "", and True if its seed is still hidden.
 
     Args:
-        root: the merged tree; the form of its fields has been checked.
+        root: the merged tree, whose fields have the right form.
         problems: errors so far; more are added.
     """
     head = root.child("suite")
@@ -81,7 +81,7 @@ def read_commitment(root: Node, problems: list[Diagnostic]) -> tuple[str, bool]:
 
 
 def _check_hidden(seed: Node | None, commitment: Node, problems: list[Diagnostic]) -> None:
-    """A seed in the open commits to nothing; that of an included suite is not the hidden one."""
+    """Refuse a visible seed with a commitment; an included suite's seed is not the hidden one."""
     own = commitment.mark.source.included_from is None
     if seed is None or (own and seed.mark.source.included_from is not None):
         return

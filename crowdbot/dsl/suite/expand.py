@@ -1,4 +1,4 @@
-"""Nodes -> merge -> matrix -> validate: a document becomes an ordered list of scenarios."""
+"""Expand a document to an ordered list of scenarios: nodes -> merge -> matrix -> validate."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ from crowdbot.dsl.text.nodes import Entry, Node, parse, to_data
 from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import SpecError, UsageError
 
-#: With these the rest of a document is still worth looking at.
+#: Errors after which the rest of a document is still checked.
 _GO_ON = frozenset(
     ("E003", "E102", "E103", "E111", "E112", "E116", "E014", "E120", "E121", "E204", "E205",
      "E208", "E210", "E211", "E212", "E214", "E215")
 )  # fmt: skip
 
-#: Errors of single scenarios after which the rest of a suite is not looked at any more.
+#: Largest number of scenario errors before the rest of a suite is skipped.
 _ENOUGH = 50_000
 
 
 @dataclass(frozen=True, slots=True)
 class Expansion:
-    """What a document says.
+    """The contents of a document.
 
     Attributes:
-        suite_id: id of the suite; of the scenario in a document that holds one.
+        suite_id: id of the suite; of the scenario in a document with only one.
         metrics: names or patterns of the metrics to score; None means all.
-        trees: id -> the merged tree of the scenario, which knows where each value is written.
+        trees: id -> the merged tree of the scenario, which knows the position of each value.
         axes: id -> axis -> label, in the suite's order; no axes in a document without a matrix.
-        commitment: to the suite's seed; empty if there is none. While the seed is hidden, the
-            scenarios say so; once it is revealed, it has been checked.
+        commitment: commitment to the suite's seed, or empty. While the seed is hidden, the
+            scenarios are marked; a revealed seed has been checked.
         run_seeds: seeds of the runs that a bundle consists of.
-        words: axis -> label -> what it varies and to which value, in words.
+        words: axis -> label -> readable names of the quantity and the value.
     """
 
     suite_id: str
@@ -62,19 +62,19 @@ class Expansion:
     words: dict[str, dict[str, AxisWords]] = field(default_factory=dict, repr=False)
 
     def words_of(self, scenario: str) -> dict[str, AxisWords]:
-        """Axis -> words of the label that a scenario has on it; none of axes without words."""
+        """Return axis -> readable names of a scenario's label; axes without names are left out."""
         labels = self.axes.get(scenario, {})
         return {a: self.words[a][x] for a, x in labels.items() if x in self.words.get(a, {})}
 
     @property
     def single(self) -> bool:
-        """Whether the document holds one scenario by itself, no matrix of them."""
+        """Return True if the document is a single scenario without a matrix."""
         ids = [s.id.partition("+")[0] for s in self.scenarios]
         return ids == [self.suite_id]
 
     @property
     def folder(self) -> str:
-        """Name of the folder of its runs: one for all documents that hold a single scenario."""
+        """Return the folder of its runs; all documents with a single scenario share one."""
         return "scenarios" if self.single else self.suite_id
 
 
@@ -90,11 +90,11 @@ def load_document(
     Args:
         path: the file.
         roots: plugin name -> packaged folders that ``extends`` may read.
-        name: what messages call the file; default: the path as given.
+        name: name of the file in messages; default: the given path.
         installed: the installed components; None leaves metrics and versions unchecked.
 
     Raises:
-        SpecError: the document cannot be taken apart; with every error found so far.
+        SpecError: the document cannot be parsed; with all errors found so far.
     """
     loader = Loader(path, roots or {})
     root = loader.load(name or str(path))
@@ -114,26 +114,26 @@ def expand_document(
     Args:
         suite: from `load_document`.
         scenario_model: `Scenario`, narrowed to the installed components.
-        overrides: ``key=value`` with a dotted key and a YAML value; laid over every scenario.
+        overrides: ``key=value`` with a dotted key and a YAML value, applied to every scenario.
 
     Raises:
-        SpecError: every error of every scenario, equal ones folded.
+        SpecError: all errors of all scenarios, without duplicates.
         UsageError: an override is not ``key=value``.
     """
     return _Expander(suite, scenario_model, overrides).run()
 
 
 class Expanding:
-    """A document's scenarios by their place in the `Expansion`, each expanded when asked for."""
+    """A document's scenarios by index in the `Expansion`, each expanded on demand."""
 
     def __init__(self, suite: ParsedSuite, scenario_model: type[Scenario]) -> None:
         self._expander = _Expander(suite, scenario_model, ())
 
     def scenario(self, index: int) -> Scenario:
-        """One scenario.
+        """Return one scenario.
 
         Raises:
-            SpecError: with the errors of those that were asked for.
+            SpecError: with the errors of the scenarios expanded so far.
         """
         return self._expander.one(index)
 
@@ -149,7 +149,7 @@ class _Folded:
 
 @dataclass(frozen=True, slots=True)
 class _Bare:
-    """A combination: its id, key of the crowd's seed, its label on each axis, tree."""
+    """A combination: its id, crowd seed key, labels per axis, and tree."""
 
     name: str
     key: str
@@ -158,12 +158,12 @@ class _Bare:
 
     @property
     def draw(self) -> str:
-        """Label of the crowd draw; empty where there is only one."""
+        """Return the label of the crowd draw; empty if there is only one."""
         return self.labels.get(DRAW, "")
 
 
 class _Expander:
-    """One expansion: memories of shared parts, and the errors so far."""
+    """One expansion: caches of shared parts, and the errors so far."""
 
     def __init__(self, suite: ParsedSuite, model: type[Scenario], overrides: Sequence[str]) -> None:
         self._suite, self._model = suite, model
@@ -208,7 +208,7 @@ class _Expander:
         )
 
     def _unusable(self, bare: _Bare) -> str:
-        """Why a combination's id cannot be a folder beside those before; empty where it can."""
+        """Return why a combination's id cannot be a folder beside earlier ones; empty if it can."""
         if bare.name == self._suite.scenario_id:
             return ""
         first = self._folders.setdefault(bare.name.lower(), bare.name)
@@ -217,7 +217,7 @@ class _Expander:
         return path_problem(bare.name)
 
     def _longest(self, bare: _Bare) -> Mark:
-        """Where the longest of a combination's labels is written."""
+        """Return the position of a combination's longest label."""
         keys = {axis.name: axis.keys for axis in self._suite.axes}
         marks = [
             (len(label), keys[axis][label])
@@ -235,7 +235,10 @@ class _Expander:
         return scenario
 
     def _scenario(self, bare: _Bare, tree: Node) -> Scenario | None:
-        """A combination with its references; None if something is wrong, which is noted."""
+        """Return a combination with its references.
+
+        None if there was an error, which is recorded.
+        """
         self._total += 1
         if why := self._unusable(bare):
             self._note(Diagnostic("E116", f"the id {why}", self._longest(bare)), bare.name, "")
@@ -252,7 +255,7 @@ class _Expander:
             raise SpecError(_sorted(problems))
 
     def _trees(self) -> Iterator[_Bare]:
-        """The combinations that stay, as trees."""
+        """Yield the selected combinations as trees."""
         suite, axes = self._suite, [axis.name for axis in self._suite.axes]
         for combination in combinations(suite.base, suite.axes):
             if suite.kept is not None and combination.labels not in suite.kept:
@@ -266,7 +269,7 @@ class _Expander:
             yield _Bare(name and name + self._suffix, key, labels, combination.tree)
 
     def _complete(self, bare: _Bare, reference: Node | None = None) -> Node:
-        """The reference, ``--set`` and the seed laid over a combination, in this order."""
+        """Return a combination merged with the reference, ``--set`` and the seed, in this order."""
         tree = bare.tree
         if reference is None:
             tree = merge(tree, self._set, self._merged)
@@ -276,15 +279,15 @@ class _Expander:
         return self._with_seed(tree, bare.key, bare.draw)
 
     def _set_below(self, reference: Node) -> Node:
-        """What ``--set`` changes of a reference; the same node for the same reference."""
+        """Return what ``--set`` changes in a reference; the same node for the same reference."""
         if id(reference) not in self._set_in:
             self._set_in[id(reference)] = _unless_removed(self._set, reference)
         return self._set_in[id(reference)]
 
     def _with_seed(self, tree: Node, key: str, draw: str) -> Node:
-        """Write root and key of the seed into a suite's crowd, under what the document says.
+        """Write the seed's root and key into a suite's crowd, below the document's own values.
 
-        Another draw has other people even where the document writes the key itself.
+        Each draw has different people, even if the document sets the key.
         """
         crowd = tree.entries.get("crowd")
         if self._suite.seed is None or crowd is None or not crowd.node.entries:
@@ -304,7 +307,7 @@ class _Expander:
         return replace(tree, value={**tree.entries, "crowd": replace(crowd, node=node)})
 
     def _validate(self, name: str, tree: Node, reference: str = "") -> Scenario | None:
-        """Validate a tree; equal ones of other combinations are validated once."""
+        """Validate a tree; equal trees are validated once."""
         data = to_data(tree, self._data)  # keeps the nodes alive, so that their ids stay unique
         shared = tuple((key, id(entry.node)) for key, entry in sorted(tree.entries.items()))
         if known := self._validated.get(shared):
@@ -325,7 +328,7 @@ class _Expander:
         return scenario
 
     def _is_hidden(self, tree: Node) -> bool:
-        """Whether people are drawn from the suite's seed, and that is hidden."""
+        """Return True if people are sampled from the suite's hidden seed."""
         crowd = tree.child("crowd")
         if not self._suite.hidden or crowd is None or not crowd.entries:
             return False
@@ -334,7 +337,7 @@ class _Expander:
     def _with_assets(
         self, tree: Node, data: dict[str, Any]
     ) -> tuple[Scenario | None, list[Diagnostic]]:
-        """The validated scenario with its files found, and what is wrong with it."""
+        """Return the validated scenario with its files found, and the errors."""
         scenario, found = self._with_known_parts(tree, data), list[Diagnostic]()
         if scenario is None:
             scenario, found = validate(self._model, data, tree)
@@ -346,10 +349,10 @@ class _Expander:
         return scenario, found
 
     def _with_known_parts(self, tree: Node, data: dict[str, Any]) -> Scenario | None:
-        """The scenario, made of parts that are known to be valid; None if that does not work."""
+        """Return the scenario built from validated parts; None if that fails."""
         try:
             return self._model.model_validate(self._parts.fill(tree, data))
-        except (Exception, SystemExit):  # also a validator that does not expect validated parts
+        except (Exception, SystemExit):  # validators may not expect validated parts
             return None
 
     def _note(self, diagnostic: Diagnostic, name: str, reference: str) -> None:
@@ -371,7 +374,7 @@ class _Expander:
 
 
 def _unless_removed(change: Node, reference: Node) -> Node:
-    """A change without what goes into parts that a reference removes: they stay removed."""
+    """Return a change without entries below parts that a reference removes."""
     entries = {}
     for key, entry in change.entries.items():
         over = reference.child(key)
@@ -385,7 +388,7 @@ def _unless_removed(change: Node, reference: Node) -> Node:
 
 
 def _parse_overrides(overrides: Sequence[str], problems: list[Diagnostic]) -> Node:
-    """``key=value`` texts as one tree, later ones over earlier ones."""
+    """Parse ``key=value`` texts into one tree, later ones over earlier ones."""
     tree = Node(Mark(Source("--set")), {}, implied=True)
     for text in overrides:
         key, equals, value = text.partition("=")
@@ -413,6 +416,6 @@ def _sorted(problems: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def where(tree: Node, *path: str) -> Mark | None:
-    """Where a value is written, or None for a default."""
+    """Return the position of a value, or None for a default."""
     place = locate(tree, path)
     return None if place.rest else place.node.mark

@@ -1,4 +1,4 @@
-"""A scenario in full, each value with the place where it is written."""
+"""A complete scenario, each value with its source position."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _COLUMN = 48
 
 
 def explain_yaml(scenario: Scenario, tree: Node) -> str:
-    """YAML with ``# from file:line`` behind each value, or ``# default``.
+    """Return YAML with ``# from file:line`` behind each value, or ``# default``.
 
     Args:
         scenario: a validated scenario.
-        tree: the merged tree that it came from.
+        tree: its merged tree.
     """
     lines = ["crowdbot: 1", "scenario:", *_lines(plain(scenario), tree, ())]
     return "\n".join(lines) + "\n"

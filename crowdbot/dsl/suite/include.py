@@ -1,4 +1,4 @@
-"""``extends``: files laid under the map that names them, left to right; tables of agents.
+"""Resolve ``extends``: files merged below the map that names them; and tables of agents.
 
 A path is relative to the file that contains it, never to the working directory.
 """
@@ -19,13 +19,13 @@ from crowdbot.errors import SpecError
 
 MAX_INCLUDES = 64
 
-#: Maps at the top of a document whose keys are kinds, which have dots of their own.
+#: Top-level maps whose keys are kinds, which contain dots.
 _VERBATIM = ("kinds",)
 
 
 @dataclass(frozen=True, slots=True)
 class _File:
-    """A file being read: where it is, what people call it, and the files that led to it."""
+    """A file being read: its path, its name for messages, and the files that included it."""
 
     path: Path
     name: str
@@ -34,7 +34,7 @@ class _File:
 
 @dataclass
 class Loader:
-    """Reads a file and everything it extends; collects what is wrong on the way."""
+    """Reads a file and everything it extends, and collects errors."""
 
     top: Path
     roots: Roots
@@ -42,11 +42,11 @@ class Loader:
     _count: int = 0
 
     def load(self, name: str) -> Node:
-        """The top-level file as one tree, ``extends`` resolved, dotted keys written out."""
+        """Return the top-level file as one tree, with ``extends`` and dotted keys resolved."""
         return self._read(_File(self.top, name, ()), None)
 
     def _read(self, file: _File, included_from: Mark | None) -> Node:
-        """One file; an unreadable one counts as an empty map, its error is kept."""
+        """Read one file; an unreadable one counts as an empty map, and its error is recorded."""
         source = Source(file.name, (), included_from, file.path)
         try:
             text = _read_text(file, source)
@@ -65,7 +65,7 @@ class Loader:
         )
 
     def _with_rows(self, node: Node, file: _File, below: str = "") -> Node:
-        """A tree in which the rows of each table stand for ``crowd.agents: {csv: FILE}``."""
+        """Return a tree with the rows of each table in place of ``crowd.agents: {csv: FILE}``."""
         changed = {}
         for key, entry in node.entries.items():
             table = entry.node.child("csv") if (below, key) == ("crowd", "agents") else None
@@ -79,7 +79,7 @@ class Loader:
         return replace(node, value={**node.entries, **changed}) if changed else node
 
     def _rows(self, agents: Node, table: Node, file: _File) -> Node:
-        """The rows of a table of agents; none if it cannot be read, its error is kept."""
+        """Return the rows of a table of agents; empty if unreadable, and its error is recorded."""
         nothing = Node(table.mark, ())
         for key, entry in agents.entries.items():
             if key != "csv":
@@ -97,7 +97,7 @@ class Loader:
         return replace(read_agents(text, source, self.problems), mark=table.mark)
 
     def _resolve(self, root: Node, file: _File) -> Node:
-        """Resolve ``extends`` wherever fields of a scenario stand, and at the root."""
+        """Resolve ``extends`` at the root and wherever a scenario's fields are allowed."""
         entries = dict(root.entries)
         for key, depth in (("matrix", 2), ("references", 1)):
             if key in entries:
@@ -110,7 +110,7 @@ class Loader:
         return self._extended(replace(root, value=entries), file)
 
     def _below(self, node: Node, file: _File, depth: int) -> Node:
-        """A map of maps, ``depth`` deep, whose innermost maps are resolved."""
+        """Resolve the innermost maps of a map of maps, ``depth`` deep."""
         if depth == 0:
             return self._extended(node, file)
         if not node.entries:
@@ -140,7 +140,7 @@ class Loader:
         return self._read(found, item.mark)
 
     def _named_file(self, item: Node, file: _File, code: str, wanted: str) -> _File | None:
-        """The file that a value names, if it may be read; else the error is kept."""
+        """Return the file that a value names, if it may be read; otherwise record the error."""
         if not isinstance(item.value, str):
             self._add(code, wanted, item.mark)
             return None
@@ -154,7 +154,7 @@ class Loader:
         return found
 
     def _find(self, text: str, mark: Mark, file: _File) -> _File | None:
-        """The file that a path means, if it may be read; else the error is kept."""
+        """Return the file of a path, if it may be read; otherwise record the error."""
         path = Finder(self.top, self.roots).find(text, mark)
         if isinstance(path, Diagnostic):
             self.problems.append(path)
@@ -163,7 +163,7 @@ class Loader:
         return self._unless_cycle(_File(path, name, file.chain), mark)
 
     def _beside(self, name: str, text: str) -> str:
-        """What people call a file that another one names."""
+        """Return the name for messages of a file that another one names."""
         plugin, colon, path = name.rpartition(":")
         if plugin not in self.roots:
             plugin, colon, path = "", "", name
@@ -182,7 +182,7 @@ class Loader:
 
 
 def _read_text(file: _File, source: Source) -> str:
-    """Text of a file; errors know who included it."""
+    """Return the text of a file; errors name its includer."""
     try:
         return read_text(file.path, file.name)
     except SpecError as error:

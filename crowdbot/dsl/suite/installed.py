@@ -1,4 +1,4 @@
-"""What a document asks of the installation: metrics by name, components by kind and version."""
+"""Requirements of a document on the installation: metrics by name, components by version."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from crowdbot.errors import did_you_mean, nearest
 
 
 class Installed(Protocol):
-    """What is installed, as far as a document speaks of it."""
+    """The installed components, as far as documents refer to them."""
 
     @property
     def metrics(self) -> Collection[str]:
-        """Kinds of the metrics."""
+        """Return the kinds of the metrics."""
 
     @property
     def versions(self) -> Mapping[str, tuple[int, str]]:
-        """Kind of any component -> its spec_version and the distribution that has it."""
+        """Return kind of any component -> its spec_version and distribution."""
 
 
 def check_metrics(listed: Node | None, installed: Installed, problems: list[Diagnostic]) -> None:
-    """Names and patterns that fit no metric."""
+    """Check that names and patterns match installed metrics."""
     if listed is None or not isinstance(listed.value, tuple):
         return
     for item in listed.value:
@@ -36,7 +36,7 @@ def check_metrics(listed: Node | None, installed: Installed, problems: list[Diag
 
 
 def check_versions(wanted: Node | None, installed: Installed, problems: list[Diagnostic]) -> None:
-    """Components older than those the document was written for."""
+    """Check that components are not older than the document requires."""
     for kind, key, node in _leaves(wanted) if wanted else ():
         known = installed.versions
         if not kind or type(node.value) is not int or node.value < 1:

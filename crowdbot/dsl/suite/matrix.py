@@ -1,4 +1,4 @@
-"""Named axes -> ordered, named combinations; the first axis is the slowest."""
+"""Matrix: named axes -> ordered, named combinations; the first axis varies slowest."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.dsl.text.nodes import Node
 MAX_COMBINATIONS = 10_000
 MAX_AXES = 64
 
-#: Name of the axis that ``draws: N`` adds behind the others.
+#: Name of the last axis, added by ``draws: N``.
 DRAW = "draw"
 
 _NAME = re.compile(r"[A-Za-z0-9_]+")
@@ -23,7 +23,7 @@ _Path = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A named axis: label -> what it overrides, and label -> where it is written."""
+    """A named axis: label -> override, and label -> source position."""
 
     name: str
     labels: dict[str, Node]
@@ -32,7 +32,7 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """One label of each axis, and the base with their overrides laid over it."""
+    """One label per axis, and the base merged with their overrides."""
 
     labels: tuple[str, ...]
     tree: Node
@@ -41,12 +41,12 @@ class Combination:
 def read_axes(
     matrix: Node | None, problems: list[Diagnostic], draws: Node | None = None
 ) -> tuple[Axis, ...]:
-    """Axes as they are written, dotted keys written out; errors are added to ``problems``.
+    """Return the axes as written, with dotted keys resolved; errors are added to ``problems``.
 
     Args:
         matrix: the map of axes.
         problems: errors so far.
-        draws: how many crowds each condition is tried with; more than once adds the axis `DRAW`.
+        draws: number of crowds per condition; more than one adds the axis `DRAW`.
     """
     if matrix is not None and matrix.value is not None and not isinstance(matrix.value, dict):
         problems.append(Diagnostic("E111", "matrix wants a map of axes", matrix.mark))
@@ -67,7 +67,7 @@ def read_axes(
 
 
 def _draw_axis(count: int, mark: Mark) -> Axis:
-    """Labels n01, n02, …: those of a small count stay the same in a larger one."""
+    """Return labels n01, n02, …; a larger count keeps the labels of a smaller one."""
     nothing = Node(mark, {}, implied=True)
     return Axis(DRAW, {f"n{number:02d}": nothing for number in range(1, count + 1)})
 
@@ -84,7 +84,7 @@ def _too_many(axes: Sequence[Axis], problems: list[Diagnostic], mark: Mark) -> b
 
 
 def combinations(base: Node, axes: Sequence[Axis]) -> Iterator[Combination]:
-    """All combinations; those with equal first labels share the merged trees of these."""
+    """Yield all combinations; those with equal first labels share their merged trees."""
     if not axes:
         yield Combination((), base)
         return
@@ -112,16 +112,16 @@ def _read_axis(name: str, key: Mark, node: Node, problems: list[Diagnostic]) -> 
 
 
 def _check_name(what: str, name: str, key: Mark, problems: list[Diagnostic]) -> None:
-    """Ids are labels joined by '-', so that a label may not hold one."""
+    """Refuse labels that contain '-', which joins labels to ids."""
     if not _NAME.fullmatch(name):
         text = f"{what} '{name}' may have letters, digits and '_' only"
         problems.append(Diagnostic("E010", text, key))
 
 
 def _check_overlap(axes: Sequence[Axis], problems: list[Diagnostic]) -> None:
-    """Order would decide which of two axes wins, so that they may not write the same field."""
+    """Refuse axes that write the same field, since their order would decide."""
     leaves: dict[_Path, tuple[str, Mark]] = {}
-    above: dict[_Path, tuple[str, Mark]] = {}  # what is written somewhere below a path
+    above: dict[_Path, tuple[str, Mark]] = {}  # paths with a written field below them
     for axis in axes:
         written, told = _written(axis), set[str]()
         for path, mark in written.items():
@@ -149,7 +149,10 @@ def _written(axis: Axis) -> dict[_Path, Mark]:
 
 
 def _leaves(path: _Path, node: Node, key: Mark) -> Iterator[tuple[_Path, Mark]]:
-    """Fields that an override writes; a map with a ``kind`` may replace everything below it."""
+    """Yield fields that an override writes.
+
+    A map with a ``kind`` may replace everything below it.
+    """
     if not node.entries or kind_of(node) is not None:
         yield path, key
         return

@@ -1,4 +1,4 @@
-"""``only`` and ``exclude``: which combinations of a matrix a suite keeps. Ids stay the same.
+"""Selection: ``only`` and ``exclude`` keep some combinations of a matrix, with the same ids.
 
 ::
 
@@ -20,7 +20,7 @@ _WANTED = "wants a map of axes with labels, or a list of such maps"
 
 MAX_CHOICES = 500
 
-#: Axis -> its labels; a combination fits if it has one of them on every axis named.
+#: Axis -> its labels; a combination matches if it has one of them on every named axis.
 _Choice = Mapping[str, frozenset[str]]
 
 
@@ -28,11 +28,11 @@ Kept = frozenset[tuple[str, ...]]
 
 
 def read_selection(root: Node, axes: Sequence[Axis], problems: list[Diagnostic]) -> Kept | None:
-    """The combinations, as labels in the axes' order, that a suite keeps; None for all.
+    """Return the label combinations that a suite keeps, in the axes' order; None for all.
 
     Args:
         root: the outermost map of the suite.
-        axes: of the matrix.
+        axes: axes of the matrix.
         problems: errors are added.
     """
     known, before = {axis.name: axis for axis in axes}, len(problems)

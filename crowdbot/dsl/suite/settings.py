@@ -1,4 +1,4 @@
-"""Settings as ``key=value`` texts, whatever they were given as."""
+"""Convert settings of any form to ``key=value`` texts."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from crowdbot.errors import InputError, kind_of
 
 
 def setting_texts(settings: str | Sequence[str] | Mapping[str, object]) -> Sequence[str]:
-    """Settings as ``key=value`` texts.
+    """Return settings as ``key=value`` texts.
 
     Args:
-        settings: one text, several, or a mapping of keys to values that JSON can say.
+        settings: one text, several, or a mapping of keys to JSON values.
 
     Raises:
-        InputError: it is something else, or a value cannot be written as JSON.
+        InputError: it has another type, or a value cannot be written as JSON.
     """
     if not isinstance(settings, Mapping):
         return _texts(settings)

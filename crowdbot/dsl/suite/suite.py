@@ -1,4 +1,4 @@
-"""What people write: a suite, or a single scenario, which is a suite of one.
+"""The document format: a suite, or a single scenario, which is a suite of one.
 
 ::
 
@@ -35,14 +35,14 @@ from crowdbot.dsl.text.nodes import Node, count, to_data
 from crowdbot.dsl.text.path_names import PathName
 from crowdbot.errors import did_you_mean, nearest
 
-#: The version of the document format that this release reads.
+#: Version of the document format of this release.
 FORMAT = 1
 
 MAX_REFERENCES = 16
 MAX_FIELDS = 10_000_000
 MAX_RUN_SEEDS = 1000
 
-#: Fields of a scenario that a document never writes there.
+#: Fields of a scenario that are not allowed in documents.
 _ELSEWHERE = {
     "id": "ids are made of the labels of the matrix",
     "references": "references stand beside 'base' or 'scenario'",
@@ -87,7 +87,7 @@ class SuiteHead(Spec):
 
 
 class Seeds(Spec):
-    """Which axes change the random numbers; combinations that differ in others share them."""
+    """Axes that change the random numbers; combinations that differ in other axes share them."""
 
     crowd: tuple[str, ...] | None = Field(
         default=None,
@@ -143,19 +143,19 @@ class ScenarioDocument(Spec):
 
 @dataclass(frozen=True, slots=True)
 class ParsedSuite:
-    """A document, read and taken apart; its scenarios are not validated yet.
+    """A document after parsing, before its scenarios are validated.
 
     Attributes:
         scenario_id: id of the only scenario of a document without axes; empty if it has none.
-        seed: root seed with the place where it is written, or None for a single scenario.
+        seed: root seed with its position, or None for a single scenario.
         crowd_axes: names of the axes whose labels make the crowd's seed key.
-        kept: labels of the combinations that stay; None: all.
-        commitment: to the seed; empty if there is none.
-        hidden: whether the seed has not been revealed; ``seed`` is a node of None then.
+        kept: labels of the selected combinations; None: all.
+        commitment: commitment to the seed, or empty.
+        hidden: True until the seed is revealed; then ``seed`` is a node of None.
         run_seeds: seeds of the runs that a bundle consists of.
         problems: errors found so far.
-        tree: the whole document, all it extends included.
-        finder: finds the files that the document names; None: assets are not looked for.
+        tree: the whole document, including ``extends``.
+        finder: finds the document's files; None: assets are not searched.
     """
 
     id: str
@@ -179,7 +179,7 @@ class ParsedSuite:
 def read_suite(
     root: Node, problems: list[Diagnostic], installed: Installed | None = None
 ) -> ParsedSuite | None:
-    """Take a document apart.
+    """Parse a document into its parts.
 
     Args:
         root: the merged tree of the whole document.
@@ -187,7 +187,7 @@ def read_suite(
         installed: None leaves metrics and versions unchecked.
 
     Returns:
-        None if the document is too broken to look at its scenarios.
+        None if the document is too broken to check its scenarios.
     """
     if not _right_version(root, problems):
         return None
@@ -245,7 +245,7 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
 
 
 def _check_own_id(head: Node | None, problems: list[Diagnostic]) -> None:
-    """Two suites of one id would write their runs into one folder."""
+    """Refuse two suites with the same id, which would share a folder of runs."""
     own = head.child("id") if head else None
     includer = own.mark.source.included_from if own else None
     if own is not None and includer is not None:
@@ -274,7 +274,7 @@ def _right_version(root: Node, problems: list[Diagnostic]) -> bool:
 
 
 def _check_size(root: Node, body: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> None:
-    """Bounds the work that a small file can ask for."""
+    """Limit the work that a small file can cause."""
     references = root.child("references")
     if references is not None and len(references.entries) > MAX_REFERENCES:
         text = f"the suite has {len(references.entries)} references; at most {MAX_REFERENCES}"
@@ -286,7 +286,7 @@ def _check_size(root: Node, body: Node, axes: tuple[Axis, ...], problems: list[D
 
 
 def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> tuple[str, ...]:
-    """Axes of the seed key in the matrix' order; all of them if the document names none."""
+    """Return the axes of the seed key in the matrix's order; all axes by default."""
     known = [axis.name for axis in axes]
     seeds = root.child("seeds")
     listed = seeds.child("crowd") if seeds else None
@@ -302,7 +302,7 @@ def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) 
 
 
 def _run_seeds(root: Node, problems: list[Diagnostic]) -> tuple[int, ...]:
-    """The seeds of an edition; 0 where the document names none."""
+    """Return the seeds of an edition; 0 by default."""
     seeds = root.child("seeds")
     listed = seeds.child("runs") if seeds else None
     if listed is None or not isinstance(listed.value, tuple):
@@ -324,7 +324,7 @@ def _check_elsewhere(body: Node, names: tuple[str, ...], problems: list[Diagnost
 
 
 def _check_references(root: Node, problems: list[Diagnostic]) -> None:
-    """A reference is known by its name, beside the id of its scenario."""
+    """Check that references have names different from their scenario's id."""
     listed = root.child("references")
     for entry in (listed.entries if listed else {}).values():
         for name in {"id", "references"} & entry.node.entries.keys():

@@ -1,4 +1,4 @@
-"""Text files of reasonable size, and plain files of any."""
+"""Read text files of limited size, and plain files of any size."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MAX_BYTES = 1_000_000
 
 
 def read_text(path: Path, name: str) -> str:
-    """Text of a file: UTF-8 with or without a byte order mark, any line ends.
+    """Return the text of a file: UTF-8 with or without a byte order mark, any line ends.
 
     Raises:
         SpecError: E001, there is no such file or it is not a text of reasonable size.
@@ -43,7 +43,7 @@ def read_text(path: Path, name: str) -> str:
 
 
 def open_file(path: Path) -> BinaryIO:
-    """A plain file, open for reading.
+    """Open a plain file for reading.
 
     Raises:
         OSError: it cannot be opened, or is something else, such as a pipe.
@@ -56,7 +56,7 @@ def open_file(path: Path) -> BinaryIO:
 
 
 def _without_waiting(path: str, flags: int) -> int:
-    """Opening a pipe that nobody writes to would wait for ever."""
+    """Open without blocking, since a pipe without a writer would block forever."""
     return os.open(path, flags | os.O_NONBLOCK)
 
 

@@ -1,4 +1,4 @@
-"""Errors with a place: file, line, column, the line itself and a caret under the culprit."""
+"""Errors with a position: file, line, column, the line itself and a caret."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from unicodedata import category
 
-#: Every code and its title; docs/reference/errors.md has a paragraph on each.
+#: Every code and its title; docs/reference/errors.md explains each.
 CODES = {
     "E001": "file that cannot be read",
     "E002": "YAML syntax",
@@ -69,9 +69,9 @@ CODES = {
     "E301": "plugin collision",
 }
 REFERENCE = "docs/reference/errors.md"
-#: Nobody reads more of them; documents that have more are broken in some other way.
+#: Largest number of reported errors; documents with more are broken in another way.
 MAX_ERRORS = 1000
-#: Errors of one text that are shown.
+#: Number of identical errors that are shown.
 _ALIKE = 10
 _WINDOW = 100
 _LONGEST = 400
@@ -79,7 +79,7 @@ _LONGEST = 400
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Source:
-    """A text that was read: its name for people, its lines, who included it, and its file."""
+    """A text that was read: its name, its lines, its includer, and its file."""
 
     name: str
     lines: Sequence[str] = ()
@@ -89,7 +89,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A place in a source. Line and column count from 0; width in characters, on one line."""
+    """A position in a source. Line and column count from 0; width in characters, on one line."""
 
     source: Source
     line: int = 0
@@ -106,10 +106,10 @@ class Diagnostic:
 
     Attributes:
         code: a key of `CODES`.
-        message: what is wrong.
-        mark: where.
-        hint: what instead; shown beside the caret.
-        also: other places that belong to the error, with a word each.
+        message: the error.
+        mark: its position.
+        hint: suggestion, shown beside the caret.
+        also: related positions, with a word each.
     """
 
     code: str
@@ -119,20 +119,20 @@ class Diagnostic:
     also: tuple[tuple[str, Mark], ...] = ()
 
     def headline(self) -> str:
-        """``file:line:column: error[code] message``."""
+        """Return ``file:line:column: error[code] message``."""
         return f"{self.mark}: error[{self.code}] {_shown(self.message)}"
 
     def sentence(self) -> str:
-        """The headline and what instead: what Python's exceptions say, who show no snippet."""
+        """Return headline and hint, for Python exceptions, which show no snippet."""
         return self.headline() + (f"; {_shown(self.hint)}" if self.hint else "")
 
     def sort_key(self) -> tuple[str, int, int, str, str]:
-        """By position, then code."""
+        """Return the key for sorting by position, then code."""
         mark = self.mark
         return (mark.source.name, mark.line, mark.column, self.code, self.message)
 
     def as_dict(self) -> dict[str, object]:
-        """For ``--format json``; line and column count from 1."""
+        """Return a dictionary for ``--format json``; line and column count from 1."""
         return {
             "code": self.code,
             "title": CODES[self.code],
@@ -148,9 +148,9 @@ class Diagnostic:
 
 
 def render(diagnostics: Iterable[Diagnostic]) -> str:
-    """All errors for people, with a last line that counts them.
+    """Return all errors as readable text, with a count in the last line.
 
-    Of those that say the same of many places, the first `_ALIKE` are shown, and how many follow.
+    Of equal errors at many positions, the first `_ALIKE` are shown, and the number of the others.
     """
     found = list(diagnostics)
     count = "1 error" if len(found) == 1 else f"{len(found)} errors"
@@ -193,9 +193,9 @@ def _snippet(mark: Mark, hint: str) -> list[str]:
 
 
 def _shown(text: str) -> str:
-    """What a terminal may get: on one line, hidden characters as escapes, and not all of it.
+    """Return a text for terminals: one line, shortened, hidden characters escaped.
 
-    As `crowdbot.errors.printable` has it, which knows this module.
+    Like `crowdbot.errors.printable`, which imports this module.
     """
     text = _clip(text)
     if text.isascii() and text.isprintable():
@@ -209,7 +209,7 @@ def _shown(text: str) -> str:
 
 
 def _clip(text: str) -> str:
-    """A text that quotes something huge, without most of it."""
+    """Shorten a text that quotes something huge."""
     if len(text) <= _LONGEST:
         return text
     return f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 2 :]}"

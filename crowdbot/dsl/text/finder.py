@@ -1,6 +1,6 @@
-"""From the paths that documents write to files: beside the document or in a plugin's folder.
+"""Find files named in documents: beside the document or in a plugin's folder.
 
-Nothing outside the top-level file's folder and the packaged folders is ever found.
+Nothing outside the top-level file's folder and the packaged folders is ever read.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Roots = Mapping[str, Sequence[Path]]
 
 @dataclass(frozen=True, slots=True)
 class Finder:
-    """Where the files of one document may lie.
+    """Allowed locations of one document's files.
 
     Attributes:
         top: the top-level file.
@@ -29,11 +29,11 @@ class Finder:
     roots: Roots
 
     def find(self, text: str, mark: Mark) -> Path | Diagnostic:
-        """The file that a path means, if it may be read; else the error.
+        """Return the file of a path, if it may be read; otherwise the error.
 
         Args:
             text: a path relative to the file that contains it, or ``NAME:path``.
-            mark: where it is written; ``--set`` counts as the top-level file.
+            mark: its position; ``--set`` counts as the top-level file.
         """
         prefix, colon, rest = text.rpartition(":")
         if PurePosixPath(rest).is_absolute() or PureWindowsPath(text).drive or "\0" in text:
@@ -46,7 +46,7 @@ class Finder:
         try:
             path = next((f / rest for f in folders if (f / rest).exists()), folders[0] / rest)
             allowed, exists = self._allowed(path), path.exists()
-        except (OSError, RuntimeError) as error:  # a name too long, links in a circle
+        except (OSError, RuntimeError) as error:  # name too long, or circular links
             reason = getattr(error, "strerror", None) or str(error)
             return Diagnostic("E201", f"'{text[:60]}' cannot be opened: {reason}", mark)
         if not allowed:
@@ -58,7 +58,7 @@ class Finder:
         return path
 
     def name_of(self, file: Path) -> str:
-        """The path by which the top-level file could name a file that was found."""
+        """Return the path by which the top-level file could name a found file."""
         target = file.resolve()
         own = {"": [self.top.parent]} | {f"{name}:": fs for name, fs in self.roots.items()}
         for prefix, folders in own.items():

@@ -1,4 +1,4 @@
-"""Layers of a document become one tree; the winner of each field keeps its own position.
+"""Merge layers of a document into one tree; each field keeps its own position.
 
 Three rules besides "maps are merged, everything else is replaced": a map with another ``kind``
 replaces the old map, ``null`` over something removes it, and ``{}`` over a map empties it.
@@ -12,17 +12,17 @@ from dataclasses import replace
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.text.nodes import MAX_DEPTH, Entry, Node
 
-#: Pairs of trees, by their ids, with what they became; it keeps them alive.
+#: Pairs of trees, by their ids, with their merge result; keeps them alive.
 Merged = dict[tuple[int, int], tuple[Node, Node, Node]]
 
 
 def merge(base: Node, over: Node, known: Merged | None = None) -> Node:
-    """Lay one tree over another. Both stay as they are; untouched parts are shared.
+    """Merge one tree over another. Both stay unchanged; untouched parts are shared.
 
     Args:
         base, over: trees.
-        known: what was merged before: equal pairs, below too, become the same node again, so that
-            who validates nodes once sees each once.
+        known: earlier merges: equal pairs, also below, give the same node, so that each node is
+            validated once.
     """
     if known is None:
         return _merge(base, over, None)
@@ -33,7 +33,7 @@ def merge(base: Node, over: Node, known: Merged | None = None) -> Node:
 
 
 def _merge(base: Node, over: Node, known: Merged | None) -> Node:
-    if over.implied and not over.entries:  # nobody wrote it, so it empties nothing
+    if over.implied and not over.entries:  # not written, so it empties nothing
         return base
     if not (base.entries and over.entries) or _changes_kind(base, over):
         return over
@@ -53,7 +53,7 @@ def _merge(base: Node, over: Node, known: Merged | None) -> Node:
 
 
 def kind_of(node: Node) -> object:
-    """The ``kind`` of a map, or None."""
+    """Return the ``kind`` of a map, or None."""
     kind = node.child("kind")
     return kind.value if kind else None
 
@@ -61,10 +61,10 @@ def kind_of(node: Node) -> object:
 def undot(
     node: Node, problems: list[Diagnostic], depth: int = 0, verbatim: Collection[str] = ()
 ) -> Node:
-    """Write ``a.b: x`` as ``a: {b: x}`` everywhere below a node.
+    """Convert ``a.b: x`` to ``a: {b: x}`` everywhere below a node.
 
     Args:
-        node: tree as it was read.
+        node: the tree as read.
         problems: keys that clash with others of the same map are added here.
         depth: levels above the node.
         verbatim: keys of the node whose maps have names with dots.
@@ -90,7 +90,7 @@ def undot(
 
 
 def nest(path: Sequence[str], node: Node, mark: Mark) -> Node:
-    """A tree that holds nothing but ``node`` under a path; all keys are at one mark."""
+    """Return a tree with only ``node`` under a path; all keys have one mark."""
     for key in reversed(path):
         node = Node(mark, {key: Entry(mark, node)}, implied=True)
     return node
@@ -102,7 +102,7 @@ def _changes_kind(base: Node, over: Node) -> bool:
 
 
 def _nest(parts: list[str], entry: Entry) -> Entry:
-    """The entry of ``parts[0]``; each part's mark points at that part of the key."""
+    """Return the entry of ``parts[0]``; each part's mark points at that part of the key."""
     if len(parts) == 1:
         return entry
     dotted, node = ".".join(parts), entry.node
@@ -124,9 +124,9 @@ def _part_marks(parts: list[str], dotted: str, mark: Mark) -> list[Mark]:
 
 
 def _join(out: dict[str, Entry], key: str, entry: Entry, problems: list[Diagnostic]) -> None:
-    """Add an entry to a map; two writings of one field in the same map are an error.
+    """Add an entry to a map; writing one field twice in the same map is an error.
 
-    `undot` made every map anew, so that they may be added to in place.
+    `undot` created every map, so they can be changed in place.
     """
     old = out.get(key)
     if old is None:

@@ -1,8 +1,8 @@
-"""YAML text -> nodes that remember where they were written.
+"""Convert YAML text to nodes that know their position.
 
-YAML 1.2 core schema with our own small resolver over a parser's events: ``no``, ``on``,
-``12:30`` and dates stay text, ``1e-3`` is a number. ruamel's own ``compose`` expands aliases
-and merges keys; a document that means something else than it says is refused here instead.
+YAML 1.2 core schema with our own small resolver over a parser's events: ``no``, ``on``, ``12:30``
+and dates stay text, ``1e-3`` is a number. ruamel's own ``compose`` expands aliases and merges keys;
+here such documents are refused instead.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ _WORDS: dict[str, Scalar] = {
     **dict.fromkeys(("true", "True", "TRUE"), True),
     **dict.fromkeys(("false", "False", "FALSE"), False),
 }
-#: Characters that YAML does not allow, tab and line feed excepted.
+#: Characters that YAML does not allow, except tab and line feed.
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Entry:
-    """A key and its value. ``dotted`` is the whole key when it was written with dots."""
+    """A key and its value. ``dotted`` is the whole key if it was written with dots."""
 
     key: Mark
     node: Node
@@ -48,8 +48,8 @@ class Node:
     """A scalar, a list or a map.
 
     Attributes:
-        implied: a map that only a dotted key made necessary.
-        removed: fields that ``null`` removed from the map, and where that is written.
+        implied: True for a map that only a dotted key created.
+        removed: fields that ``null`` removed from the map, with positions.
     """
 
     mark: Mark
@@ -59,11 +59,11 @@ class Node:
 
     @property
     def entries(self) -> dict[str, Entry]:
-        """The entries of a map; nothing for anything else."""
+        """Return the entries of a map; empty for anything else."""
         return self.value if isinstance(self.value, dict) else {}
 
     def child(self, key: str | int) -> Node | None:
-        """The value under a key or an index, if there is one."""
+        """Return the value under a key or an index, if there is one."""
         if isinstance(self.value, dict):
             entry = self.value.get(str(key))
             return entry.node if entry else None
@@ -73,11 +73,11 @@ class Node:
 
 
 def to_data(node: Node, memo: dict[Node, Any] | None = None) -> Any:
-    """Plain data, maps sorted by key: the place of a key in a file never matters.
+    """Return plain data, maps sorted by key: the order of keys in a file never matters.
 
     Args:
         node: root of the tree.
-        memo: data of nodes seen before; trees that share nodes then share data.
+        memo: cache of nodes' data; trees that share nodes then share data.
     """
     memo = {} if memo is None else memo
     if node not in memo:
@@ -92,28 +92,28 @@ def to_data(node: Node, memo: dict[Node, Any] | None = None) -> Any:
 
 
 def count(node: Node) -> int:
-    """How many values a tree has."""
+    """Return the number of values in a tree."""
     items = node.value if isinstance(node.value, tuple) else ()
     return 1 + sum(count(e.node) for e in node.entries.values()) + sum(map(count, items))
 
 
 def parse(text: str, source: Source, problems: list[Diagnostic], shift: int = 0) -> Node:
-    """Turn text into a tree.
+    """Parse text into a tree.
 
     Args:
         text: one YAML document, lines end with a line feed.
-        source: what the marks point at.
-        problems: errors that do not stop the reading are added here.
+        source: source of the marks.
+        problems: non-fatal errors are added here.
         shift: columns by which the first line of the text is moved in the source.
 
     Raises:
-        SpecError: the text is not YAML, or nothing sensible can follow.
+        SpecError: the text is not YAML, or cannot be parsed further.
     """
     return _Builder(text, source, problems, shift).document()
 
 
 def _explained(error: Any, shift: int) -> tuple[str, str]:
-    """Message and hint for an error of the YAML parser, whose own words are for its authors."""
+    """Return message and hint for a YAML parser's error, whose own text is hard to understand."""
     problem, context, start = error.problem or "", error.context or "", error.context_mark
     if ("flow mapping" in context or "flow sequence" in context) and start is not None:
         what = "'{'" if "mapping" in context else "'['"
@@ -129,12 +129,12 @@ def _explained(error: Any, shift: int) -> tuple[str, str]:
 
 
 def _kind(event: Any) -> str:
-    """What an event is; the same for both parsers."""
+    """Return the type of an event, the same for both parsers."""
     return type(event).__name__
 
 
 class _Builder:
-    """Recursive descent over events, which are known by the names of their classes."""
+    """Recursive descent over events, identified by the names of their classes."""
 
     def __init__(
         self, text: str, source: Source, problems: list[Diagnostic], shift: int = 0
@@ -165,7 +165,7 @@ class _Builder:
     def _next(self) -> Any:
         try:
             event = next(self._events)
-        except Exception as error:  # ruamel lets ValueError and OverflowError of escapes through
+        except Exception as error:  # ruamel does not catch ValueError and OverflowError of escapes
             if not hasattr(error, "problem_mark"):
                 column = self._last.column - self._shift
                 self._stop("E002", str(error), "", self._last.line, column)

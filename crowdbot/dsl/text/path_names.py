@@ -1,4 +1,4 @@
-"""Names that become folders: ids of suites and scenarios, and labels of planners."""
+"""Names used as folders: ids of suites and scenarios, and labels of planners."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Annotated
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
 
-#: Longest name, and longest path of several; file systems take 255 bytes, and we append to it.
+#: Longest name, and longest path of several; file systems allow 255 bytes, and we append to it.
 LONGEST = 200
 _OURS = re.compile(r"\.partial|\.old-|\.failure\.json$")
 _SEED = re.compile(r"seed-\d+")
 
 
 def path_problem(name: str) -> str:
-    """Why a name cannot be a folder below the results' root; empty where it can.
+    """Return why a name cannot be a folder below the results' root; empty if it can.
 
     Args:
         name: a name, or several with ``/`` between them.
@@ -38,5 +38,5 @@ def _checked(name: str) -> str:
     return name
 
 
-#: Text that can be the path of a folder.
+#: Text that can be a folder's path.
 PathName = Annotated[str, AfterValidator(_checked)]

@@ -10,7 +10,7 @@ _PLAIN = re.compile(r"[A-Za-z_]([A-Za-z0-9_ ./+-]*[A-Za-z0-9_])?")
 
 
 def to_yaml(document: Any) -> str:
-    """Plain data as YAML, in the given order, innermost lists and maps on one line."""
+    """Return plain data as YAML, in the given order, innermost lists and maps on one line."""
     from ruamel.yaml import YAML  # slow to import, and few commands write documents
 
     yaml = YAML(typ="safe", pure=True)
@@ -25,6 +25,6 @@ def to_yaml(document: Any) -> str:
 
 
 def _represent_text(representer: Any, text: str) -> Any:
-    """Words stay bare unless they mean something else; what readers may disagree on is quoted."""
+    """Represent text without quotes unless it is ambiguous in some YAML reader."""
     style = None if _PLAIN.fullmatch(text) else '"'
     return representer.represent_scalar("tag:yaml.org,2002:str", text, style=style)

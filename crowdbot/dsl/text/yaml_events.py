@@ -1,8 +1,8 @@
-"""The events of a YAML text: what it consists of, in its order, each with its place.
+"""The parser events of a YAML text, in order and with positions.
 
-Two parsers give them, whose classes have the same names and attributes. libyaml (in C, by PyYAML)
-is about thirty times as fast and reads a YAML between 1.1 and 1.2; it gets texts in which the two
-agree. ruamel.yaml reads all others, and whatever is wrong: all messages are its.
+Two parsers produce them, with the same class names and attributes. libyaml (in C, by PyYAML) is
+about thirty times as fast and reads a YAML between 1.1 and 1.2; it gets texts in which both agree.
+ruamel.yaml reads all others, and invalid ones: all messages come from it.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ from collections.abc import Iterator
 from typing import Any
 
 #: Where the two may differ: line ends other than line feeds, tabs, byte order marks, directives,
-#: and what begins a block scalar, an explicit key, an anchor, an alias, a tag, or a JSON-like key.
+#: and starts of block scalars, explicit keys, anchors, aliases, tags, or JSON-like keys.
 _UNLIKE = re.compile(
     r"""[\t\r\x85\u2028\u2029\ufeff]|^%|(?:^|[^\w.)])(?:[?|>!]|[&*]\S)|["']:\S""", re.MULTILINE
 )
 
 
 def events_of(text: str) -> Iterator[Any]:
-    """All events, from the start of the stream to its end.
+    """Yield all events, from the start of the stream to its end.
 
     Raises:
-        MarkedYAMLError: of ruamel.yaml; the text is not YAML from here on.
+        MarkedYAMLError: from ruamel.yaml; the text is not YAML from here on.
     """
     quick = quick_events(text)
     if quick is not None:
@@ -34,7 +34,7 @@ def events_of(text: str) -> Iterator[Any]:
 
 
 def quick_events(text: str) -> list[Any] | None:
-    """The events by libyaml; None where ruamel.yaml has to look."""
+    """Return libyaml's events; None if ruamel.yaml is needed."""
     if not text.endswith("\n") or _UNLIKE.search(text):
         return None
     try:
@@ -49,9 +49,9 @@ def quick_events(text: str) -> list[Any] | None:
 
 
 def _is_plain(event: Any) -> bool:
-    """Whether an event says nothing but data, and has the same place in both parsers.
+    """Return True if an event is plain data with the same position in both parsers.
 
-    A value that nobody wrote stands where libyaml has already looked beyond it.
+    For an empty value, libyaml's position is too far ahead.
     """
     kind = type(event).__name__
     if kind == "ScalarEvent":

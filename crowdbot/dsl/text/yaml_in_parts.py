@@ -1,6 +1,6 @@
-"""Documents that repeat one another, written as YAML: what was written before is not again.
+"""Write similar documents as YAML, reusing text of repeated parts.
 
-The scenarios of a suite have most of their words in common, and a run writes three of them.
+The scenarios of a suite have most of their text in common, and a run writes three of them.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from typing import Any
 
 from crowdbot.dsl.text.plain_yaml import to_yaml
 
-#: Maps down to this one are taken apart: a scenario's robots, and what its crowd consists of.
+#: Depth of maps that are split: a scenario's robots, and a crowd's parts.
 _DEEPEST = 2
-#: Characters of a name by which something is taken apart.
+#: Characters of a name that would split something.
 _LONGEST = 40
 
 
 def to_yaml_in_parts(document: dict[str, Any]) -> str:
-    """What `to_yaml` makes of a document that has a map or list in it."""
+    """Return the same text as `to_yaml` for a document with nested maps or lists."""
     return "".join(_entries(document, 0))
 
 
@@ -33,24 +33,24 @@ def _entries(document: dict[str, Any], depth: int) -> Iterator[str]:
 
 
 def _is_word(key: str) -> bool:
-    """Whether a key stands before its value on one line; long and strange ones do not."""
+    """Return True if a key fits before its value on one line; long and unusual ones do not."""
     return key.isascii() and key.isidentifier() and len(key) <= _LONGEST
 
 
 def _is_block(document: dict[str, Any]) -> bool:
-    """Whether each of its entries has lines of its own; some of the others have, too."""
+    """Return True if each entry has its own lines, as in a block."""
     return any(isinstance(value, dict | list) for value in document.values())
 
 
 @lru_cache(maxsize=512)
 def _entry(key: str, value: str, depth: int) -> str:
-    """The lines of an entry in a map so deep."""
+    """Return the lines of an entry in a map at this depth."""
     return _below(key, json.loads(value), depth)
 
 
 @lru_cache(maxsize=512)
 def _before(key: str, depth: int) -> str:
-    """The line before the entries of a map."""
+    """Return the line before the entries of a map."""
     return _below(key, {"_": []}, depth).partition("\n")[0]
 
 

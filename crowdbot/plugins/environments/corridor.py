@@ -1,4 +1,4 @@
-"""Corridor: two side walls, two end walls that stop only the robot, portals beyond the ends."""
+"""Corridor: two side walls, two end walls that stop only the robot, and portals beyond the ends."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from crowdbot.plugins.environments.shapes import PillarSpec, check_heights
 
 
 class CorridorSpec(EnvironmentSpec):
-    """Origin on the centre line of the start wall, x along the corridor."""
+    """A corridor along x; the origin is on the centre line of the start wall."""
 
     kind: Literal["corridor"] = "corridor"
     length: PositiveLength = Field(default=50.0, description="Length along x, m.")
@@ -47,11 +47,11 @@ class CorridorSpec(EnvironmentSpec):
 
     @property
     def area(self) -> Rectangle:
-        """The floor between the walls."""
+        """Return the floor between the walls."""
         return Rectangle(x=(0.0, self.length), y=(-0.5 * self.width, 0.5 * self.width))
 
     def columns(self) -> tuple[Pillar, ...]:
-        """All pillars: the named ones, the grid's, the random ones."""
+        """Return all pillars: named, in the grid, and random."""
         found = tuple(p.pillar(self.wall_height) for p in self.pillars.values())
         for many in (self.pillar_grid, self.pillar_field):
             if many is not None:
@@ -59,7 +59,10 @@ class CorridorSpec(EnvironmentSpec):
         return found
 
     def place(self) -> Place:
-        """Side walls reach as far as the portals; end walls exist for the robot alone."""
+        """Return the place: side walls reach as far as the portals.
+
+        End walls stop only the robot.
+        """
         half, length, heights = 0.5 * self.width, self.length, (0.0, self.wall_height)
         first = min([0.0, *(p.x[0] for p in self.portals.values())])
         last = max([length, *(p.x[1] for p in self.portals.values())])

@@ -1,4 +1,4 @@
-"""Corridor as plain geometry."""
+"""Build the corridor's geometry."""
 
 from __future__ import annotations
 
@@ -7,5 +7,5 @@ from crowdbot.plugins.environments.corridor import CorridorSpec
 
 
 def build(spec: CorridorSpec) -> EnvironmentParts:
-    """Side walls, end walls and pillars."""
+    """Return side walls, end walls and pillars."""
     return place_parts(spec, spec.place())

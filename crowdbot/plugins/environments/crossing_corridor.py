@@ -26,12 +26,12 @@ from crowdbot.plugins.environments.walkways import (
 )
 
 _RIGHT = math.pi / 2
-#: Numbers of a corner and of the arms' ends in the outline without rounding.
+#: Indices of a corner and of the arms' ends in the outline without rounding.
 _CORNERS = (2, 5, 8, 11)
 
 
 class CrossingCorridorSpec(WalkwaySpec):
-    """Origin where the middle lines cross; the first corridor lies along x."""
+    """Two corridors that cross at the origin; the first lies along x."""
 
     kind: Literal["crossing_corridor"] = "crossing_corridor"
     length: PositiveLength = Field(default=30.0, description="Of the first corridor, m.")
@@ -46,7 +46,7 @@ class CrossingCorridorSpec(WalkwaySpec):
     )
 
     def place(self) -> Place:
-        """Four arms; people walk through their ends."""
+        """Return the place with four arms; people walk through their ends."""
         plain, points, ends = self._outline(), list[outlines.Point](), list[int]()
         for k, point in enumerate(plain):
             if k in _CORNERS:
@@ -59,9 +59,9 @@ class CrossingCorridorSpec(WalkwaySpec):
         return Place(faces=walkway(tuple(points), ends, self.wall_height))
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """The arms of the first corridor and the middle; those of the second where it is square.
+        """Return the arms of the first corridor, the middle, and the second's arms if square.
 
-        Where it is not, ``across`` is the box around the second.
+        If not square, ``across`` is the box around the second corridor.
         """
         a, b, half = 0.5 * self.width, 0.5 * self.cross_width, 0.5 * self.length
         wide = max(abs(x) for x, _ in (self._corner(s, t) for s in (-1, 1) for t in (-1, 1)))
@@ -75,7 +75,7 @@ class CrossingCorridorSpec(WalkwaySpec):
         return found | {"across": box(-x, x, -y, y)}
 
     def usual_portals(self) -> dict[str, Rectangle]:
-        """Behind the ends of the arms: of the second corridor only where it is square."""
+        """Return portals behind the ends of the arms; for the second corridor only if square."""
         a, b, half = 0.5 * self.width, 0.5 * self.cross_width, 0.5 * self.length
         found = {
             "west": box(-half - PORTAL_DEPTH, -half, -a, a),
@@ -88,7 +88,7 @@ class CrossingCorridorSpec(WalkwaySpec):
         return found
 
     def check_shape(self) -> None:
-        """Arms are longer than what the crossing takes of them."""
+        """Refuse arms that are shorter than the crossing."""
         outline = self._outline()
         for k in _CORNERS:
             (ax, ay), (bx, by), (cx, cy) = outline[k - 1], outline[k], outline[(k + 1) % 12]
@@ -104,13 +104,13 @@ class CrossingCorridorSpec(WalkwaySpec):
                 )
 
     def _corner(self, above: int, beside: int) -> outlines.Point:
-        """Where a side wall of the first corridor meets one of the second."""
+        """Return where a side wall of the first corridor meets one of the second."""
         y = 0.5 * above * self.width
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return (y * cos - 0.5 * beside * self.cross_width) / sin, y
 
     def _outline(self) -> outlines.Outline:
-        """East end, corner, end of the second corridor, and on, counter-clockwise."""
+        """Return the outline, counter-clockwise from the east end."""
         a, b, half = 0.5 * self.width, 0.5 * self.cross_width, 0.5 * self.length
         ux, uy = math.cos(self.angle), math.sin(self.angle)
         vx, vy, far = -uy * b, ux * b, 0.5 * self.cross_length

@@ -1,4 +1,4 @@
-"""Two rooms with a narrow way between them: a doorway and a bottleneck."""
+"""Two rooms joined by a narrow passage: a doorway and a bottleneck."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from crowdbot.plugins.environments.walkways import PORTAL_DEPTH, WalkwaySpec, bo
 
 
 class _TwoRoomsSpec(WalkwaySpec):
-    """Origin in the middle of the narrow way, x through it."""
+    """Two rooms joined by a passage along x; the origin is in its middle."""
 
     room_length: PositiveLength = Field(default=10.0, description="Of each room along x, m.")
     width: PositiveLength = Field(default=8.0, description="Of both rooms along y, m.")
@@ -33,16 +33,16 @@ class _TwoRoomsSpec(WalkwaySpec):
 
     @property
     def depth(self) -> float:
-        """How long the narrow way is, m."""
+        """Return the length of the passage, m."""
         raise NotImplementedError
 
     @property
     def cut(self) -> float:
-        """How far the corners before it are cut off, m."""
+        """Return how far the corners before the passage are cut off, m."""
         return 0.0
 
     def place(self) -> Place:
-        """A room, two solids with the way between them, and the other room."""
+        """Return the place: two rooms, and two solids with the passage between them."""
         half, far = 0.5 * self.width, 0.5 * self.depth + self.room_length
         outline: outlines.Outline = ((-far, -half), (far, -half), (far, half), (-far, half))
         ends = (1, 3) if self.ends == "open" else ()
@@ -56,7 +56,7 @@ class _TwoRoomsSpec(WalkwaySpec):
         )
 
     def _post(self, wall: float, edge: float) -> outlines.Outline:
-        """One side of the way, from the wall of the rooms to its edge."""
+        """Return one side of the passage, from the rooms' wall to the passage's edge."""
         before, behind = -0.5 * self.depth, 0.5 * self.depth
         if self.cut == 0.0:
             return ((before, wall), (behind, wall), (behind, edge), (before, edge))
@@ -75,7 +75,7 @@ class _TwoRoomsSpec(WalkwaySpec):
         return self.offset + 0.5 * self.opening
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """Both rooms and the way between them."""
+        """Return both rooms and the passage between them."""
         half, near = 0.5 * self.width, 0.5 * self.depth
         far = near + self.room_length
         return {
@@ -85,7 +85,7 @@ class _TwoRoomsSpec(WalkwaySpec):
         }
 
     def usual_portals(self) -> dict[str, Rectangle]:
-        """Behind the far sides, where these are open."""
+        """Return portals behind the far sides, where these are open."""
         if self.ends == "walls":
             return {}
         half, far = 0.5 * self.width, 0.5 * self.depth + self.room_length
@@ -95,21 +95,21 @@ class _TwoRoomsSpec(WalkwaySpec):
         }
 
     def check_shape(self) -> None:
-        """The opening lies within the wall."""
+        """Refuse an opening that does not lie within the wall."""
         room = 0.5 * self.width - self.cut
         if not (self._low > -room and self._high < room):
             raise ValueError("the opening must lie within the width of the rooms")
 
 
 class DoorwaySpec(_TwoRoomsSpec):
-    """Two rooms and a door in the wall between them."""
+    """Two rooms with a door in the wall between them."""
 
     kind: Literal["doorway"] = "doorway"
     thickness: PositiveLength = Field(default=0.2, description="Of the wall, m.")
 
     @property
     def depth(self) -> float:
-        """Thickness of the wall, m."""
+        """Return the thickness of the wall, m."""
         return self.thickness
 
 
@@ -124,16 +124,16 @@ class BottleneckSpec(_TwoRoomsSpec):
 
     @property
     def depth(self) -> float:
-        """Length of the passage, m."""
+        """Return the length of the passage, m."""
         return self.length
 
     @property
     def cut(self) -> float:
-        """How far the corners are cut off, m."""
+        """Return how far the corners are cut off, m."""
         return self.funnel
 
     def check_shape(self) -> None:
-        """The funnel is shorter than the passage."""
+        """Refuse a funnel that is longer than the passage."""
         super().check_shape()
         if not self.funnel < self.length:
             raise ValueError("funnel must be smaller than length")

@@ -1,4 +1,4 @@
-"""Floor: a rectangle with free walls, blocks and pillars, fenced, open, or a torus."""
+"""Floor: a rectangle with walls, blocks and pillars; fenced, open, or a torus."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class FloorSpec(EnvironmentSpec):
 
     @property
     def periodic_floor(self) -> Rectangle | None:
-        """The whole floor of a torus."""
+        """Return the whole floor if it is a torus."""
         return self.area if self.border == "torus" else None
 
     @model_validator(mode="after")
@@ -54,7 +54,7 @@ class FloorSpec(EnvironmentSpec):
         return self
 
     def place(self) -> Place:
-        """Border walls face inwards; what stands on the floor faces outwards."""
+        """Return the place: border walls face inwards, obstacles face outwards."""
         usual = self.wall_height
         (x0, x1), (y0, y1) = self.area.x, self.area.y
         fence = (closed(self.area.polygon, (0.0, usual)),)

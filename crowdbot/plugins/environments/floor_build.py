@@ -1,4 +1,4 @@
-"""Floor as plain geometry."""
+"""Build the floor's geometry."""
 
 from __future__ import annotations
 
@@ -7,5 +7,5 @@ from crowdbot.plugins.environments.floor import FloorSpec
 
 
 def build(spec: FloorSpec) -> EnvironmentParts:
-    """Border walls face inwards; the outlines of solids face outwards."""
+    """Return the parts: border walls face inwards, outlines of solids face outwards."""
     return place_parts(spec, spec.place())

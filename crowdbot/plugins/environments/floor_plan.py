@@ -1,4 +1,4 @@
-"""Floor plans from elsewhere: GeoJSON, WKT as of JuPedSim, and occupancy grids of ROS."""
+"""Floor plans from files: GeoJSON, JuPedSim's WKT, and ROS occupancy grids."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class FloorPlanSpec(FloorPlanFields):
     """
 
     def beside(self, name: str, file: Path) -> dict[str, str]:
-        """The image that a map names, if the document names none."""
+        """Return the image that a map names, if the document names none."""
         if name != "file" or self.read_as != "ros_map" or self.image is not None:
             return {}
         from crowdbot.plugins.environments.ros_map_build import image_of
@@ -26,18 +26,18 @@ class FloorPlanSpec(FloorPlanFields):
         return {"image": found} if found else {}
 
     def place(self) -> Place:
-        """The walls of the plan.
+        """Return the walls of the plan.
 
         Raises:
             InputError: the file cannot be read, or is not a plan.
         """
-        # Polygons need shapely, with numpy: only documents with a plan wait for them.
+        # Polygons need shapely and numpy: import them only for documents with a plan.
         from crowdbot.plugins.environments.floor_plan_build import place_of
 
         return place_of(self)
 
     def extent(self) -> Rectangle:
-        """The box around the plan."""
+        """Return the box around the plan."""
         points = [p for side in self.place().segments() for p in side]
         xs, ys = [p[0] for p in points], [p[1] for p in points]
         return Rectangle(x=(min(xs), max(xs)), y=(min(ys), max(ys)))

@@ -1,4 +1,4 @@
-"""Floor plans as places: read, repaired, simplified."""
+"""Read, repair and simplify floor plans."""
 
 from __future__ import annotations
 
@@ -32,24 +32,25 @@ from crowdbot.plugins.environments.ros_map_build import (
 )
 
 _LOG = logging.getLogger(__name__)
-#: More corners than this cannot be simulated.
+#: Largest number of corners that can be simulated.
 MOST_CORNERS = 20_000
-#: No plan is longer or wider, m; the usual cause is a wrong unit.
+#: Largest length or width of a plan, m; the usual cause of more is a wrong unit.
 MOST_SIDE = 5_000.0
-#: Coordinates are whole multiples of this, so that shapely's answers are the same everywhere, m.
+#: Coordinates are rounded to multiples of this, so that shapely gives the same result everywhere,
+#: m.
 _GRID = 1e-6
 
 
 @dataclass
 class _Plan:
-    """What was read: the walkable floor, and solids with their heights."""
+    """The parsed plan: the walkable floor, and solids with their heights."""
 
     walkable: list[Any] = field(default_factory=list)
     solids: list[tuple[Any, tuple[float, float]]] = field(default_factory=list)
 
 
 def place_of(spec: FloorPlanFields) -> Place:
-    """The walls of a plan.
+    """Return the walls of a plan.
 
     Raises:
         InputError: its file cannot be read, or is not a plan.
@@ -62,7 +63,7 @@ def place_of(spec: FloorPlanFields) -> Place:
 
 
 def _stamp(file: Path | None) -> tuple[int, int]:
-    """What changes with a file that no hash guards."""
+    """Return modification time and size, which change with a file that has no hash."""
     if file is None:
         return 0, 0
     found = file.stat()
@@ -117,7 +118,7 @@ def _place_of(
 
 
 def _too_small(plan: _Plan) -> str:
-    """What there is, if it is smaller than what is left away: a wrong unit is the usual cause."""
+    """Describe a plan that is smaller than the smallest kept detail; usually the unit is wrong."""
     shapes = [*plan.walkable, *(shape for shape, _ in plan.solids)]
     if not shapes:
         return ""
@@ -126,7 +127,7 @@ def _too_small(plan: _Plan) -> str:
 
 
 def _check_size(floor: list[Any], spec: FloorPlanFields, name: str) -> None:
-    """Refuse a floor that is larger than any crowd is simulated on."""
+    """Refuse a floor that is larger than any simulated crowd needs."""
     width, height = _size(floor) if floor else (0.0, 0.0)
     if max(width, height) > MOST_SIDE:
         raise InputError(
@@ -165,7 +166,7 @@ def _read(
 
 
 def _read_ros_map(spec: FloorPlanFields, file: Path | None, image: Path | None) -> Any:
-    assert file is not None  # checked with the document
+    assert file is not None  # the document's validation checked this
     found = read_map(file)
     grey = read_grey(image or file.parent / found.image, see_through=found.mode == "scale")
     cells = free_cells(found, grey, unknown_is_free=spec.unknown == "free")
@@ -196,7 +197,7 @@ def _from_json(text: str, name: str) -> Any:
 
 
 def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Each geometry with its properties."""
+    """Yield each geometry with its properties."""
     kind = content.get("type") if isinstance(content, dict) else None
     if kind == "FeatureCollection":
         for feature in content.get("features") or ():
@@ -206,10 +207,10 @@ def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
             yield shape, dict(content.get("properties") or {})
     elif kind in ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "GeometryCollection"):
         try:
-            with np.errstate(invalid="ignore"):  # NaN is an error of its own, with a message
+            with np.errstate(invalid="ignore"):  # NaN is reported separately
                 shape = shape_of(content)
             yield shape, {}
-        except Exception as error:  # whatever shapely makes of wrong nesting
+        except Exception as error:  # shapely raises many types for wrong nesting
             raise InputError(f"{name}: a {kind} is damaged: {error}") from error
     elif kind not in ("Point", "MultiPoint"):
         raise InputError(f"{name}: is not GeoJSON: a geometry has type {kind!r}")
@@ -218,7 +219,7 @@ def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
 def _sort_in(
     shape: Any, properties: dict[str, Any], spec: FloorPlanFields, plan: _Plan, name: str
 ) -> None:
-    """Put a geometry among the floor or the solids; zones and portals are neither."""
+    """Add a geometry to the floor or the solids; zones and portals are ignored."""
     kind = properties.get("kind", "")
     if kind in ("zone", "portal"):
         return
@@ -253,7 +254,7 @@ def _heights(properties: dict[str, Any], spec: FloorPlanFields, name: str) -> tu
 
 # ----------------------------------------------------------------------------- polygons
 def _repaired(shape: Any, name: str) -> Any:
-    """A valid geometry on a grid; what was not valid is repaired, and said."""
+    """Return a valid geometry on a grid, with a warning if it was repaired."""
     if not shapely.is_valid(shape):
         why = shapely.is_valid_reason(shape)
         _LOG.warning("%s: an outline was repaired: %s", name, why)
@@ -268,7 +269,7 @@ def _polygons(shape: Any) -> list[Any]:
 
 
 def _simple(polygons: list[Any], spec: FloorPlanFields, name: str) -> list[Any]:
-    """Polygons without what is too small, in an order of their own."""
+    """Return polygons without details that are too small, in a stable order."""
     del name
     found = []
     for polygon in polygons:
@@ -282,7 +283,7 @@ def _simple(polygons: list[Any], spec: FloorPlanFields, name: str) -> list[Any]:
 
 
 def _ring(ring: Any) -> outlines.Outline:
-    """Corners of a closed ring, counter-clockwise."""
+    """Return the corners of a closed ring, counter-clockwise."""
     points = tuple((float(x) + 0.0, float(y) + 0.0) for x, y in ring.coords[:-1])
     return points if shapely.is_ccw(ring) else points[::-1]
 

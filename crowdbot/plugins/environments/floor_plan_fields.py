@@ -29,7 +29,7 @@ _FarLength = Annotated[float, Quantity("length", most=1e8)]
 
 
 class FloorPlanFields(EnvironmentSpec):
-    """What a document says about a floor plan."""
+    """The fields of a floor plan in a document."""
 
     kind: Literal["floor_plan"] = "floor_plan"
     file: Asset | None = Field(

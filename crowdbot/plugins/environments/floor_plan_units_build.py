@@ -1,4 +1,4 @@
-"""Whether the numbers of a vector plan can be what its unit says: metres, degrees, feet."""
+"""Check that the numbers of a vector plan fit its unit: metres, degrees, feet."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ _EARTH = 6_371_008.8
 #: Names of reference systems whose numbers are longitude and latitude: OGC CRS84, EPSG 4326 and
 #: 4979, all WGS 84.
 _IN_DEGREES = re.compile(r"CRS:?84|EPSG:+[\d.]*:?(4326|4979)\b|WGS[ _]?(19)?84$", re.IGNORECASE)
-#: No plan is smaller, m, nor wider in degrees, which are 100 km.
+#: Smallest plan, m, and largest plan in degrees, which is 100 km.
 _LEAST, _MOST_DEGREES = 1.0, 1.0
-#: A plan farther from the world's (0, 0) was not moved there, m.
+#: Largest distance of a plan from the world's origin, m; a plan farther away was not moved there.
 _FAR = 1e5
 
 
 def declared_crs(content: Any) -> str:
-    """The reference system that a GeoJSON file names; empty where it names none.
+    """Return the reference system that a GeoJSON file names, or "".
 
-    The member ``crs`` is of GeoJSON 2008; RFC 7946 has dropped it, programs still write it.
+    The member ``crs`` is from GeoJSON 2008; RFC 7946 dropped it, but programs still write it.
     """
     crs = content.get("crs") if isinstance(content, dict) else None
     properties = crs.get("properties") if isinstance(crs, dict) else None
@@ -40,13 +40,13 @@ def declared_crs(content: Any) -> str:
 def check_numbers(
     shapes: list[Any], spec: FloorPlanFields, name: str, crs: str, told: bool
 ) -> None:
-    """Whether numbers can be what the unit says.
+    """Check that the coordinates fit the unit.
 
     Args:
-        shapes: as read.
-        name: of the file.
+        shapes: as read from the file.
+        name: the file's name.
         crs: from `declared_crs`.
-        told: whether the document says the unit.
+        told: True if the document gives the unit.
 
     Raises:
         InputError: degrees are read as lengths, or lengths as degrees.
@@ -85,13 +85,13 @@ def check_numbers(
 
 
 def check_place(shapes: list[Any], spec: FloorPlanFields, name: str) -> None:
-    """Whether a plan lies near the world's (0, 0).
+    """Check that a plan lies near the world's origin.
 
     Args:
         shapes: world frame, m.
 
     Raises:
-        InputError: it is so far away that it was not meant to be there.
+        InputError: it is too far away to be intended.
     """
     if not shapes:
         return
@@ -113,7 +113,7 @@ def check_place(shapes: list[Any], spec: FloorPlanFields, name: str) -> None:
 
 
 def in_metres(shape: Any, spec: FloorPlanFields, name: str) -> Any:
-    """A geometry in the world frame, m.
+    """Return a geometry in the world frame, m.
 
     Raises:
         InputError: a coordinate is not finite.
@@ -130,7 +130,7 @@ def in_metres(shape: Any, spec: FloorPlanFields, name: str) -> Any:
 
 
 def moved(points: Array, spec: FloorPlanFields) -> Array:
-    """Points (N, 2) of a plan in the world frame, m."""
+    """Return points (N, 2) of a plan in the world frame, m."""
     found: Array = _turned(points, spec.rotation) + np.array(spec.origin)
     return found
 
@@ -142,7 +142,7 @@ def _turned(points: Array, angle: float) -> Array:
 
 
 def _metres_a_degree(latitude: float) -> Array:
-    """Of longitude and of latitude, m."""
+    """Return metres per degree of longitude and of latitude."""
     north = math.radians(1.0) * _EARTH
     return np.array([north * math.cos(math.radians(latitude)), north])
 

@@ -26,12 +26,12 @@ from crowdbot.plugins.environments.shapes import (
 )
 from crowdbot.plugins.environments.walkways import OpeningSpec, WalkwaySpec, box, hall
 
-#: A gate's lower and upper edge, and the top of a low wall, where a document does not say, m.
+#: Default lower and upper edge of a gate, and top of a low wall, m.
 GATE, LOW_WALL = (0.3, 1.1), 0.3
 
 
 class _HallSpec(WalkwaySpec):
-    """A rectangle around the origin; what stands in it has names."""
+    """A rectangular hall around the origin; obstacles in it have names."""
 
     length: PositiveLength = Field(default=30.0, description="Along x, m.")
     width: PositiveLength = Field(default=20.0, description="Along y, m.")
@@ -45,15 +45,15 @@ class _HallSpec(WalkwaySpec):
 
     @property
     def area(self) -> Rectangle:
-        """The floor."""
+        """Return the floor."""
         return box(-0.5 * self.length, 0.5 * self.length, -0.5 * self.width, 0.5 * self.width)
 
     def usual_portals(self) -> dict[str, Rectangle]:
-        """One behind each opening."""
+        """Return one portal behind each opening."""
         return hall(self.area, self.openings, self.wall_height)[1]
 
     def check_shape(self) -> None:
-        """Everything stands on the floor."""
+        """Refuse obstacles that do not stand on the floor."""
         check_heights({**self.blocks, **self.pillars}, self.wall_height)
         for name, point in self._points():
             if not self.area.contains(*point):
@@ -61,7 +61,7 @@ class _HallSpec(WalkwaySpec):
         self.columns()
 
     def columns(self) -> tuple[Pillar, ...]:
-        """All pillars: the named ones, the grid's, the random ones."""
+        """Return all pillars: named, in the grid, and random."""
         found = tuple(p.pillar(self.wall_height) for p in self.pillars.values())
         for many in (self.pillar_grid, self.pillar_field):
             if many is not None:
@@ -69,11 +69,11 @@ class _HallSpec(WalkwaySpec):
         return found
 
     def solids(self) -> tuple[Solid, ...]:
-        """The blocks."""
+        """Return the blocks."""
         return tuple(block.solid(self.wall_height) for block in self.blocks.values())
 
     def place(self) -> Place:
-        """Outer walls, and what stands between them."""
+        """Return the outer walls and the obstacles between them."""
         faces, _ = hall(self.area, self.openings, self.wall_height)
         return Place(faces=faces, solids=self.solids(), pillars=self.columns())
 
@@ -102,7 +102,7 @@ class ShedSpec(_HallSpec):
     )
 
     def solids(self) -> tuple[Solid, ...]:
-        """Blocks, gates and low walls."""
+        """Return blocks, gates and low walls."""
         gates, walls = self._gates(), self._low_walls()
         return (
             *super().solids(),
@@ -111,7 +111,7 @@ class ShedSpec(_HallSpec):
         )
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """The halves of the hall and a strip along its west and east side."""
+        """Return the halves of the hall, and strips along its west and east sides."""
         x, y = 0.5 * self.length, 0.5 * self.width
         return {
             "west": box(-x, -0.75 * x, -y, y),
@@ -164,14 +164,14 @@ class PlazaSpec(_HallSpec):
     )
 
     def columns(self) -> tuple[Pillar, ...]:
-        """The fountain and the trees."""
+        """Return the fountain and the trees."""
         if self.fountain == 0.0:
             return super().columns()
         heights = (0.0, self.fountain_height)
         return (Pillar(x=0.0, y=0.0, radius=self.fountain, heights=heights), *super().columns())
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """Four strips around the middle."""
+        """Return four strips around the middle."""
         x, y = 0.5 * self.length, 0.5 * self.width
         return {
             "west": box(-x, -0.6 * x, -y, y),
@@ -182,7 +182,7 @@ class PlazaSpec(_HallSpec):
 
 
 def _upright(wall: UprightSpec, base: float, top: float) -> Solid:
-    """A wall with heights of its own where it names none."""
+    """Return a wall as a solid, with the given heights if it names none."""
     assert isinstance(wall, WallSpec)
     named = "base" in wall.model_fields_set or wall.height is not None
     bottom, upper = wall.heights(top) if named else (base, top)

@@ -43,14 +43,14 @@ class CornerSpec(WalkwaySpec):
     )
 
     def place(self) -> Place:
-        """People walk through both ends."""
+        """Return the place; people walk through both ends."""
         start, outer, right, left, inner, back = self._outline()
         arc = rounded(left, inner, back, self.corner_radius)
         outline = (start, outer, right, left, *arc, back)
         return Place(faces=walkway(outline, (2, len(outline) - 1), self.wall_height))
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """What lies before the turn and behind it; where that is askew, a box around it."""
+        """Return the areas before and behind the turn; if askew, the box around the second."""
         half, (_, _, right, left, inner, _) = 0.5 * self.width, self._outline()
         found = {"start": box(-self.length, min(inner[0], -half), -half, half)}
         if self.angle == _RIGHT:
@@ -58,18 +58,18 @@ class CornerSpec(WalkwaySpec):
             found["turn"] = box(-half, half, -half, half)
             return found
         ux, uy = math.cos(self.angle), math.sin(self.angle)
-        # Its corners are those of the end and, across the middle line, those before them.
+        # The corners are those of the end and, across the middle line, those before them.
         back = [(x - self._away(inner) * ux, y - self._away(inner) * uy) for x, y in (right, left)]
         xs, ys = zip(*(right, left, *back), strict=True)
         return found | {"end": box(min(xs), max(xs), min(ys), max(ys))}
 
     def _away(self, inner: outlines.Point) -> float:
-        """From the inner corner to the end, along the part behind the turn, m."""
+        """Return the distance from the inner corner to the end behind the turn, m."""
         along = inner[0] * math.cos(self.angle) + inner[1] * math.sin(self.angle)
         return self.beyond - along
 
     def usual_portals(self) -> dict[str, Rectangle]:
-        """Behind the start; behind the end where the turn is square."""
+        """Return a portal behind the start, and one behind the end if the turn is square."""
         half = 0.5 * self.width
         found = {"start": box(-self.length - PORTAL_DEPTH, -self.length, -half, half)}
         if self.angle == _RIGHT:
@@ -77,7 +77,7 @@ class CornerSpec(WalkwaySpec):
         return found
 
     def check_shape(self) -> None:
-        """Both parts are longer than the turn."""
+        """Refuse parts that are shorter than the turn."""
         start, _, _, left, inner, back = self._outline()
         room = min(inner[0] - back[0], math.dist(inner, left))
         along = math.cos(self.angle) * (left[0] - inner[0]) + math.sin(self.angle) * (
@@ -90,7 +90,7 @@ class CornerSpec(WalkwaySpec):
             raise ValueError(f"corner_radius {self.corner_radius:g} m is too large for the turn")
 
     def _outline(self) -> outlines.Outline:
-        """Start, outer corner, both sides of the end, inner corner, start again."""
+        """Return the outline: start, outer corner, both sides of the end, inner corner, start."""
         half, cos, sin = 0.5 * self.width, math.cos(self.angle), math.sin(self.angle)
         cos = 0.0 if self.angle == _RIGHT else cos
         turn = half * (cos - 1.0) / sin
@@ -112,7 +112,7 @@ class TJunctionSpec(WalkwaySpec):
     stem_width: PositiveLength = Field(default=3.0, description="Of the other one, m.")
 
     def place(self) -> Place:
-        """People walk through the three ends."""
+        """Return the place; people walk through the three ends."""
         half, low, stem = 0.5 * self.length, 0.5 * self.width, 0.5 * self.stem_width
         end = -low - self.stem_length
         outline = (
@@ -122,7 +122,7 @@ class TJunctionSpec(WalkwaySpec):
         return Place(faces=walkway(outline, (0, 2, 5), self.wall_height))
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """The three arms and the middle."""
+        """Return the three arms and the middle."""
         half, low, stem = 0.5 * self.length, 0.5 * self.width, 0.5 * self.stem_width
         return {
             "west": box(-half, -stem, -low, low),
@@ -132,7 +132,7 @@ class TJunctionSpec(WalkwaySpec):
         }
 
     def usual_portals(self) -> dict[str, Rectangle]:
-        """Behind the three ends."""
+        """Return portals behind the three ends."""
         half, low, stem = 0.5 * self.length, 0.5 * self.width, 0.5 * self.stem_width
         end = -low - self.stem_length
         return {
@@ -142,7 +142,7 @@ class TJunctionSpec(WalkwaySpec):
         }
 
     def check_shape(self) -> None:
-        """The stem meets the corridor's side."""
+        """Refuse a stem that does not meet the corridor's side."""
         if not self.stem_width < self.length:
             raise ValueError("stem_width must be smaller than length")
 

@@ -1,4 +1,4 @@
-"""Many pillars at once: in a grid, or drawn with a seed."""
+"""Sets of pillars: in a grid, or drawn with a seed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pydantic import Field
 from crowdbot.plugin import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec, outlines
 
 Count = Annotated[int, Ge(1), Le(1000)]
-#: Draws for one pillar before there is no room for it.
+#: Attempts to place one pillar before giving up.
 _ATTEMPTS = 1000
 
 
@@ -28,7 +28,7 @@ class PillarGridSpec(Spec):
     )
 
     def pillars(self, floor: Rectangle, top: float) -> tuple[Pillar, ...]:
-        """As many gaps as pillars and one more along each side, all equal."""
+        """Return the pillars; along each side all gaps are equal, one more than pillars."""
         area = self.area or floor
         xs, ys = _even(area.x, self.columns), _even(area.y, self.rows)
         return tuple(
@@ -37,7 +37,7 @@ class PillarGridSpec(Spec):
 
 
 class PillarFieldSpec(Spec):
-    """Pillars at random places, with least gaps; the same seed gives the same pillars."""
+    """Pillars at random places with minimum gaps; the same seed gives the same pillars."""
 
     count: Count = Field(description="How many.")
     seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(default=0, description="Draws them.")
@@ -56,7 +56,7 @@ class PillarFieldSpec(Spec):
     )
 
     def pillars(self, floor: Rectangle, top: float) -> tuple[Pillar, ...]:
-        """One after the other, each where the first free draw is.
+        """Return the pillars, placed one by one at the first free random position.
 
         Raises:
             ValueError: they do not fit.
@@ -64,7 +64,7 @@ class PillarFieldSpec(Spec):
         return _drawn(self, self.area or floor, top)
 
     def draw(self, area: Rectangle, top: float) -> tuple[Pillar, ...]:
-        """What `pillars` says, drawn anew."""
+        """Draw the pillars of `pillars`, without its cache."""
         found = list[Pillar]()
         for number in range(self.count):
             radius = self._radius(number)
@@ -99,7 +99,7 @@ class PillarFieldSpec(Spec):
         return int.from_bytes(hashlib.sha256(text).digest()[:6], "big") / 2.0**48
 
 
-@lru_cache(maxsize=64)  # a suite asks for the same field in each of its scenarios
+@lru_cache(maxsize=64)  # every scenario of a suite asks for the same field
 def _drawn(field: PillarFieldSpec, area: Rectangle, top: float) -> tuple[Pillar, ...]:
     return field.draw(area, top)
 

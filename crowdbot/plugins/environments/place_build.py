@@ -1,4 +1,4 @@
-"""Any environment whose spec says what its place is made of, as plain geometry."""
+"""Build any environment whose spec gives its place."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from crowdbot.plugin import EnvironmentParts, EnvironmentSpec, InputError, place
 
 
 def build(spec: EnvironmentSpec) -> EnvironmentParts:
-    """The arrays of the place.
+    """Return the arrays of the place.
 
     Raises:
-        InputError: the spec does not say what it is made of.
+        InputError: the spec gives no place.
     """
     place = spec.place()
     if place is None:

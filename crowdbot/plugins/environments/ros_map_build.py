@@ -1,4 +1,4 @@
-"""Occupancy grids of ROS: ``map.yaml`` with a PGM or PNG image, as nav2's map server reads them.
+"""ROS occupancy grids: ``map.yaml`` with a PGM or PNG image, read as nav2's map server does.
 
 Format: https://docs.nav2.org/configuration/packages/configuring-map-server.html.
 """
@@ -18,11 +18,11 @@ from ruamel.yaml.error import YAMLError
 
 from crowdbot.plugin import InputError, did_you_mean, nearest
 
-#: Larger images than this are a mistake, px.
+#: Largest image, px; anything larger is a mistake.
 MOST_PIXELS = 64_000_000
-#: Thresholds of a map that names none: those of ROS, by which the grey 205 is unknown.
+#: Default thresholds, those of ROS, by which the grey 205 is unknown.
 _OCCUPIED, _FREE = 0.65, 0.196
-#: What pixels mean, the usual first.
+#: Interpretations of pixels, the default first.
 _MODES = ("trinary", "scale", "raw")
 _HEADER = re.compile(rb"(P[25])\s+((?:#[^\n]*\n\s*)*)(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s+"
                      rb"(?:#[^\n]*\n\s*)*(\d+)\s")  # fmt: skip
@@ -30,16 +30,16 @@ _HEADER = re.compile(rb"(P[25])\s+((?:#[^\n]*\n\s*)*)(\d+)\s+(?:#[^\n]*\n\s*)*(\
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RosMap:
-    """A ``map.yaml``.
+    """The contents of a ``map.yaml``.
 
     Attributes:
-        image: path of the image, as written.
+        image: image path as written in the file.
         resolution: side of a cell, m.
         origin: x, y (m) and yaw (rad) of the lower left corner of the image.
-        negate: whether dark cells are free.
+        negate: True if dark cells are free.
         occupied, free: probability above which a cell is occupied, below which it is free.
-        mode: ``raw``: pixels are per cent, from 0 to 100; ``scale``: as ``trinary``, but what is
-            transparent is unknown.
+        mode: ``raw``: pixels are per cent, from 0 to 100; ``scale``: as ``trinary``, but
+            transparent pixels are unknown.
     """
 
     image: str
@@ -51,7 +51,7 @@ class RosMap:
     mode: str = "trinary"
 
     def occupancy(self, grey: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Probability that each pixel (H, W), grey from 0 to 1, is occupied; NaN: unknown."""
+        """Return the probability that each pixel (H, W), grey 0 to 1, is occupied; NaN: unknown."""
         if self.mode == "raw":
             share = np.round(255.0 * grey) / 100.0
             return np.where(share <= 1.0, share, np.nan)
@@ -62,7 +62,7 @@ def read_map(file: Path) -> RosMap:
     """Read a ``map.yaml``.
 
     Raises:
-        InputError: it is not one; with what is wrong.
+        InputError: it is not a valid map; the message says why.
     """
     try:
         content = YAML(typ="safe", pure=True).load(file.read_text("utf-8"))
@@ -104,7 +104,7 @@ def _number(name: str, value: Any) -> float:
 
 
 def image_of(file: Path) -> str | None:
-    """The path of the image that a ``map.yaml`` names; None where it is not one."""
+    """Return the image path that a ``map.yaml`` names, or None if it is not one."""
     try:
         return read_map(file).image
     except InputError:
@@ -112,13 +112,13 @@ def image_of(file: Path) -> str | None:
 
 
 def read_grey(file: Path, *, see_through: bool = False) -> NDArray[np.float64]:
-    """A PGM or PNG image as grey values (H, W) from 0 to 1; the first row is on top.
+    """Read a PGM or PNG image as grey values (H, W) from 0 to 1; the first row is on top.
 
     Args:
-        see_through: what is transparent becomes NaN.
+        see_through: turn transparent pixels into NaN.
 
     Raises:
-        InputError: it is neither.
+        InputError: it is neither PGM nor PNG.
     """
     try:
         content = file.read_bytes()
@@ -156,7 +156,7 @@ def _read_png(file: Path, *, see_through: bool) -> NDArray[np.float64]:
 
     try:
         image: Any = np.asarray(imread(file), np.float64)
-    except Exception as error:  # whatever its decoder finds
+    except Exception as error:  # its decoders raise many types
         raise InputError(f"{file.name}: is a damaged PNG image: {error}") from error
     if image.size > 4 * MOST_PIXELS:
         raise InputError(f"{file.name}: has too many pixels")
@@ -169,15 +169,15 @@ def _read_png(file: Path, *, see_through: bool) -> NDArray[np.float64]:
 def free_cells(
     found: RosMap, grey: NDArray[np.float64], *, unknown_is_free: bool
 ) -> NDArray[np.bool_]:
-    """Cells (H, W) on which one can walk."""
+    """Return a mask of walkable cells (H, W)."""
     probability = found.occupancy(grey)
     return ~(probability > found.occupied) if unknown_is_free else probability < found.free
 
 
 def outline_cells(free: NDArray[np.bool_], found: RosMap) -> Any:
-    """The free cells as a shapely (multi)polygon, world frame, m."""
+    """Return the free cells as a shapely (multi)polygon, world frame, m."""
     boxes = []
-    for row, cells in enumerate(free[::-1]):  # from below
+    for row, cells in enumerate(free[::-1]):  # from the bottom row up
         edges = np.flatnonzero(np.diff(np.concatenate([[0], cells.astype(np.int8), [0]])))
         boxes.append(np.array([(a, row, b, row + 1) for a, b in edges.reshape(-1, 2)]))
     table = np.concatenate([np.zeros((0, 4)), *(b for b in boxes if len(b))])

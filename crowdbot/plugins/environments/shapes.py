@@ -1,4 +1,4 @@
-"""Walls, blocks and pillars as documents name them, each with its own bottom and top."""
+"""Walls, blocks and pillars in documents, each with its own bottom and top."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from crowdbot.plugin import Face, Heights, Length, Pillar, PositiveLength, Solid
 Point = Annotated[tuple[Length, Length], Field(strict=False)]
 Corners = Annotated[tuple[Point, ...], Len(3, 4096), Field(strict=False)]
 
-#: Outlines of less than this are a line, m^2.
+#: Outlines with less area count as a line, m^2.
 _LEAST_AREA = 1e-9
 
 
 class UprightSpec(Spec):
-    """Something between two heights."""
+    """An obstacle between two heights."""
 
     base: Length = Field(
         default=0.0,
@@ -33,10 +33,10 @@ class UprightSpec(Spec):
     )
 
     def heights(self, usual: float) -> Heights:
-        """Bottom and top, m.
+        """Return bottom and top, m.
 
         Args:
-            usual: top of what has none of its own, m.
+            usual: default top, m.
         """
         return self.base, usual if self.height is None else self.height
 
@@ -63,14 +63,14 @@ class WallSpec(UprightSpec):
         return self
 
     def solid(self, usual: float) -> Solid:
-        """The wall as a solid; ``usual`` as in `heights`."""
+        """Return the wall as a solid; ``usual`` as in `heights`."""
         return Solid(
             outline=strip(self.start, self.end, self.thickness), heights=self.heights(usual)
         )
 
 
 class BlockSpec(UprightSpec):
-    """A solid block, convex or not, maybe with holes."""
+    """A solid block, convex or not, optionally with holes."""
 
     corners: Corners = Field(
         strict=False,
@@ -86,7 +86,7 @@ class BlockSpec(UprightSpec):
     @field_validator("corners")
     @classmethod
     def _simple(cls, corners: tuple[Point, ...]) -> tuple[Point, ...]:
-        """The corners, counter-clockwise."""
+        """Return the corners, counter-clockwise."""
         return simple_outline(corners, "corners")
 
     @field_validator("holes")
@@ -100,7 +100,7 @@ class BlockSpec(UprightSpec):
         return self
 
     def solid(self, usual: float) -> Solid:
-        """The block as a solid; ``usual`` as in `heights`."""
+        """Return the block as a solid; ``usual`` as in `heights`."""
         return Solid(outline=self.corners, holes=self.holes, heights=self.heights(usual))
 
 
@@ -112,15 +112,15 @@ class PillarSpec(UprightSpec):
     radius: PositiveLength = Field(description="Radius, m.")
 
     def pillar(self, usual: float) -> Pillar:
-        """The pillar with its heights; ``usual`` as in `heights`."""
+        """Return the pillar with its heights; ``usual`` as in `heights`."""
         return Pillar(x=self.x, y=self.y, radius=self.radius, heights=self.heights(usual))
 
 
 def check_heights(named: Mapping[str, UprightSpec], usual: float) -> None:
-    """Refuse what would begin above its top.
+    """Refuse obstacles that would begin above their top.
 
     Raises:
-        ValueError: something without a top of its own begins above the usual one.
+        ValueError: an obstacle without its own top begins above the default one.
     """
     for name, one in named.items():
         bottom, top = one.heights(usual)
@@ -129,7 +129,7 @@ def check_heights(named: Mapping[str, UprightSpec], usual: float) -> None:
 
 
 def strip(start: Point, end: Point, thickness: float) -> tuple[Point, ...]:
-    """Corners of a straight wall, counter-clockwise."""
+    """Return the corners of a straight wall, counter-clockwise."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     scale = 0.5 * thickness / math.hypot(dx, dy)
     ux, uy = -dy * scale, dx * scale
@@ -142,15 +142,15 @@ def strip(start: Point, end: Point, thickness: float) -> tuple[Point, ...]:
 
 
 def closed(outline: tuple[Point, ...], heights: Heights) -> Face:
-    """The faces of an outline that is free inside, given counter-clockwise."""
+    """Return the faces of an outline that is free inside, given counter-clockwise."""
     return Face(points=(*outline, outline[0]), heights=heights)
 
 
 def simple_outline(corners: tuple[Point, ...], name: str) -> tuple[Point, ...]:
-    """An outline counter-clockwise.
+    """Return a simple outline, counter-clockwise.
 
     Raises:
-        ValueError: it crosses or touches itself, or has no area; with the places.
+        ValueError: it crosses or touches itself (the message says where), or has no area.
     """
     for k, point in enumerate(corners):
         if point == corners[k - 1]:
@@ -172,7 +172,7 @@ def simple_outline(corners: tuple[Point, ...], name: str) -> tuple[Point, ...]:
 
 
 def check_holes(outline: tuple[Point, ...], holes: tuple[tuple[Point, ...], ...]) -> None:
-    """Refuse holes that are not within the outline and apart from each other.
+    """Refuse holes that are not inside the outline or that touch each other.
 
     Raises:
         ValueError: one is not.

@@ -1,4 +1,4 @@
-"""A street: façades with doors, pavements with kerbs, crossings and furniture."""
+"""Street: façades with doors, pavements with kerbs, crossings and furniture."""
 
 from __future__ import annotations
 
@@ -23,13 +23,14 @@ from crowdbot.plugins.environments.walkways import OpeningSpec, WalkwaySpec, box
 
 #: Width of a kerb stone, m.
 _KERB = 0.15
-#: Length, width and height of furniture with corners; diameter and height of round things, m.
+#: Default length, width and height of furniture with corners; diameter and height of round items,
+#: m.
 _BOXES = {"bench": (1.8, 0.5, 0.45), "planter": (1.2, 0.6, 0.6), "stall": (2.5, 1.5, 2.2)}
 _ROUND = {"bin": (0.5, 1.0), "bollard": (0.2, 0.9), "lamp": (0.2, 4.0), "tree": (0.4, 5.0)}
 
 
 class FurnitureSpec(Spec):
-    """Something that stands in a street, of a usual size."""
+    """A piece of street furniture with a default size."""
 
     item: Literal["bench", "bin", "bollard", "lamp", "planter", "stall", "tree"] = Field(
         description="What it is: a bench is 1.8 m × 0.5 m × 0.45 m, a planter 1.2 m × 0.6 m × "
@@ -42,16 +43,18 @@ class FurnitureSpec(Spec):
 
 
 class CrossingSpec(Spec):
-    """Where the kerbs are lowered, so that wheels get over."""
+    """A crossing, where kerbs are lowered so that wheels can pass."""
 
     at: Length = Field(description="Its middle along the street, m.")
     width: PositiveLength = Field(default=3.0, description="Along the street, m.")
 
 
 class StreetSpec(WalkwaySpec):
-    """A street along x; origin in its middle. People go on through its ends, doors and openings.
+    """A street along x with its origin in the middle.
 
-    Sizes are proposed here, within what streets in towns have.
+    People leave through ends, doors and openings.
+
+    Default sizes are proposed here, within the range of town streets.
     """
 
     kind: Literal["street"] = "street"
@@ -61,7 +64,7 @@ class StreetSpec(WalkwaySpec):
     kerbs: Literal["step", "flush"] = Field(
         default="step",
         description="step: people step over them, and they stop "
-        "wheels except at crossings; flush: they stop nobody.",
+        "wheels except at crossings; flush: they stop no one.",
     )
     kerb_height: PositiveLength = Field(default=0.12, description="Of a step, m.")
     crossings: dict[str, CrossingSpec] = Field(
@@ -78,19 +81,19 @@ class StreetSpec(WalkwaySpec):
 
     @property
     def area(self) -> Rectangle:
-        """From façade to façade."""
+        """Return the area from façade to façade."""
         half = 0.5 * self.roadway + self.pavement
         return box(-0.5 * self.length, 0.5 * self.length, -half, half)
 
     def place(self) -> Place:
-        """Façades, kerbs and furniture."""
+        """Return façades, kerbs and furniture."""
         faces, _ = hall(self.area, self._all_openings(), self.wall_height)
         solids = [*self._kerbs(), *(s for f in self.furniture.values() for s in _boxes(f))]
         pillars = tuple(p for f in self.furniture.values() for p in _pillars(f))
         return Place(faces=faces, solids=tuple(solids), pillars=pillars)
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """Both pavements and the roadway."""
+        """Return both pavements and the roadway."""
         (x0, x1), (y0, y1), edge = self.area.x, self.area.y, 0.5 * self.roadway
         return {
             "south_pavement": box(x0, x1, y0, -edge - _KERB),
@@ -99,11 +102,11 @@ class StreetSpec(WalkwaySpec):
         }
 
     def usual_portals(self) -> dict[str, Rectangle]:
-        """Behind both ends, the doors and the openings."""
+        """Return portals behind both ends, the doors and the openings."""
         return hall(self.area, self._all_openings(), self.wall_height)[1]
 
     def check_shape(self) -> None:
-        """Pavements are wider than kerbs, furniture stands in the street, names differ."""
+        """Refuse pavements narrower than kerbs, furniture outside the street, and equal names."""
         if not self.pavement > _KERB:
             raise ValueError(f"pavement must be wider than a kerb of {_KERB:g} m")
         twice = sorted(set(self.doors) & set(self.openings))
@@ -128,7 +131,7 @@ class StreetSpec(WalkwaySpec):
         return {**ends, **self.openings, **self.doors}
 
     def _kerbs(self) -> list[Solid]:
-        """Kerb stones along both pavements, with gaps at the crossings."""
+        """Return kerb stones along both pavements, with gaps at the crossings."""
         if self.kerbs == "flush":
             return []
         gaps = sorted((c.at - 0.5 * c.width, c.at + 0.5 * c.width) for c in self.crossings.values())

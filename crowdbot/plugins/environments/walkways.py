@@ -1,4 +1,4 @@
-"""Outlines of walkways, with ends through which people go on and robots do not."""
+"""Outlines of walkways with ends that people can pass and robots cannot."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from crowdbot.plugin import EnvironmentSpec, Face, Length, PositiveLength, Rectangle, Spec, outlines
 
-#: Portals reach so far beyond an end, and the walls beside it as far, m.
+#: Distance by which portals and the walls beside them extend beyond an end, m.
 PORTAL_DEPTH = 1.0
-#: Pieces of a rounded corner.
+#: Segments of a rounded corner.
 _ARC = 8
 Side = Literal["south", "east", "north", "west"]
 
 
 class WalkwaySpec(EnvironmentSpec):
-    """A place that names zones and portals itself; those of a document come on top."""
+    """A place with its own zones and portals; those of the document are added."""
 
     wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
 
@@ -27,7 +27,7 @@ class WalkwaySpec(EnvironmentSpec):
 
     @model_validator(mode="after")
     def _with_usual_places(self) -> WalkwaySpec:
-        if self._checked:  # suites validate a place again with each scenario in it
+        if self._checked:  # suites validate a place once per scenario
             return self
         self.check_shape()
         object.__setattr__(self, "zones", {**self.usual_zones(), **self.zones})
@@ -36,23 +36,23 @@ class WalkwaySpec(EnvironmentSpec):
         return self
 
     def check_shape(self) -> None:
-        """Refuse parameters that do not fit each other.
+        """Refuse inconsistent parameters.
 
         Raises:
-            ValueError: they do not.
+            ValueError: they are inconsistent.
         """
 
     def usual_zones(self) -> Mapping[str, Rectangle]:
-        """Zones that every such place has."""
+        """Return zones that every such place has."""
         return {}
 
     def usual_portals(self) -> Mapping[str, Rectangle]:
-        """Portals that every such place has."""
+        """Return portals that every such place has."""
         return {}
 
 
 class OpeningSpec(Spec):
-    """An opening in an outer wall: people go on through it, robots do not. It is a portal, too."""
+    """An opening in an outer wall, and a portal: people can leave through it, robots cannot."""
 
     side: Side = Field(description="The wall it is in: `south` is the one at the least y.")
     at: Length = Field(description="Its middle along the wall: x, or y in `west` and `east`, m.")
@@ -60,17 +60,17 @@ class OpeningSpec(Spec):
 
 
 def box(x0: float, x1: float, y0: float, y1: float) -> Rectangle:
-    """A rectangle; ends in either order."""
+    """Return a rectangle from its limits, in either order."""
     return Rectangle(x=(min(x0, x1), max(x0, x1)), y=(min(y0, y1), max(y0, y1)))
 
 
 def walkway(outline: outlines.Outline, ends: Collection[int], top: float) -> tuple[Face, ...]:
-    """Walls around a walkway.
+    """Return the walls around a walkway.
 
     Args:
         outline: counter-clockwise.
-        ends: numbers of the sides through which people go on: there, walls for the robot alone,
-            and a niche behind for a portal, closed so that no way leads around outside.
+        ends: indices of the sides through which people leave. These get walls for the robot only,
+            and a niche for a portal behind, closed so that no path leads around outside.
         top: of the walls, m.
     """
     heights = (0.0, top)
@@ -94,7 +94,7 @@ def walkway(outline: outlines.Outline, ends: Collection[int], top: float) -> tup
 
 
 def _beyond(outline: outlines.Outline, side: int, corner: int) -> outlines.Point:
-    """A corner of a side, moved out of the walkway by the depth of a portal."""
+    """Return a corner of a side, moved out of the walkway by the depth of a portal."""
     count = len(outline)
     (ax, ay), (bx, by) = outline[side % count], outline[(side + 1) % count]
     scale = PORTAL_DEPTH / math.hypot(bx - ax, by - ay)
@@ -109,7 +109,7 @@ def _without_repeats(points: tuple[outlines.Point, ...]) -> tuple[outlines.Point
 def rounded(
     before: outlines.Point, corner: outlines.Point, after: outlines.Point, radius: float
 ) -> tuple[outlines.Point, ...]:
-    """A corner as an arc that touches both sides; the corner itself without a radius."""
+    """Return a corner as an arc that touches both sides, or the corner itself if radius is 0."""
     if radius == 0.0:
         return (corner,)
     ux, uy = _unit(corner, before)
@@ -139,7 +139,7 @@ def _unit(start: outlines.Point, end: outlines.Point) -> outlines.Point:
 def hall(
     area: Rectangle, openings: Mapping[str, OpeningSpec], top: float
 ) -> tuple[tuple[Face, ...], dict[str, Rectangle]]:
-    """Walls around a rectangle with openings, and a portal behind each of these.
+    """Return walls around a rectangle with openings, and a portal behind each opening.
 
     Raises:
         ValueError: an opening does not fit into its wall, or overlaps another one.

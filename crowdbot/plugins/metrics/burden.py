@@ -1,4 +1,4 @@
-"""What people have to do for the robot: work, and sudden changes of their way."""
+"""Metrics of the burden on people: work done against pushes, and evasive accelerations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ declare = partial(declare_metric, category="burden")
 
 
 class PushWorkSpec(MetricSpec):
-    """Work of pushing people aside, per way made good and per person met."""
+    """Work of pushing people aside, per metre of progress and per person met."""
 
     kind: Literal["push_work"] = "push_work"
     forced_headway: ForcedHeadway

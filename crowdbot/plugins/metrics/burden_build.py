@@ -1,4 +1,4 @@
-"""What people have to do for the robot, computed from how they move near it."""
+"""Scoring of the burden on people, from their motion near the robot."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from crowdbot.plugins.metrics.burden import (
 )
 from crowdbot.plugins.metrics.common_reference_build import rate_and_way
 
-#: Of the people met, this share has no higher peak.
+#: Share of the people met whose peak is not higher than the 95th percentile.
 PERCENTILE = 0.95
 
 _Spec = PushWorkSpec | EvasiveAccelerationSpec
@@ -31,12 +31,12 @@ _Spec = PushWorkSpec | EvasiveAccelerationSpec
 
 @dataclass(frozen=True, slots=True)
 class PushWork:
-    """``excess`` needs ``crowd_alone``, sampled at the same times."""
+    """Scores ``push_work``. ``excess`` needs ``crowd_alone``, sampled at the same times."""
 
     spec: PushWorkSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Per way; per person met, in total, beyond what a ghost on the same way is blamed for."""
+        """Score the push work per progress, per person met, in total, and beyond a ghost's."""
         factory = ScoreFactory(PUSH_WORK)
         found = _near(factory, run, self.spec)
         if isinstance(found, list):
@@ -53,7 +53,7 @@ class PushWork:
         ]
 
     def _forced(self, run: Trajectories) -> float:
-        """Work on people whom the robot would reach at once if they stayed where they are, J."""
+        """Return the work on people whom the robot would reach if they stopped, J."""
         spec, run = self.spec, truncate_at_arrival(run)
         found = evasion(run, spec.evasion_reach, spec.jump_speed)
         share = share_below(run, spec.forced_headway, spec.jump_speed)
@@ -69,12 +69,15 @@ class PushWork:
 
 @dataclass(frozen=True, slots=True)
 class EvasiveAcceleration:
-    """``excess`` needs ``crowd_alone``, sampled at the same times."""
+    """Scores ``evasive_acceleration``.
+
+    ``excess`` needs ``crowd_alone``, sampled at the same times.
+    """
 
     spec: EvasiveAccelerationSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """95th percentile of people's peaks, by own legs and all; largest, mean square, excess."""
+        """Score the 95th percentile of peaks (desired and total), largest, mean square, excess."""
         factory = ScoreFactory(EVASIVE_ACCELERATION)
         found = _near(factory, run, self.spec)
         if isinstance(found, list):
@@ -89,7 +92,7 @@ class EvasiveAcceleration:
         ]
 
     def _by_own_legs(self, factory: ScoreFactory, run: Trajectories, found: Evasion) -> Score:
-        """Of those who are met while nothing touches them."""
+        """Score only people who are met without any contact, by their desired acceleration."""
         run = truncate_at_arrival(run)
         own = own_legs(run, self.spec.evasion_reach, self.spec.jump_speed)
         if not own.any():
@@ -106,7 +109,7 @@ class EvasiveAcceleration:
 
 
 def _near(factory: ScoreFactory, run: Trajectories, spec: _Spec) -> Evasion | list[Score]:
-    """People near the robot up to the arrival; or why there are none."""
+    """Return the people near the robot until it arrives, or scores that say why there are none."""
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot")
     if not people(run).x.size or not np.isfinite(people(run).x).any():
@@ -122,7 +125,7 @@ def _excess(
     spec: _Spec,
     difference: Callable[[Trajectories, Trajectories], float],
 ) -> Score:
-    """The run against its robot as a ghost among the same people."""
+    """Score the run minus the same run with the robot as a ghost."""
     if refs.crowd_alone is None or refs.crowd_alone.agents is None:
         return factory.undefined("excess", "no_reference")
     both = ghost_run(truncate_at_arrival(run), refs.crowd_alone)

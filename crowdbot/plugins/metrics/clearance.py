@@ -40,7 +40,7 @@ AVG_CLEARANCE = declare(
 
 
 class IntimateTimeFractionSpec(MetricSpec):
-    """Share of time with somebody in the intimate zone."""
+    """Share of time with a person in the intimate zone."""
 
     kind: Literal["intimate_time_fraction"] = "intimate_time_fraction"
     intimate: Intimate
@@ -84,7 +84,7 @@ SOCIAL_TIME_FRACTION = declare(
 
 
 class SpaceComplianceSpec(MetricSpec):
-    """Share of time with nobody nearer than a given gap."""
+    """Share of time with no person nearer than a given gap."""
 
     kind: Literal["space_compliance"] = "space_compliance"
     compliance: Compliance

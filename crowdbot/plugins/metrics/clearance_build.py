@@ -1,4 +1,4 @@
-"""Gaps between the surfaces of robot and people, computed."""
+"""Scoring of the gaps between the surfaces of robot and people."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ from crowdbot.plugins.metrics.clearance import (
     SpaceComplianceSpec,
 )
 
-#: Slack of the edges of zones, m: who stands on an edge is outside, whatever the rounding.
+#: Tolerance at the edges of zones, m: a person on an edge is outside, despite rounding.
 EDGE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class MinClearance:
-    """Needs no reference run; negative where bodies overlap."""
+    """Scores ``min_clearance``. Needs no reference run; negative where bodies overlap."""
 
     spec: MinClearanceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Least gap at any sample, of the outline and of the disc around it."""
+        """Score the smallest gap over all samples, for the outline and for the disc around it."""
         del refs
         factory = ScoreFactory(MIN_CLEARANCE)
         gap, of_disc = nearest_gap(factory, run), nearest_gap(factory, as_disc(run))
@@ -56,12 +56,12 @@ class MinClearance:
 
 @dataclass(frozen=True, slots=True)
 class AvgClearance:
-    """Needs no reference run."""
+    """Scores ``avg_clearance``. Needs no reference run."""
 
     spec: AvgClearanceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over the time at which somebody is present."""
+        """Score the mean gap over the time at which a person is present."""
         del refs
         factory = ScoreFactory(AVG_CLEARANCE)
         gap = nearest_gap(factory, run)
@@ -78,24 +78,24 @@ class AvgClearance:
 
 @dataclass(frozen=True, slots=True)
 class IntimateTimeFraction:
-    """Needs no reference run."""
+    """Scores ``intimate_time_fraction``. Needs no reference run."""
 
     spec: IntimateTimeFractionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Nearer than the intimate zone's edge."""
+        """Score the share of time inside the intimate zone."""
         del refs
         return time_within(ScoreFactory(INTIMATE_TIME_FRACTION), run, -np.inf, self.spec.intimate)
 
 
 @dataclass(frozen=True, slots=True)
 class PersonalTimeFraction:
-    """Needs no reference run."""
+    """Scores ``personal_time_fraction``. Needs no reference run."""
 
     spec: PersonalTimeFractionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Between the edges of the intimate and of the personal zone."""
+        """Score the share of time between the edges of the intimate and the personal zone."""
         del refs
         zone = self.spec.intimate, self.spec.personal
         return time_within(ScoreFactory(PERSONAL_TIME_FRACTION), run, *zone)
@@ -103,12 +103,12 @@ class PersonalTimeFraction:
 
 @dataclass(frozen=True, slots=True)
 class SocialTimeFraction:
-    """Needs no reference run."""
+    """Scores ``social_time_fraction``. Needs no reference run."""
 
     spec: SocialTimeFractionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Between the edges of the personal and of the social zone."""
+        """Score the share of time between the edges of the personal and the social zone."""
         del refs
         return time_within(
             ScoreFactory(SOCIAL_TIME_FRACTION), run, self.spec.personal, self.spec.social
@@ -117,21 +117,28 @@ class SocialTimeFraction:
 
 @dataclass(frozen=True, slots=True)
 class SpaceCompliance:
-    """Needs no reference run."""
+    """Scores ``space_compliance``. Needs no reference run."""
 
     spec: SpaceComplianceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Farther than the gap that complies; so is time with nobody present."""
+        """Score the share of time beyond the required gap.
+
+        Time without people counts as compliant.
+        """
         del refs
-        # strictly more, so an edge plus its slack is the least that complies
+        # The comparison is strict, so the edge plus its tolerance is the smallest gap that
+        # complies.
         return time_within(
             ScoreFactory(SPACE_COMPLIANCE), run, self.spec.compliance + 2.0 * EDGE, None
         )
 
 
 def nearest_gap(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
-    """Gap to the nearest person (N,), m, inf with nobody present; or why there is none."""
+    """Return the gap to the nearest person (N,), m; or scores that say why not.
+
+    Inf without people.
+    """
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot")
     gap = encounter(truncate_at_arrival(run), np.inf).gap
@@ -142,7 +149,10 @@ def nearest_gap(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]
 def time_within(
     factory: ScoreFactory, run: Trajectories, low: float, high: float | None
 ) -> list[Score]:
-    """Share of the time at which the nearest gap is in [low, high), m; no ``high``: any."""
+    """Score the share of time with the nearest gap in [low, high), m.
+
+    Without ``high``: no limit.
+    """
     gap = nearest_gap(factory, run)
     if isinstance(gap, list):
         return gap

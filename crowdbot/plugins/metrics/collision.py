@@ -1,4 +1,4 @@
-"""Contacts of the robot with people: how many, how hard."""
+"""Metrics of contacts with people: number, rate and severity."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ COLLISION_RATE = declare(
 
 
 class CollisionsAtFaultSpec(MetricSpec):
-    """Contacts with people, split by who ran into whom."""
+    """Contacts with people, split by who caused them."""
 
     kind: Literal["collisions_at_fault"] = "collisions_at_fault"
     contact_tol: ContactTol

@@ -1,4 +1,4 @@
-"""Contacts of the robot with people, computed."""
+"""Scoring of contacts with people."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from crowdbot.plugins.metrics.collision import (
 )
 from crowdbot.plugins.metrics.task import SuccessNoCollisionSpec
 
-#: Slack of the rule whose fault a contact is, m/s and m²/s: rounding decides nothing.
+#: Tolerance of the fault rule, m/s and m²/s, so that rounding does not decide.
 TOLERANCE = 1e-9
 
 _Spec = (
@@ -55,12 +55,15 @@ _Spec = (
 
 @dataclass(frozen=True, slots=True)
 class CollisionCount:
-    """Needs no reference run."""
+    """Scores ``collision_count``. Needs no reference run."""
 
     spec: CollisionCountSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: runs of samples in contact; ``corrected``: contacts, however short."""
+        """Score ``literal``: runs of samples in contact.
+
+        ``corrected``: all contacts, however short.
+        """
         del refs
         factory = ScoreFactory(COLLISION_COUNT)
         if run.robot is None:
@@ -77,12 +80,18 @@ class CollisionCount:
 
 @dataclass(frozen=True, slots=True)
 class CollisionSeverity:
-    """Needs no reference run. Contacts at an unknown speed, or with nobody known, add nothing."""
+    """Scores ``collision_severity``. Needs no reference run.
+
+    Contacts of unknown speed or with an unknown person count as 0.
+    """
 
     spec: CollisionSeveritySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: each sample in contact; the others: each contact, just before it."""
+        """Score ``literal``: each sample in contact.
+
+        The other variants: each contact, just before it.
+        """
         del refs
         factory = ScoreFactory(COLLISION_SEVERITY)
         if run.robot is None:
@@ -104,7 +113,7 @@ class CollisionSeverity:
         ]
 
     def _masses(self, run: Trajectories) -> tuple[Array, Array]:
-        """Mean and reduced mass of the robot with each person (M,), (M,), kg."""
+        """Return the mean and the reduced mass of the robot with each person (M,), (M,), kg."""
         one, other = robot_of(run).mass, people(run).mass
         total = one + other
         reduced = np.divide(one * other, total, out=np.zeros(len(other)), where=total > 0)
@@ -113,12 +122,12 @@ class CollisionSeverity:
 
 @dataclass(frozen=True, slots=True)
 class CollisionRate:
-    """Needs no reference run."""
+    """Scores ``collision_rate``. Needs no reference run."""
 
     spec: CollisionRateSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Contacts per second, and per metre that the robot drove."""
+        """Score contacts per second, and per metre that the robot drove."""
         del refs
         factory = ScoreFactory(COLLISION_RATE)
         if run.robot is None:
@@ -134,12 +143,15 @@ class CollisionRate:
 
 @dataclass(frozen=True, slots=True)
 class CollisionsAtFault:
-    """Needs no reference run."""
+    """Scores ``collisions_at_fault``. Needs no reference run."""
 
     spec: CollisionsAtFaultSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """The robot's fault: it is faster, and the person is before it; else the person's."""
+        """Score contacts by fault.
+
+        The robot's if it is faster and the person is in front of it, else the person's.
+        """
         del refs
         factory = ScoreFactory(COLLISIONS_AT_FAULT)
         if run.robot is None:
@@ -157,5 +169,8 @@ class CollisionsAtFault:
 
 
 def events(run: Trajectories, spec: _Spec) -> PersonContacts:
-    """Contacts with people in a run up to the arrival: of the table, else of the motion."""
+    """Return contacts with people up to the arrival.
+
+    Taken from the contact table if there is one, else from the motion.
+    """
     return person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)

@@ -1,7 +1,7 @@
-"""The goal, and the reference that all planners share: the shortest way at full speed.
+"""Goal distance, progress, and the common reference: the shortest path at full speed.
 
 The planner's own run alone is another reference for each planner: who is slow there, too, loses
-nothing in the crowd. Nobody is faster than the shortest way at the fastest speed.
+nothing in the crowd. No planner beats the shortest path at full speed.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import present, robot_of
 
-#: What is smaller came from rounding, m or J.
+#: Smaller values are rounding errors, m or J.
 _NOTHING = 1e-9
 
 
 def without_task(run: Trajectories) -> str:
-    """Why the robot has nothing to arrive at; empty where it has, or did arrive."""
+    """Return why the robot has no goal to reach, or "" if it has one or arrived."""
     if run.robot is None:
         return "invalid_no_robot"
     told = run.robot.goal is not None or run.goal_zone is not None
@@ -33,16 +33,16 @@ def without_task(run: Trajectories) -> str:
 
 
 def missed_goal(run: Trajectories) -> bool:
-    """Whether the robot has a goal, and did not arrive."""
+    """Return True if the robot has a goal and did not arrive."""
     return not without_task(run) and robot_of(run).goal_time is None
 
 
 def goal_distance(
     factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
 ) -> tuple[Array, Array] | list[Score]:
-    """Times and distances (K,), (K,) of the robot's centre from its goal, s and m; or why not.
+    """Return times and distances (K,), (K,) of the robot's centre to its goal, s and m; or why not.
 
-    From the goal point; from the zone where only that is known.
+    Distances are to the goal point, or to the goal zone if there is no point.
     """
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot", variants)
@@ -62,7 +62,7 @@ def goal_distance(
 def way_made_good(
     factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
 ) -> float | list[Score]:
-    """How much nearer to the goal the robot has come at most, m; or why that is not known."""
+    """Return the largest approach to the goal so far, m; or scores that say why it is unknown."""
     found = goal_distance(factory, run, variants)
     return found if isinstance(found, list) else float(found[1][0] - found[1].min())
 
@@ -70,9 +70,9 @@ def way_made_good(
 def rate_and_way(
     factory: ScoreFactory, run: Trajectories, amount: float, least: float
 ) -> tuple[Score, Score]:
-    """Variants ``rate`` and ``way`` of something that is the less the better, per way made good.
+    """Score ``rate`` and ``way`` of a cost (lower is better) per metre of progress.
 
-    Less way than ``least`` (m) counts as that; who went nowhere and did nothing has no rate.
+    Progress below ``least`` (m) counts as ``least``; without progress and cost there is no rate.
     """
     way = way_made_good(factory, run, ("rate", "way"))
     if isinstance(way, list):
@@ -86,9 +86,9 @@ def rate_and_way(
 def shortest_way(
     factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
 ) -> float | list[Score]:
-    """Straight from the start to the goal zone, or to the disc of the goal, m; or why not.
+    """Return the straight distance from start to goal zone or goal disc, m; or why it is unknown.
 
-    Walls are not gone round: the true shortest way is at least as long, for all planners alike.
+    Walls are ignored: the true shortest path is at least as long, for every planner.
     """
     found = goal_distance(factory, run, variants)
     if isinstance(found, list):
@@ -104,7 +104,7 @@ def shortest_way(
 def shortest_time(
     factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
 ) -> float | list[Score]:
-    """The shortest way at the fastest speed that the robot can go, s; or why there is none."""
+    """Return the time of the shortest path at the robot's top speed, s; or why there is none."""
     way = shortest_way(factory, run, variants)
     if isinstance(way, list):
         return way

@@ -1,4 +1,4 @@
-"""What the simulator or the robot's skin felt."""
+"""Metrics of contact forces, from the simulator or the robot's skin."""
 
 from __future__ import annotations
 

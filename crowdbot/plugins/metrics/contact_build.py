@@ -1,4 +1,4 @@
-"""What the simulator or the robot's skin felt, computed from the table of contacts."""
+"""Scoring of contact forces, from the contact table."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from crowdbot.plugins.metrics.contact import (
 
 @dataclass(frozen=True, slots=True)
 class MaxContactForce:
-    """Needs a table of contacts; 0 without contact."""
+    """Scores ``max_contact_force``. Needs a table of contacts; 0 without contact."""
 
     spec: MaxContactForceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Largest peak of all contacts with people."""
+        """Score the largest force peak of all contacts with people."""
         del refs
         factory = ScoreFactory(MAX_CONTACT_FORCE)
         found = _with_people(factory, run)
@@ -43,12 +43,12 @@ class MaxContactForce:
 
 @dataclass(frozen=True, slots=True)
 class ContactImpulse:
-    """Needs a table of contacts; 0 without contact."""
+    """Scores ``contact_impulse``. Needs a table of contacts; 0 without contact."""
 
     spec: ContactImpulseSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Sum over all contacts with people, and the ``largest`` of them."""
+        """Score the sum over all contacts with people, and the ``largest`` impulse."""
         del refs
         factory = ScoreFactory(CONTACT_IMPULSE)
         found = _with_people(factory, run)
@@ -62,12 +62,12 @@ class ContactImpulse:
 
 @dataclass(frozen=True, slots=True)
 class ContactTime:
-    """Needs a table of contacts; 0 without contact."""
+    """Scores ``contact_time``. Needs a table of contacts; 0 without contact."""
 
     spec: ContactTimeSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Sum over all contacts with people: two at once count twice."""
+        """Score the total contact time with people; two simultaneous contacts count twice."""
         del refs
         factory = ScoreFactory(CONTACT_TIME)
         found = _with_people(factory, run)
@@ -80,7 +80,7 @@ class ContactTime:
 def _with_people(
     factory: ScoreFactory, run: Trajectories
 ) -> tuple[ContactEvents, Mask] | list[Score]:
-    """Contacts up to the arrival, and which of them were with people; or why there are none."""
+    """Return contacts up to the arrival and a mask of those with people; or why there are none."""
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot")
     contacts = truncate_at_arrival(run).contacts

@@ -1,4 +1,4 @@
-"""What the robot does to the time and speed of the people."""
+"""Metrics of the robot's effect on the time and speed of people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the robot does to the people's time and speed, computed."""
+"""Scoring of the robot's effect on the time and speed of people."""
 
 from __future__ import annotations
 
@@ -46,12 +46,15 @@ from crowdbot.plugins.metrics.pairing_build import paired_samples
 
 @dataclass(frozen=True, slots=True)
 class EffectOnTime:
-    """Needs ``crowd_alone``."""
+    """Scores ``effect_on_time``. Needs ``crowd_alone``."""
 
     spec: EffectOnTimeSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: completed trips; the others: all trips, in the common window."""
+        """Score ``literal``: completed trips.
+
+        Other variants: all trips, in the common time window.
+        """
         factory = ScoreFactory(EFFECT_ON_TIME)
         if refs.crowd_alone is None:
             return factory.all_undefined("no_reference")
@@ -64,7 +67,7 @@ class EffectOnTime:
         return [literal, mean_ratio(factory, a, b, self.spec.zero_tol), self._restricted(a, b)]
 
     def _restricted(self, alone: Durations, crowded: Durations) -> Score:
-        """Both means up to the same time, which no unfinished trip makes unknown."""
+        """Score the ratio of both means, restricted to the time up to which both are known."""
         tau = min(alone.longest, crowded.longest)
         means = alone.restricted_mean(tau), crowded.restricted_mean(tau)
         extras = {"tau": tau, **_both(alone, crowded, means)}
@@ -73,12 +76,12 @@ class EffectOnTime:
 
 @dataclass(frozen=True, slots=True)
 class NeighboursTimeToGoal:
-    """Needs trips, and no reference run."""
+    """Scores ``neighbours_time_to_goal``. Needs trips, and no reference run."""
 
     spec: NeighboursTimeToGoalSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """People who meet the robot against everybody, they included."""
+        """Score people who meet the robot against all people, including them."""
         del refs
         factory = ScoreFactory(NEIGHBOURS_TIME_TO_GOAL)
         if run.robot is None:
@@ -99,12 +102,15 @@ class NeighboursTimeToGoal:
 
 @dataclass(frozen=True, slots=True)
 class EffectOnVelocity:
-    """Needs ``crowd_alone``."""
+    """Scores ``effect_on_velocity``. Needs ``crowd_alone``."""
 
     spec: EffectOnVelocitySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: every sample of either record; ``corrected``: time, in the common window."""
+        """Score ``literal``: all samples of both records.
+
+        ``corrected``: time in the common window.
+        """
         factory = ScoreFactory(EFFECT_ON_VELOCITY)
         if refs.crowd_alone is None:
             return factory.all_undefined("no_reference")
@@ -131,12 +137,12 @@ class EffectOnVelocity:
 
 @dataclass(frozen=True, slots=True)
 class NeighboursVelocity:
-    """Needs no reference run."""
+    """Scores ``neighbours_velocity``. Needs no reference run."""
 
     spec: NeighboursVelocitySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Speeds near the robot against all speeds, they included."""
+        """Score speeds near the robot against all speeds, including those near it."""
         del refs
         factory = ScoreFactory(NEIGHBOURS_VELOCITY)
         if run.robot is None:
@@ -164,12 +170,12 @@ class NeighboursVelocity:
 
 @dataclass(frozen=True, slots=True)
 class CrowdDeviation:
-    """Needs ``crowd_alone`` with the same people at the same times."""
+    """Scores ``crowd_deviation``. Needs ``crowd_alone`` with the same people at the same times."""
 
     spec: CrowdDeviationSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over all samples at which a person is present in both runs."""
+        """Score the mean over all samples at which a person is present in both runs."""
         factory = ScoreFactory(CROWD_DEVIATION)
         if refs.crowd_alone is None or refs.crowd_alone.agents is None:
             return factory.all_undefined("no_reference")
@@ -194,7 +200,7 @@ class CrowdDeviation:
 def completed_ratio(
     factory: ScoreFactory, above: Durations, below: Durations, zero_tol: float
 ) -> Score:
-    """Means of completed trips, ``literal``."""
+    """Score the ratio of mean durations of completed trips (``literal``)."""
     if not len(above) or not len(below):
         return factory.undefined("literal", "no_trips")
     means = above.completed_mean(), below.completed_mean()
@@ -205,7 +211,10 @@ def completed_ratio(
 
 
 def mean_ratio(factory: ScoreFactory, above: Durations, below: Durations, zero_tol: float) -> Score:
-    """Kaplan-Meier means, ``corrected``; bounded where an unfinished trip is the longest."""
+    """Score the ratio of Kaplan-Meier means (``corrected``).
+
+    A bound if the longest trip is unfinished.
+    """
     means = above.restricted_mean(above.longest), below.restricted_mean(below.longest)
     extras = _both(above, below, means)
     ratio = factory.ratio("corrected", *means, zero_tol, extras)
@@ -222,7 +231,7 @@ def mean_ratio(factory: ScoreFactory, above: Durations, below: Durations, zero_t
 
 
 def pooled_mean(speed: Array, weights: Array) -> float | None:
-    """Mean over all known (sample, person) pairs; None if none is known, or none has weight."""
+    """Return the weighted mean over all known (sample, person) pairs, or None without any."""
     known = np.isfinite(speed)
     total = float(weights @ known.sum(axis=1))
     return float(weights @ np.where(known, speed, 0.0).sum(axis=1)) / total if total else None

@@ -1,4 +1,4 @@
-"""Contacts that the robot drives into, and contacts per way."""
+"""Metrics of contacts that the robot causes, and contacts per distance."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ CONTACTS_AT_FAULT = declare(
 
 
 class ContactsPerKmSpec(MetricSpec):
-    """Contacts with people per kilometre of way made good towards the goal."""
+    """Contacts with people per kilometre of progress towards the goal."""
 
     kind: Literal["contacts_per_km"] = "contacts_per_km"
     least_way: LeastWay

@@ -1,4 +1,4 @@
-"""Contacts that the robot drives into, and contacts per way, computed."""
+"""Scoring of contacts that the robot causes, and contacts per distance."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from crowdbot.plugins.metrics.fault import (
 )
 from crowdbot.plugins.metrics.safe_efficiency import SafeEfficiencySpec
 
-#: Slack of the rule whose fault a contact is, m/s: rounding decides nothing.
+#: Tolerance of the fault rule, m/s, so that rounding does not decide.
 TOLERANCE = 1e-9
 KILOMETRE = 1000.0
 
 
 def fault_rule(spec: ContactsAtFaultSpec | ContactsPerKmSpec | SafeEfficiencySpec) -> FaultRule:
-    """Whose fault a contact is, as the fields of a metric say."""
+    """Return the rule for whose fault a contact is, from the fields of a metric."""
     return FaultRule(
         speed=spec.fault_speed + TOLERANCE,
         reaction=spec.fault_reaction,
@@ -40,12 +40,15 @@ def fault_rule(spec: ContactsAtFaultSpec | ContactsPerKmSpec | SafeEfficiencySpe
 
 @dataclass(frozen=True, slots=True)
 class ContactsAtFault:
-    """Needs no reference run."""
+    """Scores ``contacts_at_fault``. Needs no reference run."""
 
     spec: ContactsAtFaultSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """The robot's fault: it moves towards whom it touches, and did not brake in time."""
+        """Score contacts by fault.
+
+        The robot's if it moves towards the person it touches and did not brake in time.
+        """
         del refs
         factory, spec = ScoreFactory(CONTACTS_AT_FAULT), self.spec
         if run.robot is None:
@@ -58,12 +61,15 @@ class ContactsAtFault:
 
 @dataclass(frozen=True, slots=True)
 class ContactsPerKm:
-    """Needs a goal, but for ``driven``."""
+    """Scores ``contacts_per_km``. Needs a goal, except for ``driven``."""
 
     spec: ContactsPerKmSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """All contacts, and those at fault, per way made good; all per way driven; the ways."""
+        """Score contacts per progress and per driven km.
+
+        All contacts and those at fault per progress, all per driven distance; and both distances.
+        """
         del refs
         factory, spec = ScoreFactory(CONTACTS_PER_KM), self.spec
         if run.robot is None:
@@ -85,12 +91,12 @@ class ContactsPerKm:
         ]
 
     def _way(self, variant: str, way: float) -> Score:
-        """What the rates are over."""
+        """Score the distance by which the rates are divided."""
         factory = ScoreFactory(CONTACTS_PER_KM)
         return factory.ok(variant, max(way, self.spec.least_way) / KILOMETRE)
 
     def _rate(self, variant: str, count: int, way: float) -> Score:
-        """Per kilometre; who went nowhere has no rate, unless he was in contact even so."""
+        """Score contacts per kilometre; undefined without progress, unless there was contact."""
         factory, least = ScoreFactory(CONTACTS_PER_KM), self.spec.least_way
         if not count and way < least - TOLERANCE:
             return factory.undefined(variant, "zero_denominator")

@@ -1,4 +1,4 @@
-"""How far the robot advances on people who have little room."""
+"""Metric of how far the robot advances on people who have little room."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ declare = partial(declare_metric, category="proximity")
 
 
 class IntrusionSpec(MetricSpec):
-    """Way on which the robot drives at people with little time or room, per way made good."""
+    """Distance over which the robot drives at people with little time or room, per progress."""
 
     kind: Literal["intrusion"] = "intrusion"
     time_gap: TimeGap

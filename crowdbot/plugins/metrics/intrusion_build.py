@@ -1,4 +1,4 @@
-"""How far the robot advances on people who have little room, computed."""
+"""Scoring of how far the robot advances on people who have little room."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ from crowdbot.plugins.metrics.intrusion import INTRUSION, IntrusionSpec
 
 @dataclass(frozen=True, slots=True)
 class Intrusion:
-    """Needs no reference run."""
+    """Scores ``intrusion``. Needs no reference run."""
 
     spec: IntrusionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Of little time, per way; of little room, per person met and in total."""
+        """Score advances with little time left, per progress.
+
+        With little room, per person and in total.
+        """
         del refs
         factory, spec = ScoreFactory(INTRUSION), self.spec
         if run.robot is None:

@@ -1,4 +1,4 @@
-"""How the robot moves, whoever is around."""
+"""Metrics of the robot's own motion, independent of people."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ STALLED_TIME = declare(
 
 
 class CumulativeHeadingChangeSpec(MetricSpec):
-    """Sum of all turning, whichever way."""
+    """Sum of all turning, in either direction."""
 
     kind: Literal["cumulative_heading_change"] = "cumulative_heading_change"
     jump_speed: JumpSpeed

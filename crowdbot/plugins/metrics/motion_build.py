@@ -1,4 +1,4 @@
-"""How the robot moves, whoever is around, computed."""
+"""Scoring of the robot's own motion, independent of people."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ from crowdbot.plugins.metrics.motion import (
 
 @dataclass(frozen=True, slots=True)
 class TimeNotMoving:
-    """Needs no reference run."""
+    """Scores ``time_not_moving``. Needs no reference run."""
 
     spec: TimeNotMovingSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Neither driving nor turning."""
+        """Score the time in which the robot neither drives nor turns."""
         del refs
         factory = ScoreFactory(TIME_NOT_MOVING)
         if run.robot is None:
@@ -62,12 +62,12 @@ class TimeNotMoving:
 
 @dataclass(frozen=True, slots=True)
 class StalledTime:
-    """Needs no reference run."""
+    """Scores ``stalled_time``. Needs no reference run."""
 
     spec: StalledTimeSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Hardly driving, turning or not."""
+        """Score the time in which the robot hardly drives, turning or not."""
         del refs
         factory = ScoreFactory(STALLED_TIME)
         if run.robot is None:
@@ -79,12 +79,12 @@ class StalledTime:
 
 @dataclass(frozen=True, slots=True)
 class CumulativeHeadingChange:
-    """Needs no reference run."""
+    """Scores ``cumulative_heading_change``. Needs no reference run."""
 
     spec: CumulativeHeadingChangeSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Over the valid steps."""
+        """Score the sum of heading changes over the valid steps."""
         del refs
         factory = ScoreFactory(CUMULATIVE_HEADING_CHANGE)
         if run.robot is None:
@@ -96,12 +96,12 @@ class CumulativeHeadingChange:
 
 @dataclass(frozen=True, slots=True)
 class PathIrregularity:
-    """Needs no reference run."""
+    """Scores ``path_irregularity``. Needs no reference run."""
 
     spec: PathIrregularitySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Needed is the turn from the first heading to the last."""
+        """Score the turning beyond the turn from the first heading to the last, per metre."""
         del refs
         factory, jump = ScoreFactory(PATH_IRREGULARITY), self.spec.jump_speed
         if run.robot is None:
@@ -117,12 +117,12 @@ class PathIrregularity:
 
 @dataclass(frozen=True, slots=True)
 class Speed:
-    """Needs no reference run."""
+    """Scores ``speed``. Needs no reference run."""
 
     spec: SpeedSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Of the velocity vector; ``avg`` is over time."""
+        """Score the magnitude of the velocity; ``avg`` is the mean over time."""
         del refs
         if run.robot is None:
             return ScoreFactory(SPEED).all_undefined("invalid_no_robot")
@@ -133,12 +133,12 @@ class Speed:
 
 @dataclass(frozen=True, slots=True)
 class Acceleration:
-    """Needs no reference run."""
+    """Scores ``acceleration``. Needs no reference run."""
 
     spec: AccelerationSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Of the forward speed, step by step."""
+        """Score the change of forward speed from step to step."""
         del refs
         if run.robot is None:
             return ScoreFactory(ACCELERATION).all_undefined("invalid_no_robot")
@@ -150,12 +150,12 @@ class Acceleration:
 
 @dataclass(frozen=True, slots=True)
 class Jerk:
-    """Needs no reference run."""
+    """Scores ``jerk``. Needs no reference run."""
 
     spec: JerkSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Change of acceleration between neighbouring steps."""
+        """Score the change of acceleration between neighbouring steps."""
         del refs
         if run.robot is None:
             return ScoreFactory(JERK).all_undefined("invalid_no_robot")
@@ -165,12 +165,15 @@ class Jerk:
 
 @dataclass(frozen=True, slots=True)
 class DimensionlessJerk:
-    """Needs no reference run. Balasubramanian et al. 2015, without logarithm and sign."""
+    """Scores ``dimensionless_jerk``. Needs no reference run.
+
+    Balasubramanian et al. 2015, without logarithm and sign.
+    """
 
     spec: DimensionlessJerkSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """T³/v_peak² times the integral of the squared jerk."""
+        """Score T³/v_peak² times the integral of the squared jerk."""
         del refs
         factory = ScoreFactory(DIMENSIONLESS_JERK)
         if run.robot is None:
@@ -192,7 +195,7 @@ def _all_turning(run: Trajectories, jump_speed: float) -> float:
 
 
 def _jerk(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
-    """Magnitude of the jerk (N-2,), m/s³, and the time from one step's middle to the next, s."""
+    """Return the jerk's magnitude (N-2,), m/s³, and the time between the steps' middles, s."""
     dt = np.diff(run.t)
     v = forward_speed(run.t, robot_of(run), jump_speed)
     middle = (dt[1:] + dt[:-1]) / 2.0
@@ -200,7 +203,7 @@ def _jerk(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
 
 
 def _spread(factory: ScoreFactory, values: Array, weights: Array) -> list[Score]:
-    """``min``, ``avg`` and ``max`` of what is known."""
+    """Score ``min``, ``avg`` and ``max`` of the known values."""
     known = np.isfinite(values)
     values, weights = values[known], weights[known]
     if not len(values):

@@ -1,4 +1,4 @@
-"""Who passes whom on the way in the same direction."""
+"""Metric of overtaking in the same direction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who passes whom on the way in the same direction, computed.
+"""Scoring of overtaking in the same direction.
 
 Bodies are the robot (0) and the people (1 to M); L = M + 1.
 """
@@ -35,9 +35,9 @@ from crowdbot.plugin.for_metrics import (
 )
 from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCountSpec
 
-#: Slack of the rules on speed (m/s), angle (rad) and side (m), so that rounding decides nothing.
+#: Tolerances for speed (m/s), angle (rad) and side (m), so that rounding does not decide.
 TOLERANCE = 1e-9
-#: Slack where pairs are left out unseen, m: rounding must not leave out one that counts.
+#: Tolerance for skipping pairs, m: rounding must not skip a pair that counts.
 _SLACK = 1e-3
 
 Index = NDArray[np.intp]
@@ -45,12 +45,15 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True)
 class OvertakingCount:
-    """Needs no reference run; without people nobody is overtaken."""
+    """Scores ``overtaking_count``. Needs no reference run; without people the count is 0."""
 
     spec: OvertakingCountSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: all times the robot passed; ``corrected``: less those it was passed."""
+        """Score ``literal``: people overtaken by the robot.
+
+        ``corrected``: minus those who overtook it.
+        """
         del refs
         factory = ScoreFactory(OVERTAKING_COUNT)
         if run.robot is None:
@@ -75,7 +78,7 @@ class OvertakingBodies(NamedTuple):
 
     @classmethod
     def of(cls, run: Trajectories, spec: OvertakingCountSpec) -> OvertakingBodies:
-        """All bodies of a run; who does not walk has no direction."""
+        """Return all bodies of a run; bodies that do not walk have no direction."""
         robot, agents = robot_of(run), people(run)
         vectors = robot_velocities(run, spec.jump_speed), people_velocities(run, spec.jump_speed)
         vx, vy = (np.column_stack(pair) for pair in zip(*vectors, strict=True))
@@ -97,12 +100,12 @@ class OvertakingBodies(NamedTuple):
 
 
 class _Rule(NamedTuple):
-    """Who overtakes whom; slack included.
+    """The rule for who overtakes whom, with tolerances included.
 
     Attributes:
-        level: less ahead or behind is side by side, m.
-        lateral: farther aside nobody is overtaken, m.
-        cosine: of the largest angle between both directions.
+        level: bodies closer than this along the way are side by side, m.
+        lateral: largest sideways distance that counts, m.
+        cosine: cosine of the largest angle between both directions.
     """
 
     level: float
@@ -111,7 +114,7 @@ class _Rule(NamedTuple):
 
 
 def overtakes(bodies: OvertakingBodies, spec: OvertakingCountSpec) -> NDArray[np.int64]:
-    """How often row overtook column (L, L)."""
+    """Return how often the row overtook the column (L, L)."""
     size = bodies.x.shape[1]
     counts = np.zeros((size, size), dtype=np.int64)
     rule = _Rule(
@@ -129,14 +132,14 @@ def _count(
 ) -> None:
     """Count who overtakes whom, step by step.
 
-    Who is overtaken is near: not farther aside than the rule allows, and not farther behind than
-    both may have moved. So only bodies near along x are compared.
+    An overtaken body is near: not farther aside than the rule allows, and not farther behind than
+        both can have moved. So only bodies close in x are compared.
 
     Args:
-        bodies, rule: what is counted, and how.
-        order: (L,) the bodies in any order; left in that of x.
-        at: (L,) for x after the step.
-        counts: (L, L) written: how often row overtook column.
+        bodies, rule: the motion and the rule.
+        order: (L,) the bodies in any order; sorted by x afterwards.
+        at: (L,) scratch space for x after the step.
+        counts: (L, L) output: how often the row overtook the column.
     """
     size = bodies.x.shape[1]
     for k in range(bodies.valid.shape[0]):
@@ -158,7 +161,8 @@ def _count(
                 if at[b] - at[a] > reach:
                     break
                 ahead, beside = _ahead(bodies, k, a, b, 1)
-                # First what is false nearly always: a guess that fails costs more than the rest.
+                # Test first what is nearly always false: a mispredicted branch costs more than the
+                # rest.
                 if abs(ahead) > behind or abs(beside) > rule.lateral or a == b:
                     continue
                 if ahead < -rule.level and _same_way(bodies, rule.cosine, k, a, b):
@@ -167,7 +171,7 @@ def _count(
 
 @kernel
 def _place(bodies: OvertakingBodies, k: int, at: Array) -> float:
-    """Write x of all bodies after a step, inf if it is not valid; the longest move, m."""
+    """Write x of all bodies after a step, inf if invalid; return the longest move, m."""
     most = 0.0
     for b in range(at.shape[0]):
         at[b] = math.inf
@@ -180,7 +184,7 @@ def _place(bodies: OvertakingBodies, k: int, at: Array) -> float:
 
 @kernel
 def _sort(order: Index, at: Array) -> None:
-    """Put bodies in the order of x, by insertion: after a step they are nearly so."""
+    """Sort the bodies by x with insertion sort, since a step leaves them nearly sorted."""
     for i in range(1, order.shape[0]):
         body, place = order[i], i
         while place > 0 and at[order[place - 1]] > at[body]:
@@ -191,7 +195,7 @@ def _sort(order: Index, at: Array) -> None:
 
 @inline_kernel
 def _ahead(bodies: OvertakingBodies, k: int, a: int, b: int, then: int) -> tuple[float, float]:
-    """How far b is ahead of a, and beside it, in the direction of a at sample k, m."""
+    """Return how far b is ahead of a and beside it at sample k, in a's direction, m."""
     dx = bodies.x[k + then, b] - bodies.x[k + then, a]
     dy = bodies.y[k + then, b] - bodies.y[k + then, a]
     ux, uy = bodies.ux[k, a], bodies.uy[k, a]
@@ -200,19 +204,19 @@ def _ahead(bodies: OvertakingBodies, k: int, a: int, b: int, then: int) -> tuple
 
 @inline_kernel
 def _same_way(bodies: OvertakingBodies, cosine: float, k: int, a: int, b: int) -> bool:
-    """Whether b walks, and nearly as a does; ``cosine`` is that of the largest angle."""
+    """Return True if b walks in nearly the same direction as a; ``cosine`` is the angle's limit."""
     ux, uy = bodies.ux[k], bodies.uy[k]
     return bool(bodies.walks[k, b] and ux[a] * ux[b] + uy[a] * uy[b] >= cosine)
 
 
 @kernel
 def _armed(bodies: OvertakingBodies, level: float, k: int, a: int, b: int) -> bool:
-    """Whether b was clearly ahead of a at sample k, or before while they have been level since."""
+    """Return True if b was clearly ahead of a at sample k, or before they drew level."""
     for before in range(k, -1, -1):
         if not (bodies.walks[before, a] and bodies.valid[before, a] and bodies.valid[before, b]):
             return False
         if before < k and _ahead(bodies, before, a, b, 1)[0] < -level:
-            return False  # it fell behind on that step already, by the direction of that step
+            return False  # b fell behind on that step already, by the direction of that step
         now = _ahead(bodies, before, a, b, 0)[0]
         if abs(now) > level:
             return bool(now > 0.0)

@@ -1,4 +1,4 @@
-"""How far the robot displaces people, and how long it delays them: each against himself."""
+"""Metrics of displacement and delay of each person, against the same person without the robot."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ declare = partial(declare_metric, category="burden")
 
 
 class DisplacementSpec(MetricSpec):
-    """How far people who meet the robot are moved off the way that they walk without it."""
+    """Displacement of people who meet the robot from the path that they walk without it."""
 
     kind: Literal["displacement"] = "displacement"
     much_displacement: MuchDisplacement
@@ -46,7 +46,7 @@ DISPLACEMENT = declare(
 
 
 class DelaySpec(MetricSpec):
-    """Time that people who meet the robot lose against their trips without it."""
+    """Time that people who meet the robot lose compared with their trips without it."""
 
     kind: Literal["delay"] = "delay"
     much_delay: MuchDelay

@@ -1,4 +1,4 @@
-"""How far the robot displaces people, and how long it delays them, computed."""
+"""Scoring of displacement and delay, person by person."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from crowdbot.plugins.metrics.paired_people import (
     DisplacementSpec,
 )
 
-#: Share of the people who have it worst.
+#: Share of the people who are affected most.
 WORST = 0.05
-#: Walking speeds that differ by less are the same, m/s.
+#: Walking speeds that differ by less are treated as equal, m/s.
 SAME_SPEED = 1e-6
-#: Slack of the rule who is counted, m and s: rounding decides nothing.
+#: Tolerance for who counts as met, m and s, so that rounding does not decide.
 TOLERANCE = 1e-9
 
 
@@ -37,24 +37,32 @@ _Spec = DisplacementSpec | DelaySpec
 
 @dataclass(frozen=True, slots=True)
 class Displacement:
-    """Needs ``crowd_alone`` with the same people."""
+    """Scores ``displacement``. Needs ``crowd_alone`` with the same people."""
 
     spec: DisplacementSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over people met, of the worst 5 %, how many by much, slope, mean over everybody."""
+        """Score the cost to people met.
+
+        Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
+        everyone.
+        """
         factory, much = ScoreFactory(DISPLACEMENT), self.spec.much_displacement
         return _scores(factory, run, refs, self.spec, lambda found: found.displacement, much)
 
 
 @dataclass(frozen=True, slots=True)
 class Delay:
-    """Needs ``crowd_alone`` with the same people."""
+    """Scores ``delay``. Needs ``crowd_alone`` with the same people."""
 
     spec: DelaySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over people met, of the worst 5 %, how many by much, slope, mean over everybody."""
+        """Score the cost to people met.
+
+        Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
+        everyone.
+        """
         factory, much = ScoreFactory(DELAY), self.spec.much_delay
         return _scores(factory, run, refs, self.spec, lambda found: found.delay, much)
 
@@ -67,7 +75,7 @@ def _scores(
     each: Callable[[Effects], Array],
     much: float,
 ) -> list[Score]:
-    """All variants of what each person pays (P,)."""
+    """Return all variants for the cost to each person (P,)."""
     alone = refs.crowd_alone
     if alone is None or alone.agents is None:
         return factory.all_undefined("no_reference")
@@ -95,7 +103,7 @@ def _scores(
 
 
 def _of_met(factory: ScoreFactory, met: Effects, each: Array, much: float) -> list[Score]:
-    """Mean, worst, count and slope."""
+    """Score the people met: mean, worst, count and slope."""
     worst = np.sort(each)[-max(1, math.ceil(WORST * len(each))) :]
     extras = {"people": float(len(each)), "left_out": float(met.left_out)}
     return [
@@ -107,7 +115,7 @@ def _of_met(factory: ScoreFactory, met: Effects, each: Array, much: float) -> li
 
 
 def _slope(factory: ScoreFactory, speed: Array, each: Array) -> Score:
-    """Least squares line of what people pay over how fast they walk: who pays."""
+    """Score the slope of people's cost over their walking speed (least squares)."""
     off = speed - speed.mean()
     if len(speed) < 3 or np.abs(off).max() <= SAME_SPEED:
         return factory.undefined("slope", "too_few_people")

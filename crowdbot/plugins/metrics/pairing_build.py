@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from crowdbot.plugin import Array
 
-#: Two times closer than this are the same, s.
+#: Times closer than this are treated as equal, s.
 SAME_TIME = 1e-6
 
 
 def paired_samples(a: Array, b: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Rows of ``a`` and of ``b`` whose times since the start are the same."""
+    """Return the rows of ``a`` and of ``b`` that have the same time since the start."""
     since_a, since_b = a - a[0], b - b[0]
     at = np.searchsorted(since_b, since_a - SAME_TIME)
     inside = at < len(b)

@@ -1,7 +1,6 @@
-"""Parameters of metrics: each has one meaning and one default, wherever it is used.
+"""Shared parameters of metrics, each with one meaning and one default.
 
-The default is part of the type: ``jump_speed: JumpSpeed`` in a spec is 10 m/s if nobody says
-otherwise.
+The default is part of the type: ``jump_speed: JumpSpeed`` in a spec is 10 m/s by default.
 """
 
 from __future__ import annotations

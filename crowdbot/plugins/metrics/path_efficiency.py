@@ -1,4 +1,4 @@
-"""How much the crowd costs the robot: time, path and smoothness."""
+"""Metrics of what the crowd costs the robot: time, path and smoothness."""
 
 from __future__ import annotations
 

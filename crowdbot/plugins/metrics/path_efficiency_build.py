@@ -1,4 +1,4 @@
-"""What the crowd costs the robot, computed: alone over crowded."""
+"""Scoring of what the crowd costs the robot: alone divided by in the crowd."""
 
 from __future__ import annotations
 
@@ -32,24 +32,27 @@ from crowdbot.plugins.metrics.path_efficiency import (
 
 #: Variants that compare with the planner's own run alone.
 _OWN = ("literal", "corrected")
-#: Slack of the comparison of sampling rates, so that rounding decides nothing.
+#: Tolerance for comparing sampling rates, so that rounding does not decide.
 RATE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class RelativeTimeToGoal:
-    """Needs ``robot_alone``."""
+    """Scores ``relative_time_to_goal``. Needs ``robot_alone``."""
 
     spec: RelativeTimeToGoalSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal`` and ``corrected`` against the planner alone; ``common``: against nobody."""
+        """Score ``literal`` and ``corrected`` against the planner alone.
+
+        ``common``: against full speed.
+        """
         factory = ScoreFactory(RELATIVE_TIME_TO_GOAL)
         scores = _alone_over_crowded(factory, self._time, run, refs, self.spec, _OWN)
         return [*scores, self._common(factory, run)]
 
     def _common(self, factory: ScoreFactory, run: Trajectories) -> Score:
-        """The shortest way at full speed over the time taken: who is slow alone gains nothing."""
+        """Score the time of the shortest path at full speed over the time taken."""
         shortest = shortest_time(factory, run, ("common",))
         if isinstance(shortest, list):
             return shortest[0]
@@ -62,12 +65,12 @@ class RelativeTimeToGoal:
 
 @dataclass(frozen=True, slots=True)
 class RelativePathLength:
-    """Needs ``robot_alone``."""
+    """Scores ``relative_path_length``. Needs ``robot_alone``."""
 
     spec: RelativePathLengthSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal`` and ``corrected``."""
+        """Score ``literal`` and ``corrected``."""
         return _alone_over_crowded(
             ScoreFactory(RELATIVE_PATH_LENGTH), self._length, run, refs, self.spec, _OWN
         )
@@ -78,12 +81,12 @@ class RelativePathLength:
 
 @dataclass(frozen=True, slots=True)
 class RelativeJerk:
-    """Needs ``robot_alone``, sampled as often as the run."""
+    """Scores ``relative_jerk``. Needs ``robot_alone``, sampled as often as the run."""
 
     spec: RelativeJerkSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal`` telescopes and has a sign; the others are total variations."""
+        """Score ``literal``, which telescopes and has a sign, and the total variations."""
         factory = ScoreFactory(RELATIVE_JERK)
         if reason := obstacle(run, refs):
             return factory.all_undefined(reason)
@@ -99,7 +102,7 @@ class RelativeJerk:
         return scores + [self._ratio(v, j_alone[v], j_run[v], run) for v in others]
 
     def _ratio(self, variant: str, alone: float, crowded: float, run: Trajectories) -> Score:
-        """Alone over crowded; nothing can be said of turning where the reference does not turn."""
+        """Score alone over crowded; undefined for turning if the reference does not turn."""
         factory, zero_tol = ScoreFactory(RELATIVE_JERK), self.spec.jerk_zero_tol
         if variant == "angular" and alone <= zero_tol:
             return factory.undefined(variant, "reference_does_not_turn")
@@ -114,12 +117,15 @@ class RelativeJerk:
         return factory.ok("literal", alone / crowded, {"alone": alone, "crowded": crowded})
 
     def _mismatch(self, a: Array, b: Array) -> bool:
-        """Whether the median time steps differ by more than the tolerance of the larger."""
+        """Return True if the median time steps differ by more than the tolerance of the larger."""
         one, two = float(np.median(np.diff(a))), float(np.median(np.diff(b)))
         return abs(one - two) > (self.spec.sampling_tol + RATE_TOLERANCE) * max(one, two)
 
     def _jerk(self, run: Trajectories) -> Mapping[str, float]:
-        """One number a variant; a is the tangential acceleration of each step, alpha = dw/dt."""
+        """Return one jerk value per variant.
+
+        Here a is each step's tangential acceleration, alpha = dw/dt.
+        """
         t, robot, dt = run.t, robot_of(run), np.diff(run.t)
         v = forward_speed(t, robot, self.spec.jump_speed)
         w = yaw_rate(t, robot, self.spec.jump_speed)
@@ -135,7 +141,7 @@ class RelativeJerk:
         }
 
     def _second_differences(self, run: Trajectories) -> float:
-        """Of x, y and heading, over pairs of valid steps; no dt."""
+        """Return the sum of second differences of x, y and heading over valid steps, without dt."""
         robot = robot_of(run)
         valid = valid_robot_steps(run.t, robot, self.spec.jump_speed)
         turn = heading_changes(run.t, robot, self.spec.jump_speed)
@@ -144,7 +150,7 @@ class RelativeJerk:
 
 
 def obstacle(run: Trajectories, refs: References) -> str:
-    """Why nothing can be said about alone over crowded; empty when nothing is in the way."""
+    """Return why the run cannot be compared with its reference, or ""."""
     if run.robot is None:
         return "invalid_no_robot"
     if refs.robot_alone is None or refs.robot_alone.robot is None:
@@ -162,7 +168,7 @@ def _alone_over_crowded(
     spec: RelativeTimeToGoalSpec | RelativePathLengthSpec,
     variants: Sequence[str],
 ) -> list[Score]:
-    """Scores ``literal`` and ``corrected``; they differ in a run that never arrived."""
+    """Score ``literal`` and ``corrected``, which differ if the robot never arrived."""
     if reason := obstacle(run, refs):
         return factory.all_undefined(reason, variants)
     assert refs.robot_alone is not None
@@ -183,7 +189,7 @@ def _grows(
     run: Trajectories,
     zero_tol: float,
 ) -> Score:
-    """Alone over crowded; without arrival between 0 and a bound, as the quantity only grows."""
+    """Score alone over crowded; without arrival, a bound, since the quantity only grows."""
     both = {"alone": alone, "crowded": crowded}
     if robot_of(run).goal_time is not None:
         return factory.ratio(variant, alone, crowded, zero_tol, both)
@@ -192,7 +198,7 @@ def _grows(
 
 
 def _sum(values: Array) -> float:
-    """Of what is known."""
+    """Return the sum of the known values."""
     return float(values[np.isfinite(values)].sum())
 
 
@@ -201,6 +207,6 @@ def _variation(values: Array) -> float:
 
 
 def _change(values: Array) -> float:
-    """Last known value minus the first."""
+    """Return the last known value minus the first."""
     known = values[np.isfinite(values)]
     return float(known[-1] - known[0]) if len(known) else 0.0

@@ -1,4 +1,4 @@
-"""How long the planner thinks: by the wall clock, which is the machine's, so never ranked."""
+"""Metrics of the planner's computing time: wall clock, machine-dependent, never ranked."""
 
 from __future__ import annotations
 

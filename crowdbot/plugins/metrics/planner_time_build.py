@@ -1,4 +1,4 @@
-"""How long the planner thinks, computed."""
+"""Scoring of the planner's computing time."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from crowdbot.plugins.metrics.planner_time import (
 
 @dataclass(frozen=True, slots=True)
 class MeanPlannerTime:
-    """Needs the times of the planner's steps."""
+    """Scores ``mean_planner_time``. Needs the times of the planner's steps."""
 
     spec: MeanPlannerTimeSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Over all steps of the record."""
+        """Score the mean over all steps of the record."""
         del refs
         factory = ScoreFactory(MEAN_PLANNER_TIME)
         steps = _steps(factory, run)
@@ -32,12 +32,12 @@ class MeanPlannerTime:
 
 @dataclass(frozen=True, slots=True)
 class MaxPlannerTime:
-    """Needs the times of the planner's steps."""
+    """Scores ``max_planner_time``. Needs the times of the planner's steps."""
 
     spec: MaxPlannerTimeSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Over all steps of the record."""
+        """Score the maximum over all steps of the record."""
         del refs
         factory = ScoreFactory(MAX_PLANNER_TIME)
         steps = _steps(factory, run)
@@ -45,7 +45,7 @@ class MaxPlannerTime:
 
 
 def _steps(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
-    """Known durations of steps, s; or why there are none."""
+    """Return known step durations, s; or scores that say why there are none."""
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot")
     steps = run.planner_step_time

@@ -1,4 +1,4 @@
-"""How far the robot is driven back, or drives away, from its goal."""
+"""Metric of how far the robot moves, or is pushed, away from its goal."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ declare = partial(declare_metric, category="task")
 
 
 class RegressSpec(MetricSpec):
-    """Way on which the goal recedes, and the share of time."""
+    """Distance by which the goal recedes, and the share of time."""
 
     kind: Literal["regress"] = "regress"
     away_speed: AwaySpeed

@@ -1,4 +1,4 @@
-"""How far the robot is driven back, or drives away, from its goal, computed."""
+"""Scoring of how far the robot moves, or is pushed, away from its goal."""
 
 from __future__ import annotations
 
@@ -11,18 +11,21 @@ from crowdbot.plugin import References, Score, ScoreFactory, Trajectories
 from crowdbot.plugins.metrics.common_reference_build import goal_distance
 from crowdbot.plugins.metrics.progress import REGRESS, RegressSpec
 
-#: Slack of the rule when the goal recedes, m/s: rounding decides nothing.
+#: Tolerance of the rule for a receding goal, m/s, so that rounding does not decide.
 TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Regress:
-    """Needs a goal point or zone."""
+    """Scores ``regress``. Needs a goal point or zone."""
 
     spec: RegressSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Sum of all increases of the distance, and the share of time with a marked one."""
+        """Score the sum of all increases of the goal distance.
+
+        And the share of time with a marked one.
+        """
         del refs
         factory = ScoreFactory(REGRESS)
         found = goal_distance(factory, run)

@@ -1,4 +1,4 @@
-"""How near the robot comes to people."""
+"""Metrics of the robot's distance to people."""
 
 from __future__ import annotations
 

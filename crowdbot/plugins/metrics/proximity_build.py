@@ -1,4 +1,4 @@
-"""How near the robot comes to people, computed; between centres where nothing else is said."""
+"""Scoring of the robot's distance to people; between centres unless stated otherwise."""
 
 from __future__ import annotations
 
@@ -34,12 +34,15 @@ from crowdbot.plugins.metrics.proximity import (
 
 @dataclass(frozen=True, slots=True)
 class Proximity:
-    """Needs no reference run. Samples with nobody present add nothing."""
+    """Scores ``proximity``. Needs no reference run. Samples without people add nothing."""
 
     spec: ProximitySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: sum over samples; ``corrected``, ``outline``: mean over time, floored."""
+        """Score ``literal``: sum over samples.
+
+        ``corrected``, ``outline``: floored mean over time.
+        """
         del refs
         factory = ScoreFactory(PROXIMITY)
         if run.robot is None:
@@ -75,12 +78,15 @@ class Proximity:
 
 @dataclass(frozen=True, slots=True)
 class NormalizedProximity:
-    """Needs no reference run."""
+    """Scores ``normalized_proximity``. Needs no reference run."""
 
     spec: NormalizedProximitySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``, ``corrected``: spread over mean; ``barycentre``: what the text says."""
+        """Score ``literal``, ``corrected``: spread over mean.
+
+        ``barycentre``: the definition in the text.
+        """
         del refs
         factory = ScoreFactory(NORMALIZED_PROXIMITY)
         if run.robot is None:
@@ -105,7 +111,7 @@ class NormalizedProximity:
         ]
 
     def _mean(self, variant: str, above: Array, below: Array, rows: Mask, weights: Array) -> Score:
-        """Weighted mean of ratios over the samples that have one."""
+        """Score the weighted mean of ratios over the samples that have one."""
         factory = ScoreFactory(NORMALIZED_PROXIMITY)
         if not rows.any():
             return factory.undefined(variant, "fewer_than_two_neighbours")
@@ -121,24 +127,24 @@ class NormalizedProximity:
 
 @dataclass(frozen=True, slots=True)
 class NeighbourCount:
-    """Needs no reference run."""
+    """Scores ``neighbour_count``. Needs no reference run."""
 
     spec: NeighbourCountSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over time."""
+        """Score the mean number of neighbours over time."""
         del refs
         return [_crowding(ScoreFactory(NEIGHBOUR_COUNT), run, self.spec.neighbour_radius, 1.0)]
 
 
 @dataclass(frozen=True, slots=True)
 class LocalDensity:
-    """Needs no reference run."""
+    """Scores ``local_density``. Needs no reference run."""
 
     spec: LocalDensitySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over time of the neighbours per area of their circle."""
+        """Score the mean over time of neighbours per area of their circle."""
         del refs
         radius = self.spec.neighbour_radius
         return [_crowding(ScoreFactory(LOCAL_DENSITY), run, radius, math.pi * radius**2)]

@@ -1,4 +1,4 @@
-"""What people answer when asked."""
+"""Metrics from questionnaires."""
 
 from __future__ import annotations
 

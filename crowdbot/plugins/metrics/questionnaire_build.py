@@ -1,4 +1,4 @@
-"""What people answer when asked, computed."""
+"""Scoring of questionnaires."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ PAIRS = 15
 
 @dataclass(frozen=True, slots=True)
 class NasaTlx:
-    """Needs the answers of a NASA-TLX form."""
+    """Scores ``nasa_tlx``. Needs the answers of a NASA-TLX form."""
 
     spec: NasaTlxSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``raw``: mean rating; ``weighted``: by how often each scale was chosen."""
+        """Score ``raw``: mean rating; ``weighted``: by how often each scale was chosen."""
         del run
         factory, sheet = ScoreFactory(NASA_TLX), refs.questionnaires
         if sheet is None or not any(r is not None for r in sheet.tlx_ratings.values()):
@@ -40,12 +40,12 @@ class NasaTlx:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """Needs the answers of a USE form; items that do not apply are left out."""
+    """Scores ``use``. Needs the answers of a USE form; items that do not apply are left out."""
 
     spec: UseSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean item of each dimension."""
+        """Score the mean item of each dimension."""
         del run
         given = {} if refs.questionnaires is None else refs.questionnaires.use
         return [self._dimension(name, given.get(name, ())) for name in ScoreFactory(USE).variants]
@@ -61,7 +61,7 @@ class Use:
 
 
 def _complete(given: Mapping[str, Answer], most: float) -> list[float] | None:
-    """An answer for each scale, 0 to ``most``; None if one is missing or outside."""
+    """Return an answer per scale, 0 to ``most``; None if one is missing or out of range."""
     values = [given.get(scale) for scale in TLX_SCALES]
     known = [v for v in values if v is not None and 0 <= v <= most]
     return known if len(known) == len(values) else None

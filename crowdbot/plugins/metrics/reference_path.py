@@ -1,4 +1,4 @@
-"""How far the crowd pushes the robot off the path it takes alone."""
+"""Metrics of the deviation from the path that the robot takes alone."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ADE_TO_REFERENCE = declare(
 
 
 class FdeToReferenceSpec(MetricSpec):
-    """Last distance between the positions in the crowd and alone."""
+    """Final distance between the positions in the crowd and alone."""
 
     kind: Literal["fde_to_reference"] = "fde_to_reference"
 

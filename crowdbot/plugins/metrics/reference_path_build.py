@@ -1,4 +1,4 @@
-"""How far the crowd pushes the robot off the path it takes alone, computed."""
+"""Scoring of the deviation from the path that the robot takes alone."""
 
 from __future__ import annotations
 
@@ -37,12 +37,15 @@ from crowdbot.plugins.metrics.reference_path import (
 
 @dataclass(frozen=True, slots=True)
 class AdeToReference:
-    """Needs ``robot_alone``, sampled at the same times after the start."""
+    """Scores ``ade_to_reference``.
+
+    Needs ``robot_alone``, sampled at the same times after the start.
+    """
 
     spec: AdeToReferenceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Unweighted mean over the common samples, up to the earlier arrival."""
+        """Score the unweighted mean over the common samples, up to the earlier arrival."""
         apart = _apart(ScoreFactory(ADE_TO_REFERENCE), run, refs)
         if isinstance(apart, list):
             return apart
@@ -51,12 +54,15 @@ class AdeToReference:
 
 @dataclass(frozen=True, slots=True)
 class FdeToReference:
-    """Needs ``robot_alone``, sampled at the same times after the start."""
+    """Scores ``fde_to_reference``.
+
+    Needs ``robot_alone``, sampled at the same times after the start.
+    """
 
     spec: FdeToReferenceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """At the last common sample."""
+        """Score the distance at the last common sample."""
         apart = _apart(ScoreFactory(FDE_TO_REFERENCE), run, refs)
         if isinstance(apart, list):
             return apart
@@ -65,23 +71,23 @@ class FdeToReference:
 
 @dataclass(frozen=True, slots=True)
 class Ndtw:
-    """Needs ``robot_alone``. Ilharco et al. 2019."""
+    """Scores ``ndtw``. Needs ``robot_alone``. Ilharco et al. 2019."""
 
     spec: NdtwSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``exp(-DTW / (points of the reference x threshold))``."""
+        """Score ``exp(-DTW / (points of the reference x threshold))``."""
         return _likeness(ScoreFactory(NDTW), run, refs, self.spec)
 
 
 @dataclass(frozen=True, slots=True)
 class Sdtw:
-    """Needs ``robot_alone``. Ilharco et al. 2019."""
+    """Scores ``sdtw``. Needs ``robot_alone``. Ilharco et al. 2019."""
 
     spec: SdtwSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """0 without arrival, else ``ndtw``."""
+        """Score 0 without arrival, else ``ndtw``."""
         factory = ScoreFactory(SDTW)
         found = _likeness(factory, run, refs, self.spec)
         if found[0].value is None or robot_of(run).goal_time is not None:
@@ -92,7 +98,7 @@ class Sdtw:
 def _likeness(
     factory: ScoreFactory, run: Trajectories, refs: References, spec: NdtwSpec | SdtwSpec
 ) -> list[Score]:
-    """Both paths up to the arrival, as points of equal distance: time plays no part."""
+    """Compare both paths up to the arrival, at equal spacing, so that time has no effect."""
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot")
     if refs.robot_alone is None or refs.robot_alone.robot is None:
@@ -111,7 +117,7 @@ def _path(run: Trajectories, spec: NdtwSpec | SdtwSpec) -> Array:
 
 
 def _apart(factory: ScoreFactory, run: Trajectories, refs: References) -> Array | list[Score]:
-    """Distance between both positions at each common sample (K,), m; or why there is none."""
+    """Return the distance between both positions at each common sample (K,), m; or why not."""
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot")
     if refs.robot_alone is None or refs.robot_alone.robot is None:

@@ -1,4 +1,4 @@
-"""How near in time the next collision is."""
+"""Metrics of time to collision."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ INTEGRATED_TIME_TO_COLLISION = declare(
 
 
 class MinTimeToCollisionSpec(MetricSpec):
-    """Least time to collision of the run."""
+    """Smallest time to collision in the run."""
 
     kind: Literal["min_time_to_collision"] = "min_time_to_collision"
     contact_tol: ContactTol

@@ -1,4 +1,4 @@
-"""How near in time the next collision is, computed."""
+"""Scoring of time to collision."""
 
 from __future__ import annotations
 
@@ -31,18 +31,21 @@ from crowdbot.plugins.metrics.risk import (
     TimeExposedSpec,
 )
 
-#: Times to contact this close are the same, s.
+#: Times to contact closer than this are treated as equal, s.
 TIE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Risk:
-    """Needs no reference run."""
+    """Scores ``risk``. Needs no reference run."""
 
     spec: RiskSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``, ``corrected`` and ``exposed_time`` grow with time; ``rate``, ``disc``."""
+        """Score ``literal``, ``corrected``, ``exposed_time``, ``rate`` and ``disc``.
+
+        The first three grow with the length of the run.
+        """
         del refs
         factory = ScoreFactory(RISK)
         if run.robot is None:
@@ -68,12 +71,12 @@ class Risk:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedSeverity:
-    """Needs no reference run."""
+    """Scores ``expected_severity``. Needs no reference run."""
 
     spec: ExpectedSeveritySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """The speed is the one of whom the robot would touch first; of several, the fastest."""
+        """Score by the speed of the person touched first; of several, the fastest."""
         del refs
         factory = ScoreFactory(EXPECTED_SEVERITY)
         if run.robot is None:
@@ -93,7 +96,7 @@ class ExpectedSeverity:
         ]
 
     def _first_and_speed(self, run: Trajectories) -> tuple[Array, Array]:
-        """Least time to contact (N,), s, and the squared relative speed there, m²/s²."""
+        """Return the least time to contact (N,), s, and the squared relative speed there, m²/s²."""
         tau, speed = approach(
             run, self.spec.jump_speed, self.spec.contact_tol, self.spec.rel_speed_tol
         )
@@ -104,36 +107,36 @@ class ExpectedSeverity:
 
 @dataclass(frozen=True, slots=True)
 class TimeExposed:
-    """What ``risk`` calls ``exposed_time``."""
+    """Scores ``time_exposed``, the variant ``exposed_time`` of ``risk``."""
 
     spec: TimeExposedSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Time with somebody nearer than the horizon, and its share."""
+        """Score the time, and its share, with a person nearer than the horizon."""
         del refs
         return _over_time(ScoreFactory(TIME_EXPOSED), run, self.spec, exposed=True)
 
 
 @dataclass(frozen=True, slots=True)
 class IntegratedTimeToCollision:
-    """``risk`` times its horizon."""
+    """Scores ``integrated_time_to_collision``: ``risk`` times its horizon."""
 
     spec: IntegratedTimeToCollisionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Integral, and mean, of horizon minus time to contact, where positive."""
+        """Score the integral and mean of horizon minus time to contact, where positive."""
         del refs
         return _over_time(ScoreFactory(INTEGRATED_TIME_TO_COLLISION), run, self.spec, exposed=False)
 
 
 @dataclass(frozen=True, slots=True)
 class MinTimeToCollision:
-    """Needs no reference run."""
+    """Scores ``min_time_to_collision``. Needs no reference run."""
 
     spec: MinTimeToCollisionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """0 once there was contact; undefined where no collision was ever ahead."""
+        """Score the minimum: 0 after contact, undefined if no collision was ever predicted."""
         del refs
         factory = ScoreFactory(MIN_TIME_TO_COLLISION)
         if run.robot is None:
@@ -159,7 +162,7 @@ _Spec = (
 
 
 def first_contact(run: Trajectories, spec: _Spec) -> Array:
-    """Least time to contact with anybody (N,), s; inf where there is none to come."""
+    """Return the least time to contact with any person (N,), s; inf without one."""
     tau, _ = approach(run, spec.jump_speed, spec.contact_tol, spec.rel_speed_tol)
     first: Array = tau.min(axis=1, initial=np.inf)
     return first

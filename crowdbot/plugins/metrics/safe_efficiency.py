@@ -1,4 +1,4 @@
-"""The primary score: whether the robot arrives safely, and how soon against a common reference."""
+"""The primary score: safe arrival, and time against a common reference."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ declare = partial(declare_metric, category="task")
 
 
 class SafeEfficiencySpec(MetricSpec):
-    """Arrival without a contact at fault, soon, and without driving anybody aside."""
+    """Timely arrival without a contact at fault and without pushing people aside."""
 
     kind: Literal["safe_efficiency"] = "safe_efficiency"
     fault_speed: FaultSpeed

@@ -1,4 +1,4 @@
-"""The primary score, computed."""
+"""Scoring of the primary score."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from crowdbot.plugins.metrics.safe_efficiency import SAFE_EFFICIENCY, SafeEffici
 
 @dataclass(frozen=True, slots=True)
 class SafeEfficiency:
-    """Needs a goal and the fastest speed that the robot can go; no reference run."""
+    """Scores ``safe_efficiency``. Needs a goal and the robot's top speed; no reference run."""
 
     spec: SafeEfficiencySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """0 without arrival or with a contact at fault; else the shortest over the taken time.
+        """Score 0 without arrival or with a contact at fault, else shortest time over time taken.
 
         Each person driven aside takes off a share.
         """
@@ -59,7 +59,7 @@ class SafeEfficiency:
         return [factory.ok("corrected", share * shortest / max(taken, shortest), extras)]
 
     def _driven_aside(self, run: Trajectories) -> int:
-        """How many people the robot pushed much, who would have been touched at once."""
+        """Count people whom the robot pushed hard and would have touched at once."""
         spec = self.spec
         found = evasion(run, spec.evasion_reach, spec.jump_speed)
         own = own_legs(run, spec.evasion_reach, spec.jump_speed)

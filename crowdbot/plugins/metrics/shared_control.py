@@ -1,4 +1,4 @@
-"""How user and shared control get along."""
+"""Metrics of agreement between user and shared control."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How user and shared control get along, computed."""
+"""Scoring of agreement between user and shared control."""
 
 from __future__ import annotations
 
@@ -20,22 +20,28 @@ from crowdbot.plugins.metrics.shared_control import (
 
 #: Edges of the bins of prediction errors, in units of alpha (Nakayama et al. 1999).
 EDGES = (0.5, 1.0, 2.5, 5.0)
-#: Percentile of the absolute baseline errors that is alpha.
+#: Percentile of the absolute baseline errors that defines alpha.
 PERCENTILE = 90.0
-#: Slack of the bin edges, rad, and of the command times, s.
+#: Tolerance of the bin edges, rad, and of the command times, s.
 TOLERANCE = 1e-9
-#: Commands whose times are this regular need no resampling, s.
+#: Command times more regular than this need no resampling, s.
 REGULAR = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """Needs commands. Each counts for as long as it holds; standing still has no direction."""
+    """Scores ``agreement``. Needs commands.
+
+    Each counts for as long as it holds; standstill has no direction.
+    """
 
     spec: AgreementSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: angles of arctan(v/w); ``corrected``: full angles of scaled commands."""
+        """Score ``literal``: angles of arctan(v/w).
+
+        ``corrected``: full angles of scaled commands.
+        """
         del run
         factory, c = ScoreFactory(AGREEMENT), refs.commands
         if c is None:
@@ -56,7 +62,7 @@ class Agreement:
         ]
 
     def _principal(self, v: Array, w: Array) -> Array:
-        """arctan(v/w) in [-pi/2, pi/2], rad; opposite commands have the same angle."""
+        """Return arctan(v/w) in [-pi/2, pi/2], rad; opposite commands have the same angle."""
         turns = np.abs(w) > self.spec.zero_tol
         return np.where(turns, np.arctan(v / np.where(turns, w, 1.0)), np.sign(v) * (np.pi / 2.0))
 
@@ -65,14 +71,14 @@ class Agreement:
 class UserInputEntropy:
     """Steering entropy of the user's direction; needs commands, better with a baseline.
 
-    Without a baseline alpha is the drive's own (``self_calibrated`` = 1), and users cannot be
-    compared.
+    Without a baseline, alpha comes from the same drive (``self_calibrated`` = 1), and users cannot
+    be compared.
     """
 
     spec: UserInputEntropySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """The seed gives no formula, so there is no ``literal`` value."""
+        """Score the entropy; there is no ``literal`` variant, since the source gives no formula."""
         del run
         factory = ScoreFactory(USER_INPUT_ENTROPY)
         literal = factory.undefined("literal", "no_formula_in_seed")
@@ -92,7 +98,7 @@ class UserInputEntropy:
         return [literal, factory.undefined("corrected", "zero_alpha")]
 
     def _errors(self, c: Commands) -> Array | None:
-        """What a Taylor series of second order fails to predict, rad; None of too few angles."""
+        """Return errors of a second-order Taylor prediction, rad; None with too few angles."""
         theta = self._angles(c)
         if len(theta) < 4:
             return None
@@ -102,7 +108,10 @@ class UserInputEntropy:
         return errors
 
     def _angles(self, c: Commands) -> Array:
-        """Direction of the user's command at each period, unwrapped, rad; zero holds the last."""
+        """Return the user's direction in each period, unwrapped, rad.
+
+        A zero command keeps the last one.
+        """
         moves = (np.abs(c.v_user) > self.spec.zero_tol) | (np.abs(c.w_user) > self.spec.zero_tol)
         if not moves.any():
             return np.empty(0)
@@ -120,12 +129,15 @@ class UserInputEntropy:
 
 @dataclass(frozen=True, slots=True)
 class Fluency:
-    """Needs commands; compare only at one command rate, except ``variation_rate``."""
+    """Scores ``fluency``.
+
+    Needs commands; compare only at the same command rate, except ``variation_rate``.
+    """
 
     spec: FluencySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: raw differences; ``corrected``: the worse of both scaled channels."""
+        """Score ``literal``: raw differences; ``corrected``: the worse of both scaled channels."""
         del run
         factory, c = ScoreFactory(FLUENCY), refs.commands
         if c is None:
@@ -146,13 +158,13 @@ class Fluency:
 
 
 def direction(c: Commands, v: Array, w: Array) -> Array:
-    """Angle of commands scaled by what can be commanded, rad; forward is pi/2."""
+    """Return the angle of commands scaled by their limits, rad; forward is pi/2."""
     angle: Array = np.arctan2(v / c.v_max, w / c.w_max)
     return angle
 
 
 def entropy(errors: Array, alpha: float) -> float:
-    """Of nine bins by size and sign, to the base 9: 0 is predictable, 1 is not."""
+    """Return the entropy of nine bins by size and sign, to base 9: 0 predictable, 1 not."""
     size = np.searchsorted(np.array(EDGES) * alpha - TOLERANCE, np.abs(errors), side="right")
     counts = np.bincount((np.sign(errors) * size).astype(np.int64) + len(EDGES))
     share = counts[counts > 0] / len(errors)

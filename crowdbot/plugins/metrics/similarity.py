@@ -1,4 +1,4 @@
-"""How much the robot moves like the people around it."""
+"""Metrics of similarity between the robot's motion and that of people around it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ declare = partial(declare_metric, category="similarity")
 
 
 class TimeToGoalSimilaritySpec(MetricSpec):
-    """Time to goal of the robot, over the one of people."""
+    """Time to goal of the robot, divided by that of people."""
 
     kind: Literal["time_to_goal_similarity"] = "time_to_goal_similarity"
     zero_tol: ZeroTol
@@ -31,7 +31,7 @@ TIME_TO_GOAL_SIMILARITY = declare(
 
 
 class PathLengthSimilaritySpec(MetricSpec):
-    """Length of the robot's path, over the one of people."""
+    """Length of the robot's path, divided by that of people."""
 
     kind: Literal["path_length_similarity"] = "path_length_similarity"
     zero_tol: ZeroTol
@@ -50,7 +50,7 @@ PATH_LENGTH_SIMILARITY = declare(
 
 
 class HeadingSimilaritySpec(MetricSpec):
-    """Turning rate of the robot, over the one of people."""
+    """Turning rate of the robot, divided by that of people."""
 
     kind: Literal["heading_similarity"] = "heading_similarity"
     heading_min_speed: HeadingMinSpeed
@@ -69,7 +69,7 @@ HEADING_SIMILARITY = declare(
 
 
 class VelocitySimilaritySpec(MetricSpec):
-    """Speed of the robot, over the one of people."""
+    """Speed of the robot, divided by that of people."""
 
     kind: Literal["velocity_similarity"] = "velocity_similarity"
     zero_tol: ZeroTol
@@ -88,7 +88,7 @@ VELOCITY_SIMILARITY = declare(
 
 
 class NeighbourVelocitySimilaritySpec(MetricSpec):
-    """Speed of the robot, over the one of people near it."""
+    """Speed of the robot, divided by that of people near it."""
 
     kind: Literal["neighbour_velocity_similarity"] = "neighbour_velocity_similarity"
     neighbour_radius: NeighbourRadius

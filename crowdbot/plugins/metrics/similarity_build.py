@@ -1,4 +1,4 @@
-"""How much the robot moves like the people around it, computed."""
+"""Scoring of similarity between the robot's motion and that of people around it."""
 
 from __future__ import annotations
 
@@ -47,18 +47,18 @@ from crowdbot.plugins.metrics.similarity import (
     VelocitySimilaritySpec,
 )
 
-#: Slack of the rule which bodies have a heading, m/s.
+#: Tolerance for which bodies have a heading, m/s.
 SPEED_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class TimeToGoalSimilarity:
-    """Needs trips, and no reference run."""
+    """Scores ``time_to_goal_similarity``. Needs trips, and no reference run."""
 
     spec: TimeToGoalSimilaritySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: times; ``corrected``: times per straight distance."""
+        """Score ``literal``: times; ``corrected``: times per straight distance."""
         del refs
         factory = ScoreFactory(TIME_TO_GOAL_SIMILARITY)
         if run.robot is None:
@@ -77,12 +77,12 @@ class TimeToGoalSimilarity:
 
 @dataclass(frozen=True, slots=True)
 class PathLengthSimilarity:
-    """Needs trips, and no reference run."""
+    """Scores ``path_length_similarity``. Needs trips, and no reference run."""
 
     spec: PathLengthSimilaritySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: lengths; ``corrected``: lengths per straight distance."""
+        """Score ``literal``: lengths; ``corrected``: lengths per straight distance."""
         del refs
         factory, jump = ScoreFactory(PATH_LENGTH_SIMILARITY), self.spec.jump_speed
         if run.robot is None:
@@ -100,12 +100,15 @@ class PathLengthSimilarity:
 
 @dataclass(frozen=True, slots=True)
 class HeadingSimilarity:
-    """Needs no reference run."""
+    """Scores ``heading_similarity``. Needs no reference run."""
 
     spec: HeadingSimilaritySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """``literal``: mean ratio of signed rates; ``corrected``: ratio of mean absolute rates."""
+        """Score ``literal``: mean ratio of signed rates.
+
+        ``corrected``: ratio of mean absolute rates.
+        """
         del refs
         factory = ScoreFactory(HEADING_SIMILARITY)
         if run.robot is None:
@@ -130,7 +133,7 @@ class HeadingSimilarity:
         return [literal, of_arrival(factory, run, corrected)]
 
     def _rates(self, run: Trajectories) -> Array:
-        """Turning rates of people (N-1, M), rad/s; NaN for who does not walk at both ends."""
+        """Return the turning rates of people (N-1, M), rad/s; NaN unless walking at both ends."""
         jump = self.spec.jump_speed
         vx, vy = people_velocities(run, jump)
         walks = people_speeds(run, jump) > self.spec.heading_min_speed + SPEED_TOLERANCE
@@ -141,12 +144,12 @@ class HeadingSimilarity:
 
 @dataclass(frozen=True, slots=True)
 class VelocitySimilarity:
-    """Needs no reference run."""
+    """Scores ``velocity_similarity``. Needs no reference run."""
 
     spec: VelocitySimilaritySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Speed of the robot against the mean speed of all people."""
+        """Score the robot's speed against the mean speed of all people."""
         del refs
         factory = ScoreFactory(VELOCITY_SIMILARITY)
         if run.robot is None:
@@ -158,12 +161,12 @@ class VelocitySimilarity:
 
 @dataclass(frozen=True, slots=True)
 class NeighbourVelocitySimilarity:
-    """Needs no reference run."""
+    """Scores ``neighbour_velocity_similarity``. Needs no reference run."""
 
     spec: NeighbourVelocitySimilaritySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Speed of the robot against the mean speed of people near it."""
+        """Score the robot's speed against the mean speed of people near it."""
         del refs
         factory = ScoreFactory(NEIGHBOUR_VELOCITY_SIMILARITY)
         if run.robot is None:
@@ -179,9 +182,9 @@ class NeighbourVelocitySimilarity:
 
 
 def of_arrival(factory: ScoreFactory, run: Trajectories, score: Score) -> Score:
-    """The score of a run; of one that missed its goal only how alike it was up to its end.
+    """Return the score, marked as partial if the robot missed its goal.
 
-    How alike the whole run is nobody knows: it may have stood before the crowd it was to cross.
+    Similarity of an unfinished run is unknown: it may have stopped in front of the crowd.
     """
     if not missed_goal(run) or score.value is None:
         return score
@@ -193,7 +196,7 @@ def of_arrival(factory: ScoreFactory, run: Trajectories, score: Score) -> Score:
 def _against_mean(
     factory: ScoreFactory, run: Trajectories, robot: float, each: Array, zero_tol: float
 ) -> Score:
-    """The robot against the mean of completed trips; known from below without arrival."""
+    """Score the robot against the mean of completed trips; a lower bound without arrival."""
     assert run.trips is not None
     if not run.trips.reached.any():
         return factory.undefined("literal", "no_completed_trips")
@@ -212,7 +215,7 @@ def _per_distance(
     straight: Array,
     spec: TimeToGoalSimilaritySpec | PathLengthSimilaritySpec,
 ) -> Score:
-    """Amounts of robot and of all people, each per straight distance."""
+    """Score amounts of the robot and of all people, each per straight distance."""
     robot = robot_of(run)
     own, others = displacement(robot.x, robot.y), float(straight.sum())
     if min(own, others) <= spec.zero_tol:
@@ -226,7 +229,7 @@ def _per_distance(
 def mean_ratio(
     factory: ScoreFactory, above: Array, below: Array, samples: int, zero_tol: float
 ) -> Score:
-    """``literal``: unweighted mean of the ratios that exist, and the share of those."""
+    """Score ``literal``: the unweighted mean of the ratios that exist, and their share."""
     usable = np.abs(below) > zero_tol
     if not usable.any():
         return factory.undefined("literal", "zero_denominator")
@@ -241,7 +244,7 @@ def _speed_scores(
     spec: VelocitySimilaritySpec | NeighbourVelocitySimilaritySpec,
     nobody: str,
 ) -> list[Score]:
-    """Mean of ratios, and ratio of means, over the samples at which somebody moves."""
+    """Score mean of ratios and ratio of means over the samples at which anyone moves."""
     known = np.isfinite(speeds)
     count = known.sum(axis=1)
     robot = np.hypot(*robot_velocities(run, spec.jump_speed))

@@ -1,4 +1,4 @@
-"""Whether, how directly and how steadily the robot reaches its goal."""
+"""Metrics of reaching the goal: success, directness and progress."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SUCCESS = declare(
 
 
 class SuccessNoCollisionSpec(MetricSpec):
-    """1 if the robot arrived without touching anybody, else 0."""
+    """1 if the robot arrived without touching anyone, else 0."""
 
     kind: Literal["success_no_collision"] = "success_no_collision"
     contact_tol: ContactTol
@@ -59,7 +59,7 @@ SUCCESS_NO_COLLISION = declare(
 
 
 class SplSpec(MetricSpec):
-    """Success, weighted by the shortest over the driven path length."""
+    """Success, weighted by shortest path length over driven path length."""
 
     kind: Literal["spl"] = "spl"
     zero_tol: ZeroTol
@@ -70,7 +70,7 @@ SPL = declare(SplSpec, symbol="SPL", unit="1", better="higher", minimum=0.0, max
 
 
 class StlSpec(MetricSpec):
-    """Success, weighted by the time alone over the time in the crowd."""
+    """Success, weighted by time alone over time in the crowd."""
 
     kind: Literal["stl"] = "stl"
     zero_tol: ZeroTol
@@ -130,7 +130,7 @@ MIN_DISTANCE_TO_GOAL = declare(
 
 
 class PathEfficiencySpec(MetricSpec):
-    """Shortest path to the goal, over the driven path."""
+    """Shortest path to the goal, divided by the driven path."""
 
     kind: Literal["path_efficiency"] = "path_efficiency"
     zero_tol: ZeroTol
@@ -149,7 +149,7 @@ PATH_EFFICIENCY = declare(
 
 
 class FailureToProgressSpec(MetricSpec):
-    """Windows of time in which the robot came no nearer to the goal."""
+    """Time windows in which the robot came no nearer to the goal."""
 
     kind: Literal["failure_to_progress"] = "failure_to_progress"
     progress_window: ProgressWindow

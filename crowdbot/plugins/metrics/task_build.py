@@ -1,4 +1,4 @@
-"""Whether, how directly and how steadily the robot reaches its goal, computed."""
+"""Scoring of reaching the goal: success, directness and progress."""
 
 from __future__ import annotations
 
@@ -48,18 +48,18 @@ from crowdbot.plugins.metrics.task import (
     TimeoutSpec,
 )
 
-#: Slack of progress, m, and of windows of time, s: rounding decides nothing.
+#: Tolerance of progress, m, and of time windows, s, so that rounding does not decide.
 TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Success:
-    """Needs no reference run."""
+    """Scores ``success``. Needs no reference run."""
 
     spec: SuccessSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Whether there is a time of arrival."""
+        """Score 1 if there is an arrival time, else 0."""
         del refs
         if reason := without_task(run):
             return ScoreFactory(SUCCESS).all_undefined(reason)
@@ -69,12 +69,12 @@ class Success:
 
 @dataclass(frozen=True, slots=True)
 class SuccessNoCollision:
-    """Needs no reference run."""
+    """Scores ``success_no_collision``. Needs no reference run."""
 
     spec: SuccessNoCollisionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Arrival without a contact of the motion with anybody."""
+        """Score 1 for arrival without any contact in the motion, else 0."""
         del refs
         factory = ScoreFactory(SUCCESS_NO_COLLISION)
         if reason := without_task(run):
@@ -86,12 +86,12 @@ class SuccessNoCollision:
 
 @dataclass(frozen=True, slots=True)
 class Timeout:
-    """Needs no reference run."""
+    """Scores ``timeout``. Needs no reference run."""
 
     spec: TimeoutSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """The opposite of ``success``."""
+        """Score the opposite of ``success``."""
         del refs
         if reason := without_task(run):
             return ScoreFactory(TIMEOUT).all_undefined(reason)
@@ -101,12 +101,12 @@ class Timeout:
 
 @dataclass(frozen=True, slots=True)
 class Spl:
-    """Needs a goal. Anderson et al. 2018."""
+    """Scores ``spl``. Needs a goal. Anderson et al. 2018."""
 
     spec: SplSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """0 without arrival; else the shortest path over the longer of it and the driven one."""
+        """Score 0 without arrival, else shortest path over the longer of it and the driven path."""
         del refs
         factory = ScoreFactory(SPL)
         lengths = _shortest_and_driven(factory, run, self.spec)
@@ -120,12 +120,12 @@ class Spl:
 
 @dataclass(frozen=True, slots=True)
 class PathEfficiency:
-    """Needs a goal, and an arrival."""
+    """Scores ``path_efficiency``. Needs a goal, and an arrival."""
 
     spec: PathEfficiencySpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Shortest path over driven path; known from above without arrival."""
+        """Score shortest over driven path; an upper bound without arrival."""
         del refs
         factory = ScoreFactory(PATH_EFFICIENCY)
         lengths = _shortest_and_driven(factory, run, self.spec)
@@ -139,12 +139,12 @@ class PathEfficiency:
 
 @dataclass(frozen=True, slots=True)
 class Stl:
-    """Needs ``robot_alone``."""
+    """Scores ``stl``. Needs ``robot_alone``."""
 
     spec: StlSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """0 without arrival; else the time alone over the longer of it and the time taken."""
+        """Score 0 without arrival, else the time alone over the longer of it and the time taken."""
         factory = ScoreFactory(STL)
         if reason := without_task(run) or obstacle(run, refs):
             return factory.all_undefined(reason)
@@ -157,12 +157,12 @@ class Stl:
 
 @dataclass(frozen=True, slots=True)
 class FinalDistanceToGoal:
-    """Needs a goal point or zone."""
+    """Scores ``final_distance_to_goal``. Needs a goal point or zone."""
 
     spec: FinalDistanceToGoalSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """At the last known position up to the arrival."""
+        """Score the distance at the last known position up to the arrival."""
         del refs
         factory = ScoreFactory(FINAL_DISTANCE_TO_GOAL)
         found = goal_distance(factory, run)
@@ -171,12 +171,12 @@ class FinalDistanceToGoal:
 
 @dataclass(frozen=True, slots=True)
 class MinDistanceToGoal:
-    """Needs a goal point or zone."""
+    """Scores ``min_distance_to_goal``. Needs a goal point or zone."""
 
     spec: MinDistanceToGoalSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """At any sample up to the arrival."""
+        """Score the smallest distance at any sample up to the arrival."""
         del refs
         factory = ScoreFactory(MIN_DISTANCE_TO_GOAL)
         found = goal_distance(factory, run)
@@ -185,12 +185,12 @@ class MinDistanceToGoal:
 
 @dataclass(frozen=True, slots=True)
 class FailureToProgress:
-    """Needs a goal point or zone."""
+    """Scores ``failure_to_progress``. Needs a goal point or zone."""
 
     spec: FailureToProgressSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Whole windows, one after the other from the start, in which the goal came no nearer."""
+        """Score complete consecutive windows from the start in which the goal came no nearer."""
         del refs
         factory = ScoreFactory(FAILURE_TO_PROGRESS)
         found = goal_distance(factory, run)
@@ -206,12 +206,12 @@ class FailureToProgress:
 
 @dataclass(frozen=True, slots=True)
 class AggregatedTime:
-    """Needs no reference run."""
+    """Scores ``aggregated_time``. Needs no reference run."""
 
     spec: AggregatedTimeSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Known from below where the robot, or somebody, had not arrived."""
+        """Score the sum; a lower bound if the robot or any person had not arrived."""
         del refs
         factory = ScoreFactory(AGGREGATED_TIME)
         if reason := without_task(run):
@@ -229,7 +229,7 @@ class AggregatedTime:
 def _shortest_and_driven(
     factory: ScoreFactory, run: Trajectories, spec: SplSpec | PathEfficiencySpec
 ) -> tuple[float, float] | list[Score]:
-    """Straight from the start to the goal zone, or to the disc of the goal; and what was driven."""
+    """Return the straight distance from start to goal zone or disc, and the driven distance."""
     found = shortest_way(factory, run)
     if isinstance(found, list):
         return found

@@ -1,4 +1,4 @@
-"""How near the robot comes to walls, and how often it touches them."""
+"""Metrics of distance to walls and contacts with them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WALL_CONTACT_COUNT = declare(
 
 
 class MinWallClearanceSpec(MetricSpec):
-    """Least distance between robot and walls."""
+    """Smallest distance between robot and walls."""
 
     kind: Literal["min_wall_clearance"] = "min_wall_clearance"
 

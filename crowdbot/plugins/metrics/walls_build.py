@@ -1,4 +1,4 @@
-"""How near the robot comes to walls, and how often it touches them, computed."""
+"""Scoring of distance to walls and contacts with them."""
 
 from __future__ import annotations
 
@@ -37,12 +37,15 @@ from crowdbot.plugins.metrics.walls import (
 
 @dataclass(frozen=True, slots=True)
 class WallContactCount:
-    """``recorded`` needs a table of contacts, ``geometric`` walls."""
+    """Scores ``wall_contact_count``.
+
+    ``recorded`` needs a table of contacts, ``geometric`` walls.
+    """
 
     spec: WallContactCountSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """All walls together are one body; ``geometric`` has the rules of ``collision_count``."""
+        """Score all walls as one body; ``geometric`` follows the rules of ``collision_count``."""
         del refs
         if run.robot is None:
             return ScoreFactory(WALL_CONTACT_COUNT).all_undefined("invalid_no_robot")
@@ -72,9 +75,9 @@ class WallContactCount:
         return factory.ok("geometric", len(found.time))
 
     def _first_touch(self, run: Trajectories, gap: Array) -> Array:
-        """Fraction of each step (N-1,) at which a wall is touched; NaN if none is.
+        """Return the fraction of each step (N-1,) at which a wall is first touched; NaN if none is.
 
-        A disc sweeps along the step; a footprint, which may turn, is looked at when it arrives.
+        A disc is swept along the step; a footprint, which may turn, is checked at the step's end.
         """
         robot, tol = robot_of(run), self.spec.contact_tol
         first = np.where(gap[1:] <= tol, 1.0, np.inf)
@@ -90,12 +93,12 @@ class WallContactCount:
 
 @dataclass(frozen=True, slots=True)
 class MinWallClearance:
-    """Needs walls."""
+    """Scores ``min_wall_clearance``. Needs walls."""
 
     spec: MinWallClearanceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Least gap at any sample."""
+        """Score the smallest gap at any sample."""
         del refs
         factory = ScoreFactory(MIN_WALL_CLEARANCE)
         gap = wall_gap(factory, truncate_at_arrival(run))
@@ -104,12 +107,12 @@ class MinWallClearance:
 
 @dataclass(frozen=True, slots=True)
 class AvgWallClearance:
-    """Needs walls."""
+    """Scores ``avg_wall_clearance``. Needs walls."""
 
     spec: AvgWallClearanceSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Mean over time."""
+        """Score the mean gap over time."""
         del refs
         factory = ScoreFactory(AVG_WALL_CLEARANCE)
         run = truncate_at_arrival(run)
@@ -124,9 +127,9 @@ class AvgWallClearance:
 
 
 def wall_gap(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
-    """Gap between the robot and the nearest wall (N,), m; or why there is none.
+    """Return the gap to the nearest wall (N,), m; or scores that say why there is none.
 
-    At most 0 in contact; how deep, it says for discs only.
+    At most 0 in contact; the depth is exact for discs only.
     """
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot")
@@ -153,7 +156,7 @@ def _gap(run: Trajectories) -> Array:
 
 
 def _outline_gap(outline: Footprint, wall: Array, robot: RobotTrack) -> Array:
-    """Least distance of an end of the wall from the outline, or of a corner from the wall."""
+    """Return the least distance between wall and outline: from ends and corners to the other."""
     c, s = np.cos(robot.theta), np.sin(robot.theta)
     ends = []
     for wx, wy in wall:

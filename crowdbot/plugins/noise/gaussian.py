@@ -10,7 +10,7 @@ from crowdbot.plugin import Component, Length, NoiseSpec, NonNegativeLength
 
 
 class GaussianSpec(NoiseSpec):
-    """An error drawn anew for every beam of every reading from a normal distribution."""
+    """Normally distributed noise, drawn independently for every beam of every reading."""
 
     kind: Literal["gaussian"] = "gaussian"
     std: NonNegativeLength = Field(description="Standard deviation, m.")

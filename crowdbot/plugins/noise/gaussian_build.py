@@ -1,4 +1,4 @@
-"""Gaussian noise: one normal number for each beam."""
+"""Gaussian noise: one normal number per beam."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crowdbot.plugins.noise.gaussian import GaussianSpec
 
 
 class Gaussian:
-    """Draws for every beam, so that one beam's noise does not depend on what the others hit."""
+    """Draws for every beam, so that a beam's noise does not depend on the other beams' hits."""
 
     random = True
 
@@ -17,7 +17,7 @@ class Gaussian:
         self._std, self._mean = spec.std, spec.mean
 
     def errors(self, distance: Array, rng: np.random.Generator) -> Array:
-        """Errors (N,), m."""
+        """Return errors (N,), m."""
         errors = rng.standard_normal(len(distance))
         errors *= self._std
         if self._mean != 0.0:
@@ -26,5 +26,5 @@ class Gaussian:
 
 
 def build(spec: GaussianSpec) -> Gaussian:
-    """A generator from its spec."""
+    """Build a generator from its spec."""
     return Gaussian(spec)

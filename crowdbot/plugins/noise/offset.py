@@ -1,4 +1,4 @@
-"""Offset: a constant error."""
+"""Constant offset."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crowdbot.plugin import Component, Length, NoiseSpec
 
 
 class OffsetSpec(NoiseSpec):
-    """A sensor that always reads too far or too near by the same length."""
+    """A sensor that always reads too far or too near by the same distance."""
 
     kind: Literal["offset"] = "offset"
     value: Length = Field(description="Added to every hit, m.")

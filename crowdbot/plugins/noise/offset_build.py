@@ -1,4 +1,4 @@
-"""Offset: a constant error; draws nothing."""
+"""Constant offset, without random draws."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crowdbot.plugins.noise.offset import OffsetSpec
 
 
 class Offset:
-    """Adds the same length to every hit."""
+    """Adds the same distance to every hit."""
 
     random = False
 
@@ -17,11 +17,11 @@ class Offset:
         self._value = spec.value
 
     def errors(self, distance: Array, rng: np.random.Generator) -> Array:
-        """Errors (N,), m."""
+        """Return errors (N,), m."""
         del rng
         return np.full(len(distance), self._value)
 
 
 def build(spec: OffsetSpec) -> Offset:
-    """A generator from its spec."""
+    """Build a generator from its spec."""
     return Offset(spec)

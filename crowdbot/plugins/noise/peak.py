@@ -1,4 +1,4 @@
-"""Peaks: rare, large errors."""
+"""Peak noise: rare, large errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.plugin import Component, Length, NoiseSpec, NonNegativeLength
 
 
 class PeakSpec(NoiseSpec):
-    """Now and then a beam reads far off, as after a double reflection or cross-talk."""
+    """Rare large errors of a beam, as after a double reflection or cross-talk."""
 
     kind: Literal["peak"] = "peak"
     probability: Annotated[float, Ge(0), Le(1)] = Field(

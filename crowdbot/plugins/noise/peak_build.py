@@ -1,4 +1,4 @@
-"""Peaks: a beam in a hundred is off by a normally distributed height."""
+"""Peak noise: one beam in a hundred is off by a normally distributed distance."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crowdbot.plugins.noise.peak import PeakSpec
 
 
 class Peak:
-    """Draws chance and height for every beam, so that beams do not depend on each other."""
+    """Draws chance and size for every beam, so that beams do not depend on each other."""
 
     random = True
 
@@ -17,11 +17,11 @@ class Peak:
         self._probability, self._mean, self._std = spec.probability, spec.mean, spec.std
 
     def errors(self, distance: Array, rng: np.random.Generator) -> Array:
-        """Errors (N,), m; most are 0."""
+        """Return errors (N,), m; most are 0."""
         struck = rng.random(len(distance)) < self._probability
         return struck * (self._mean + self._std * rng.standard_normal(len(distance)))
 
 
 def build(spec: PeakSpec) -> Peak:
-    """A generator from its spec."""
+    """Build a generator from its spec."""
     return Peak(spec)

@@ -1,4 +1,4 @@
-"""Goal seek: straight to the goal, blind."""
+"""Goal seek: drive straight to the goal, blind."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from crowdbot.plugin import (
 
 
 class GoalSeekSpec(PlannerSpec):
-    """Heads for the centre of the goal and sees nothing on the way: the floor of collisions."""
+    """Heads straight for the goal's centre without sensing: the floor for collisions."""
 
     role: ClassVar[PlannerRole] = "floor"
     needs: ClassVar[tuple[str, ...]] = ()

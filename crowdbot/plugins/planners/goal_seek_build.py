@@ -1,4 +1,4 @@
-"""Goal seek: a heading controller with a braking ramp before the goal."""
+"""Goal seek: heading control with a braking ramp before the goal."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 
 
 class GoalSeek:
-    """Turns towards the goal, drives on the way there, brakes in time."""
+    """Turns towards the goal while driving and brakes in time."""
 
     def __init__(self, spec: GoalSeekSpec) -> None:
         self._spec = spec
@@ -19,12 +19,12 @@ class GoalSeek:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Remember what the robot can do."""
+        """Store the robot's limits."""
         del task, sensors, seed
         self._limits = limits
 
     def step(self, obs: Observation) -> Command:
-        """The next command; zero at the goal."""
+        """Return the next command; zero at the goal."""
         assert self._limits is not None
         spec = self._spec
         distance, error = bearing(obs.pose, obs.goal)
@@ -38,16 +38,16 @@ class GoalSeek:
 
 
 def bearing(pose: Pose, goal: tuple[float, float]) -> tuple[float, float]:
-    """Distance to a point (m) and the angle from the heading to it (rad, in [-pi, pi])."""
+    """Return the distance to a point (m) and the angle from heading to it (rad, in [-pi, pi])."""
     dx, dy = goal[0] - pose.x, goal[1] - pose.y
     return math.hypot(dx, dy), math.remainder(math.atan2(dy, dx) - pose.yaw, 2.0 * math.pi)
 
 
 def braking_speed(room: float, deceleration: float) -> float:
-    """The speed from which the robot can stop within ``room`` m."""
+    """Return the speed from which the robot can stop within ``room`` m."""
     return math.sqrt(2.0 * deceleration * max(room, 0.0))
 
 
 def build(spec: GoalSeekSpec) -> GoalSeek:
-    """A planner from its spec."""
+    """Build a planner from its spec."""
     return GoalSeek(spec)

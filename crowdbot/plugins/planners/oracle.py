@@ -1,4 +1,4 @@
-"""Oracle: rolls the true people forward under each command that it could give."""
+"""Oracle: predicts the true people's motion under each possible command."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Weight = Annotated[float, Ge(0)]
 
 
 class OracleSpec(PlannerSpec):
-    """Sees where everybody is and how fast they walk; its lidar is for walls."""
+    """Knows the position and velocity of all people; uses its lidar for walls."""
 
     role: ClassVar[PlannerRole] = "ceiling"
     privileged: ClassVar[bool] = True

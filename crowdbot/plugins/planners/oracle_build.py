@@ -1,4 +1,4 @@
-"""Oracle: the truth, candidates, and the best of them."""
+"""Oracle: use the ground truth, generate candidates, and choose the best."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from crowdbot.plugins.planners.oracle import OracleSpec
 from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
 from crowdbot.plugins.planners.shared.robot_outline_build import core_of
 
-#: Walls farther away play no part, m; nor people, beyond that and what they may walk.
+#: Walls farther away are ignored, m; people too, beyond this plus the distance they may walk.
 _REACH = 4.0
 _SECTORS = 120
-#: A lidar point so near to the disc of a person shows that person, m.
+#: A lidar point this near to a person's disc belongs to that person, m.
 _OWN = 0.15
 _ARRIVED = 0.1
 
 
 class Oracle:
-    """Remembers nothing but its last command."""
+    """Remembers only its last command."""
 
     def __init__(self, spec: OracleSpec) -> None:
         self._spec = spec
@@ -46,7 +46,7 @@ class Oracle:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Take the limits and mounts; compile what is not compiled yet."""
+        """Store the limits and mounts; compile kernels that are not compiled yet."""
         del seed
         self._limits, self._last = limits, (0.0, 0.0)
         self._lidars = LidarPoints(sensors)
@@ -58,7 +58,7 @@ class Oracle:
         rollout.best(people, walls, self._p, self._core, state, task.goal, window, self._last)
 
     def step(self, obs: Observation) -> Command:
-        """The next command; zero at the goal."""
+        """Return the next command; zero at the goal."""
         assert self._limits is not None
         assert obs.truth is not None
         truth = obs.truth
@@ -86,14 +86,14 @@ class Oracle:
         return Command(*self._last)
 
     def _people(self, truth: Truth) -> Array:
-        """(N, 5) x, y (m), vx, vy (m/s) and radius (m) of those who can come near in time."""
+        """Return (N, 5) x, y (m), vx, vy (m/s), radius (m) of people who can come near in time."""
         gone = np.hypot(truth.people_velocity[:, 0], truth.people_velocity[:, 1])
         away = np.hypot(truth.people[:, 0] - truth.pose.x, truth.people[:, 1] - truth.pose.y)
         near = away < _REACH + gone * self._spec.horizon
         return np.column_stack([truth.people, truth.people_velocity, truth.people_radius])[near]
 
     def _walls(self, obs: Observation, truth: Truth) -> Array:
-        """(P, 2) what the lidars show besides people, world frame, m."""
+        """Return (P, 2) lidar points without people, world frame, m."""
         points = nearest_per_sector(
             self._lidars(obs.readings, obs.t, obs.twist, obs.vy), _SECTORS, _REACH
         )
@@ -104,7 +104,7 @@ class Oracle:
         return alone
 
     def _window(self, v: float, w: float, top: float, wish: float) -> Array:
-        """(C, 2) target velocities that the robot reaches within the window."""
+        """Return (C, 2) target velocities that the robot reaches within the window."""
         assert self._limits is not None
         spec, limits = self._spec, self._limits
         dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
@@ -128,5 +128,5 @@ def _parameters(spec: OracleSpec, limits: RobotLimits, rounding: float) -> Array
 
 
 def build(spec: OracleSpec) -> Oracle:
-    """A planner from its spec."""
+    """Build a planner from its spec."""
     return Oracle(spec)

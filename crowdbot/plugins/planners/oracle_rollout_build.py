@@ -7,18 +7,18 @@ import math
 from crowdbot.plugin import Array, kernel
 from crowdbot.plugins.planners.shared.robot_outline_build import core_gap
 
-#: Steps of a rollout, s.
+#: Time step of a rollout, s.
 STEP = 0.125
-#: Indices into the vector of parameters that the kernels take.
+#: Indices into the kernels' parameter vector.
 A_MAX, ALPHA_MAX, V_MAX, W_MAX, HORIZON, TURN_TIME, RADIUS, MARGIN, COMFORT = range(9)
 PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, HEADING = range(9, 14)
 PARAMETERS = 14
 
 #: After the arc a rollout turns to the goal with this gain, 1/s.
 _GAIN = 2.0
-#: Share of the impact that is left when the robot stands: somebody else walks into it.
+#: Share of the impact cost that remains if the robot stands and a person walks into it.
 _STANDING = 0.15
-#: Somebody who is too near already may be passed, but not approached, m.
+#: A person who is already too near may be passed but not approached, m.
 _SLACK = 1e-3
 
 
@@ -31,9 +31,10 @@ def _slewed(value: float, target: float, change: float) -> float:
 def gap_at(
     people: Array, walls: Array, core: Array, x: float, y: float, yaw: float, t: float
 ) -> float:
-    """Distance from the core of the robot's outline to the nearest surface in ``t`` seconds, m.
+    """Return the distance from the robot's core to the nearest surface in ``t`` seconds, m.
 
-    All go on as they do. Core as `robot_outline_build.core_of`: that of a disc is its middle.
+    Everyone keeps their velocity. For the core see `robot_outline_build.core_of`; for a disc it is
+    the centre.
     """
     best, c, s = math.inf, math.cos(yaw), math.sin(yaw)
     if core.shape[0]:
@@ -66,18 +67,18 @@ def roll(
     vt: float,
     wt: float,
 ) -> tuple[float, float, float, float, float]:
-    """One candidate: slew to (vt, wt), keep it for the turning time, turn to the goal, brake there.
+    """Roll out one candidate: slew to (vt, wt), keep it for the turning time, go to the goal.
 
     Args:
         people: (N, 5) x, y, vx, vy, radius; world frame.
         walls: (P, 2) points, world frame, m.
-        core: of the robot's outline, as `robot_outline_build.core_of`.
-        state: x, y, yaw, v, w of the robot.
+        core: core of the robot's outline, see `robot_outline_build.core_of`.
+        state: the robot's x, y, yaw, v, w.
 
     Returns:
-        mean distance to the goal (m), which it keeps after a hit; time of the hit (s, the horizon
-        if there is none); speed then (m/s); closeness, 0 (farther than comfort) to 1 (touching);
-        angle between heading and goal after the arc (rad).
+        mean distance to the goal (m), constant after a hit; time of the hit (s, the horizon if
+        there is none); speed then (m/s); closeness, 0 (farther than comfort) to 1 (touching); angle
+        between heading and goal after the arc (rad).
     """
     x, y, yaw, v, w = state
     need = min(p[MARGIN], gap_at(people, walls, core, x, y, yaw, 0.0) - p[RADIUS] - _SLACK)
@@ -119,12 +120,12 @@ def best(
     candidates: Array,
     last: tuple[float, float],
 ) -> tuple[int, float]:
-    """The best candidate after which the robot can still stop before the first hit.
+    """Return the best candidate after which the robot can still stop before the first hit.
 
     Args:
-        core: of the robot's outline, as `robot_outline_build.core_of`.
-        candidates: (C, 2) target v and w; those that stand are always admissible, and those that
-            turn on the spot are if the robot is round.
+        core: core of the robot's outline, see `robot_outline_build.core_of`.
+        candidates: (C, 2) target v and w; standing still is always admissible, and turning on the
+            spot if the robot is round.
         last: last command.
 
     Returns:
@@ -139,7 +140,7 @@ def best(
             continue
         if core.shape[0] and wt != 0.0 and hit < abs(wt) / p[ALPHA_MAX] + STEP:
             continue
-        made = (away - mean) / (0.5 * p[V_MAX] * p[HORIZON])  # soon is better than late
+        made = (away - mean) / (0.5 * p[V_MAX] * p[HORIZON])  # earlier is better
         blow = (1.0 - hit / p[HORIZON]) * (_STANDING + speed / p[V_MAX])
         change = abs(vt - last[0]) / p[V_MAX] + abs(wt - last[1]) / p[W_MAX]
         cost = (

@@ -1,4 +1,4 @@
-"""Stand still: hurts nobody and gets nowhere."""
+"""Stand still: never collides and never arrives."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from crowdbot.plugin import Component, PlannerRole, PlannerSpec
 
 
 class StandStillSpec(PlannerSpec):
-    """Never moves: whoever scores no better pays for its safety with its task."""
+    """Never moves. A planner that scores no better gains its safety by giving up its task."""
 
     role: ClassVar[PlannerRole] = "floor"
     needs: ClassVar[tuple[str, ...]] = ()

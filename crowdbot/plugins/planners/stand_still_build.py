@@ -1,4 +1,4 @@
-"""Stand still: zero, always."""
+"""Stand still: always command zero."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from crowdbot.plugins.planners.stand_still import StandStillSpec
 
 
 class StandStill:
-    """Asks for no velocity."""
+    """Commands zero velocity."""
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Nothing to remember."""
+        """Do nothing."""
         del task, limits, sensors, seed
 
     def step(self, obs: Observation) -> Command:
-        """Zero."""
+        """Return a zero command."""
         del obs
         return Command(0.0, 0.0)
 
 
 def build(spec: StandStillSpec) -> StandStill:
-    """A planner from its spec."""
+    """Build a planner from its spec."""
     del spec
     return StandStill()

@@ -1,4 +1,4 @@
-"""Wall hug: to the border of the goal zone and along it, blind."""
+"""Wall hug: drives blindly along the edge of the goal zone."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from crowdbot.plugin import (
 
 
 class WallHugSpec(PlannerSpec):
-    """Knows where walls are, and that few people walk along them; sees nobody.
+    """Drives along walls, where few people walk, without sensing anyone.
 
-    Where a goal zone is as wide as the place, as in a corridor, its border is the wall.
+    Where the goal zone is as wide as the place, as in a corridor, its edge is the wall.
     """
 
     role: ClassVar[PlannerRole] = "floor"

@@ -1,4 +1,4 @@
-"""Wall hug: goal seek on a line along the border of the goal zone."""
+"""Wall hug: goal seek on a line along the edge of the goal zone."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from crowdbot.plugins.planners.goal_seek_build import GoalSeek
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.wall_hug import WallHugSpec
 
-#: From the border to the middle of a robot that is not wide, and beside one that is, m.
+#: Distance from the edge to the centre of a narrow robot, and clearance beside a wide one, m.
 _GAP, _BESIDE = 0.3, 0.1
 
 
 class WallHug:
-    """Follows a line that is parallel to the way from start to goal."""
+    """Follows a line parallel to the line from start to goal."""
 
     def __init__(self, spec: WallHugSpec) -> None:
         self._spec = spec
@@ -32,7 +32,7 @@ class WallHug:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Draw the line: from beside the start to beside the goal."""
+        """Set the line from beside the start to beside the goal."""
         self._seek.reset(task, limits, sensors, seed)
         dx, dy = task.goal[0] - task.start.x, task.goal[1] - task.start.y
         self._length = math.hypot(dx, dy)
@@ -50,7 +50,7 @@ class WallHug:
         return max(_GAP, swept_half_width(None, task.robot) + _BESIDE)
 
     def step(self, obs: Observation) -> Command:
-        """Goal seek's command, with a point of the line for a goal."""
+        """Return goal seek's command towards a point of the line."""
         (x, y), (ux, uy) = self._origin, self._ahead
         made = (obs.pose.x - x) * ux + (obs.pose.y - y) * uy
         at = min(self._length, max(0.0, made) + self._spec.look_ahead)
@@ -59,5 +59,5 @@ class WallHug:
 
 
 def build(spec: WallHugSpec) -> WallHug:
-    """A planner from its spec."""
+    """Build a planner from its spec."""
     return WallHug(spec)

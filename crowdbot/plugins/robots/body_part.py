@@ -1,4 +1,4 @@
-"""The parts of a robot's body: what they look like, what they weigh, and their balance."""
+"""Parts of a robot's body: appearance, mass and balance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Part(NamedTuple):
     """A cylinder (radius, 0, length along z) or a box (sides along x, y, z), from base_link.
 
     Attributes:
-        mass: kg; 0 for what only is seen.
+        mass: kg; 0 if only visible.
     """
 
     name: str
@@ -32,13 +32,13 @@ class Part(NamedTuple):
 
 
 def scaled(found: Sequence[Part], mass: float) -> list[Part]:
-    """Parts whose weights are changed in proportion until they make ``mass`` (kg) together."""
+    """Return parts with masses scaled to a total of ``mass`` (kg)."""
     scale = mass / sum(p.mass for p in found)
     return [p._replace(mass=scale * p.mass) for p in found]
 
 
 def balance(body: list[Part]) -> tuple[Vector, Vector]:
-    """Centre of mass (m, from base_link) and moments of inertia about it (kg m^2).
+    """Return the centre of mass (m, from base_link) and the moments of inertia about it (kg m^2).
 
     Products of inertia, a hundredth of the moments, are left out.
     """

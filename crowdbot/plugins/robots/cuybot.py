@@ -1,4 +1,4 @@
-"""CuyBot: a base with a column, made to be touched and pushed."""
+"""CuyBot: a base with a column, built to be touched and pushed."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from crowdbot.plugins.robots.limits import (
 
 
 class CuybotSpec(LimitedRobotSpec):
-    """Size and weight after the original's prefab; nothing else about it is published.
+    """CuyBot with size and mass of the original's prefab; nothing else about it is published.
 
-    It gives way: a push harder than `yield_force` moves it, and it brakes with that force when
-    the push is over. Its skin is a spring in series with the person's body.
+    It yields: a push above `yield_force` moves it, and afterwards it brakes with that force. Its
+    skin is a spring in series with the person's body.
     """
 
     controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")

@@ -1,8 +1,8 @@
-"""CuyBot as SDFormat text, from primitives.
+"""Build CuyBot as SDFormat text from primitives.
 
-Source: the original's prefab: a rigid body of 100 kg that goes in every direction, base box
-0.573 m x 0.532 m from 0.02 to 0.33 m, column from x = 0.02 to 0.305, y = -0.129 to 0.129 up to
-1.29 m, leaning by 4 degrees. Limits, weights of the parts, drive force and skin are proposed.
+Source: the original's prefab: an omnidirectional rigid body of 100 kg, base box 0.573 m x 0.532 m
+from 0.02 to 0.33 m, column from x = 0.02 to 0.305, y = -0.129 to 0.129 up to 1.29 m, leaning by 4
+degrees. Limits, part masses, drive force and skin are proposed.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ from crowdbot.plugins.robots.limits_build import limits_of
 
 LENGTH, WIDTH, HEIGHT = 0.573, 0.532, 1.29
 WHEEL_RADIUS = 0.06
-_SOLE = 0.02  # m, of the base above the floor
-_FEET = (0.2, 0.2)  # m, of the wheels from the middle
+_SOLE = 0.02  # m, base above the floor
+_FEET = (0.2, 0.2)  # m, wheels from the middle
 
 
 def parts() -> list[Part]:
-    """Base with its skin, column and head, from the floor, m and kg."""
+    """Return base with skin, column and head; from the floor, m and kg."""
     lean = math.radians(4.0)
     return [
         Part("base", "box", (0.53, 0.49, 0.27), (0, 0, 0.16), COAL, 70.0),
@@ -48,7 +48,10 @@ def parts() -> list[Part]:
 
 
 def build(spec: CuybotSpec) -> RobotModel:
-    """The model with this spec's mass, limits and softness; people push at its centre's height."""
+    """Return the model with this spec's mass, limits and softness.
+
+    Contact is at its centre's height.
+    """
     body = scaled(parts(), spec.mass)
     (_, _, centre), _ = balance(body)
     half = 0.5 * np.array([LENGTH, WIDTH])

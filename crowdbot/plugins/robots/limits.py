@@ -1,4 +1,4 @@
-"""What the robots' specs have in common: a box of limits, and a mass."""
+"""Fields shared by the robots' specs: a box of limits, and a mass."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ Mass = Annotated[PositiveMass, Field(description="Whole robot, with who rides on
 
 
 class LimitedRobotSpec(RobotSpec):
-    """Abstract: a robot whose limits are a box. What differs is the numbers, which each states.
+    """Abstract robot whose limits form a box. Each robot sets its own numbers.
 
-    0.6 s without a command is what the Kobuki waits; for the others it is proposed.
+    The Kobuki stops after 0.6 s without a command; for the other robots this is proposed.
     """
 
     max_speed: MaxSpeed

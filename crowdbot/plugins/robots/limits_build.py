@@ -1,4 +1,4 @@
-"""The box of limits that a robot's spec describes."""
+"""Build the box of limits that a robot's spec describes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from crowdbot.plugins.robots.limits import LimitedRobotSpec
 
 
 def limits_of(spec: LimitedRobotSpec, *, sideways: bool = False) -> RobotLimits:
-    """As fast back as ahead, and to either side if it goes ``sideways``."""
+    """Return limits with equal speed back and ahead, and also sideways if ``sideways``."""
     return RobotLimits(
         v_min=-spec.max_speed,
         v_max=spec.max_speed,

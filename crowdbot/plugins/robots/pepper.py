@@ -16,10 +16,10 @@ from crowdbot.plugins.robots.limits import (
 
 
 class PepperSpec(LimitedRobotSpec):
-    """Goes in every direction; arms and head are held still.
+    """Pepper, which drives in every direction; its arms and head are held still.
 
-    Mass after the published URDF; speed and acceleration as its software (NAOqi) is remembered to
-    limit them: by wheel speed and radius of the URDF it would be 0.44 m/s.
+    The mass is from the published URDF. Speed and acceleration are those usually given for its
+    software (NAOqi), without a checked source; wheel speed and radius in the URDF give 0.44 m/s.
     """
 
     controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")

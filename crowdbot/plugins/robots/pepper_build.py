@@ -1,9 +1,9 @@
-"""Pepper as SDFormat text, from primitives.
+"""Build Pepper as SDFormat text from primitives.
 
 Sources: the pepper_robot description of ros-naoqi (wheels at (0.09, +-0.155), (-0.17, 0), radius
-0.07 m, 3.25 N m each; masses of the links), the maker's press sheet (1.21 m, 28 kg). The disc of
-0.27 m that touches holds the three bumpers, at (0.129, +-0.227) and (-0.251, 0); proposed, as are
-shapes and places of the parts, which put the centre of mass where balance asks it to be.
+0.07 m, 3.25 N m each; masses of the links), the maker's press sheet (1.21 m, 28 kg). The contact
+disc of 0.27 m encloses the three bumpers, at (0.129, +-0.227) and (-0.251, 0); it is proposed, as
+are shapes and positions of the parts, chosen so that the robot balances.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ RADIUS, HEIGHT = 0.27, 1.21
 WHEELS = {"front_left": (0.09, 0.155), "front_right": (0.09, -0.155), "rear": (-0.17, 0.0)}
 WHEEL_RADIUS = 0.07
 WHEEL_TORQUE = 3.25  # N m
-#: Wheels at 120 degrees that push with f at most give 1.5 f in their worst direction, and turn
-#: with 3 f at the mean distance from the middle.
+#: Wheels at 120 degrees, each with force f at most, give 1.5 f in their worst direction, and turn
+#: with 3 f at their mean distance from the centre.
 MAX_FORCE = 1.5 * WHEEL_TORQUE / WHEEL_RADIUS
 MAX_TORQUE = WHEEL_TORQUE / WHEEL_RADIUS * sum(math.hypot(x, y) for x, y in WHEELS.values())
-_SOLE = 0.02  # m, of the shell above the floor
+_SOLE = 0.02  # m, shell above the floor
 
 
 def parts() -> list[Part]:
-    """Base with wheels, leg, hip, torso with its tablet, arms, head; from the floor, m and kg."""
+    """Return base with wheels, leg, hip, torso, tablet, arms, head; from the floor, m and kg."""
     wheels = [
         Part(f"wheel_{n}", "cylinder", (WHEEL_RADIUS, 0, 0.04), (x, y, 0.09), COAL, 1.58)
         for n, (x, y) in WHEELS.items()
@@ -67,7 +67,7 @@ def parts() -> list[Part]:
 
 
 def build(spec: PepperSpec) -> RobotModel:
-    """The model with this spec's mass and limits; people push at the height of its centre."""
+    """Return the model with this spec's mass and limits. Contact is at its centre's height."""
     body = scaled(parts(), spec.mass)
     (_, _, centre), _ = balance(body)
     return RobotModel(

@@ -18,10 +18,10 @@ from crowdbot.plugins.robots.limits import (
 
 
 class QoloSpec(LimitedRobotSpec):
-    """Limits and outline after EPFL's controller; the mass, rider included, is proposed.
+    """Qolo with limits and outline of EPFL's controller; the mass, with rider, is proposed.
 
-    The original's prefab weighs 254 kg. Its motors do not turn at full speed; a box of limits does
-    not say so.
+    The original's prefab weighs 254 kg. Its motors cannot turn at full speed, which a box of limits
+    does not express.
     """
 
     kind: Literal["qolo"] = "qolo"

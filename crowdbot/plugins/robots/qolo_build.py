@@ -1,9 +1,9 @@
-"""Qolo as SDFormat text, from primitives.
+"""Build Qolo as SDFormat text from primitives.
 
 Sources: EPFL's qolo_ros (track 0.548 m, axle 0.2 m above the floor, capsule of radius 0.4 m around
-x = 0.051 and x = -0.515 m, limits) and the original's prefab (rear caster of 0.082 m radius at
-x = -0.553 m, rider of 1.7 m). No weight is published: parts and their weights are proposed, with
-the centre of mass far enough behind the axle that braking with 1.5 m/s^2 does not tip it.
+x = 0.051 and x = -0.515 m, limits) and the original's prefab (rear caster of 0.082 m radius at x =
+-0.553 m, rider of 1.7 m). No mass is published: parts and their masses are proposed, with the
+centre of mass far enough behind the axle that braking with 1.5 m/s^2 does not tip it.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ FRONT, REAR = 0.051, -0.515  # m, ends of the capsule's axis
 TRACK, HEIGHT = 0.548, 1.7
 WHEEL = sdf.Wheel(0.2, width=0.05, hub_width=0.055, mass=4.0, effort=60.0, slim=True)
 CASTER_X, CASTER_RADIUS = -0.553, 0.082
-_SOLE = 0.05  # m, of the shell above the floor
+_SOLE = 0.05  # m, shell above the floor
 
 
 def parts() -> list[Part]:
-    """Frame, batteries, seat and the standing rider; from the base link, which is the axle."""
+    """Return frame, batteries, seat and standing rider; from base_link, which is the axle."""
     z = -WHEEL.radius
     rider = [
         Part(f"{side}_leg", "cylinder", (0.075, 0, 0.8), (-0.08, y, z + 0.55), BLUE, 11.0)
@@ -58,7 +58,7 @@ def parts() -> list[Part]:
 
 
 def build(spec: QoloSpec) -> RobotModel:
-    """The model with this spec's mass and limits; people push at the height of its centre."""
+    """Return the model with this spec's mass and limits. Contact is at its centre's height."""
     share = spec.mass / 120.0
     body = scaled(parts(), spec.mass - 2.0 * WHEEL.mass)
     (_, _, z), _ = balance(body)
@@ -84,7 +84,7 @@ def build(spec: QoloSpec) -> RobotModel:
 
 
 def _text(body: list[Part], radius: float, wheel: sdf.Wheel) -> str:
-    """Two upright cylinders and what is between them: the capsule, seen from above."""
+    """Return two upright cylinders joined by a box: a capsule, seen from above."""
     length = HEIGHT - _SOLE
     z = _SOLE + 0.5 * length - wheel.radius
     end = sdf.cylinder(radius, length)

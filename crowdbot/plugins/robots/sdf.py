@@ -1,4 +1,4 @@
-"""SDFormat text of robots made of primitives.
+"""SDFormat text of robots built from primitives.
 
 Wheels touch the floor with a sphere or an ellipsoid: a cylinder's contact point jumps between its
 rims (docs/decisions/0004).
@@ -15,8 +15,8 @@ from crowdbot.plugins.robots.body_part import BLACK, SILVER, Colour, Part, Vecto
 class Wheel(NamedTuple):
     """A driven wheel: m, kg, and the largest torque of its motor, N m.
 
-    One that is ``slim`` touches with an ellipsoid of its own width; a sphere of a large wheel
-    would stick out of the robot.
+    A ``slim`` wheel touches with an ellipsoid of its own width; the sphere of a large wheel would
+    stick out of the robot.
     """
 
     radius: float
@@ -28,7 +28,7 @@ class Wheel(NamedTuple):
 
 
 def model(name: str, *links: str) -> str:
-    """A robot of some links."""
+    """Return the model with all links, under this name."""
     return f"""<?xml version="1.0"?>
 <sdf version="1.9" xmlns:drake="http://drake.mit.edu"><model name="{name}">
   {"".join(links)}
@@ -36,7 +36,7 @@ def model(name: str, *links: str) -> str:
 
 
 def base_link(body: Sequence[Part], *shapes: str) -> str:
-    """The link that floats: its parts weigh and are seen, ``shapes`` are what else it has."""
+    """Return the floating base link: parts with mass and appearance, plus ``shapes``."""
     centre, moments = balance(list(body))
     return f"""<link name="base_link">
     <inertial><pose>{centre[0]} {centre[1]} {centre[2]} 0 0 0</pose>
@@ -48,12 +48,12 @@ def base_link(body: Sequence[Part], *shapes: str) -> str:
 
 
 def slider(name: str, at: Vector, radius: float) -> str:
-    """A ball that slides on the floor without friction, as a caster does."""
+    """Return a ball that slides on the floor without friction, like a caster."""
     return collision(name, at, sphere(radius), 0.0) + visual(name, at, sphere(radius), BLACK)
 
 
 def wheel(side: str, y: float, z: float, of: Wheel) -> str:
-    """A driven wheel at (0, y, z) of the base link, m, and its joint ``SIDE_wheel_joint``."""
+    """Return a driven wheel at (0, y, z) of base_link, m, and its joint ``SIDE_wheel_joint``."""
     across = of.mass * (3.0 * of.radius**2 + of.width**2) / 12.0
     along = 0.5 * of.mass * of.radius**2
     tyre = ellipsoid(of.radius, of.radius, 0.5 * of.width) if of.slim else sphere(of.radius)
@@ -71,7 +71,7 @@ def wheel(side: str, y: float, z: float, of: Wheel) -> str:
 
 
 def inertia(xx: float, yy: float, zz: float) -> str:
-    """Principal moments, kg m^2."""
+    """Return the principal moments of inertia, kg m^2."""
     return (
         f"<inertia><ixx>{xx}</ixx><iyy>{yy}</iyy><izz>{zz}</izz>"
         "<ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia>"
@@ -79,34 +79,34 @@ def inertia(xx: float, yy: float, zz: float) -> str:
 
 
 def cylinder(radius: float, length: float) -> str:
-    """A cylinder along z, m."""
+    """Return a cylinder along z, m."""
     return f"<cylinder><radius>{radius}</radius><length>{length}</length></cylinder>"
 
 
 def sphere(radius: float) -> str:
-    """A sphere, m."""
+    """Return a sphere, m."""
     return f"<sphere><radius>{radius}</radius></sphere>"
 
 
 def ellipsoid(x: float, y: float, z: float) -> str:
-    """An ellipsoid by its radii, m."""
+    """Return an ellipsoid with these radii, m."""
     return f"<ellipsoid><radii>{x} {y} {z}</radii></ellipsoid>"
 
 
 def box(x: float, y: float, z: float) -> str:
-    """A box by its sides, m."""
+    """Return a box with these sides, m."""
     return f"<box><size>{x} {y} {z}</size></box>"
 
 
 def seen(part: Part) -> str:
-    """What a part looks like."""
+    """Return the appearance of a part."""
     a, b, c = part.size
     shape = box(a, b, c) if part.shape == "box" else cylinder(a, c)
     return visual(part.name, part.at, shape, part.colour, part.pitch)
 
 
 def visual(name: str, at: Vector, shape: str, colour: Colour, pitch: float = 0.0) -> str:
-    """A shape that is seen."""
+    """Return a visual element with this shape."""
     rgba = f"{colour[0]} {colour[1]} {colour[2]} 1"
     return (
         f'<visual name="{name}"><pose>{at[0]} {at[1]} {at[2]} 0 {pitch} 0</pose>'
@@ -115,7 +115,7 @@ def visual(name: str, at: Vector, shape: str, colour: Colour, pitch: float = 0.0
 
 
 def collision(name: str, at: Vector, shape: str, friction: float) -> str:
-    """A shape that touches."""
+    """Return a collision element with this shape."""
     return (
         f'<collision name="{name}"><pose>{at[0]} {at[1]} {at[2]} 0 0 0</pose>'
         f"<geometry>{shape}</geometry><drake:proximity_properties>"

@@ -18,9 +18,11 @@ from crowdbot.plugins.robots.limits import (
 
 
 class SmartWheelchairSpec(LimitedRobotSpec):
-    """Width after the real chair, which goes 2.78 m/s outdoors; all the rest is proposed.
+    """A powered wheelchair.
 
-    The mass is that of the chair, 130 kg, and its driver, 75 kg; limits are for indoors.
+    Its width is that of the real chair, which drives 2.78 m/s outdoors; all else is proposed.
+
+    The mass is that of the chair, 130 kg, and its driver, 75 kg; limits are for indoor use.
     """
 
     kind: Literal["smart_wheelchair"] = "smart_wheelchair"

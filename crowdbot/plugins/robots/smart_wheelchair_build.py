@@ -1,8 +1,8 @@
-"""Smart Wheelchair as SDFormat text, from primitives.
+"""Build the Smart Wheelchair as SDFormat text from primitives.
 
 Sources: UCL's platform, a Sunrise Quickie Salsa M2 with mid-wheel drive, six wheels, 0.61 m at its
 widest, up to 10 km/h (IEEE Robotics and Automation Magazine, March 2023, p. 26). Wheel radius,
-track, weights, height and the places of the parts are proposed.
+track, masses, height and positions of the parts are proposed.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ TRACK, HEIGHT = 0.52, 1.35
 WHEEL = sdf.Wheel(0.165, width=0.06, hub_width=0.065, mass=6.0, effort=60.0, slim=True)
 CASTER_RADIUS = 0.08
 _CASTERS = (0.38, 0.2)  # m ahead of and behind the axle, and to the sides
-_SOLE = 0.04  # m, of the shell above the floor
+_SOLE = 0.04  # m, shell above the floor
 
 
 def parts() -> list[Part]:
-    """Chassis, seat, foot rests, joystick and the seated driver; from the axle, m and kg."""
+    """Return chassis, seat, foot rests, joystick and seated driver; from the axle, m and kg."""
     z = -WHEEL.radius
     legs = [
         part
@@ -74,7 +74,7 @@ def _caster_places() -> list[tuple[float, float]]:
 
 
 def build(spec: SmartWheelchairSpec) -> RobotModel:
-    """The model with this spec's mass and limits; people push at the height of its centre."""
+    """Return the model with this spec's mass and limits. Contact is at its centre's height."""
     share = spec.mass / 205.0
     wheels = 2.0 * WHEEL.mass
     body = scaled(parts(), spec.mass - wheels)

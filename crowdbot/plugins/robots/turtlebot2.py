@@ -16,7 +16,7 @@ from crowdbot.plugins.robots.limits import (
 
 
 class Turtlebot2Spec(LimitedRobotSpec):
-    """Limits are a box; the body itself is fixed."""
+    """TurtleBot2 with a box of limits; the body itself is fixed."""
 
     wheels: ClassVar[tuple[float, float]] = (0.035, 0.23)
 

@@ -1,4 +1,4 @@
-"""TurtleBot2 as SDFormat text, from primitives.
+"""Build TurtleBot2 as SDFormat text from primitives.
 
 Sources: Kobuki and TurtleBot2 data sheets and descriptions (dimensions, encoder, limits); masses
 are in `crowdbot.plugins.robots.turtlebot2_parts`.
@@ -13,11 +13,11 @@ from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_parts import parts
 
-WHEEL_RADIUS = 0.0352  # physical, m; the firmware believes in 0.035
+WHEEL_RADIUS = 0.0352  # actual radius, m; the firmware assumes 0.035
 TRACK = 0.230
 BODY_RADIUS = 0.178
 BODY_HEIGHT = 0.42
-SKIRT, TOP = 0.0162, 0.41  # lower and upper edge of what touches things, above the floor, m
+SKIRT, TOP = 0.0162, 0.41  # lower and upper edge of the collision shapes above the floor, m
 BASE_HEIGHT = 0.0102  # base_link above the floor
 CASTER_RADIUS = 0.017
 CASTERS = {"front": 0.115, "rear": -0.135}
@@ -26,7 +26,7 @@ WHEEL = sdf.Wheel(WHEEL_RADIUS, width=0.0206, hub_width=0.022, mass=WHEEL_MASS, 
 
 
 def build(spec: Turtlebot2Spec) -> RobotModel:
-    """The model with this spec's mass and limits; people push at the height of its centre."""
+    """Return the model with this spec's mass and limits. Contact is at its centre's height."""
     body = spec.mass - 2.0 * WHEEL_MASS
     (_, _, z), _ = balance(parts(body))
     centre = (body * (z + BASE_HEIGHT) + 2.0 * WHEEL_MASS * WHEEL_RADIUS) / spec.mass

@@ -1,9 +1,9 @@
-"""The parts of a TurtleBot2's body: what they look like and what they weigh.
+"""Parts of a TurtleBot2's body: appearance and mass.
 
-Sizes and places after the makers' descriptions of Kobuki and TurtleBot2. Masses: the data sheets'
-2.35 kg of the Kobuki (wheels included), 0.52 kg for each plate, 0.38 kg for all poles, 0.564 kg
-of the Kinect, and 1.446 kg for a small computer, which makes 6.3 kg with two wheels of 0.15 kg. The
-computer lies on the lowest plate where it keeps the balance over the axle.
+Sizes and positions are from the makers' descriptions of Kobuki and TurtleBot2. Masses: the data
+sheets' 2.35 kg of the Kobuki (wheels included), 0.52 kg for each plate, 0.38 kg for all poles,
+0.564 kg of the Kinect, and 1.446 kg for a small computer, which makes 6.3 kg with two wheels of
+0.15 kg. The computer is on the lowest plate, placed so that the robot balances over the axle.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def _stack() -> list[Part]:
     ]
     bottoms, tops = (0.1, *PLATES[:-1]), PLATES
     gaps = [top - bottom - _PLATE for bottom, top in zip(bottoms, tops, strict=True)]
-    # The weight of poles goes by their length.
+    # The poles share their mass in proportion to their length.
     per_metre = 0.38 / (4.0 * sum(gaps))
     poles = [
         Part(
@@ -78,5 +78,5 @@ def _top() -> list[Part]:
 
 
 def parts(mass: float) -> list[Part]:
-    """The body's parts, scaled to weigh ``mass`` (kg) together."""
+    """Return the body's parts, scaled to a total of ``mass`` (kg)."""
     return scaled(_base() + _stack() + _top(), mass)

@@ -1,4 +1,4 @@
-"""Bumper: which sides of the robot touch something."""
+"""Bumper: senses which sides of the robot touch something."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from crowdbot.plugin import (
 
 
 class BumperSpec(SensorSpec):
-    """Reading: 1 for each sector that touches, else 0; from ``angle_min`` on, counter-clockwise.
+    """Reading: 1 for each sector in contact, else 0; from ``angle_min`` on, counter-clockwise.
 
-    Defaults are the Kobuki's: right, centre and left of the front half.
+    The defaults are those of the Kobuki: right, centre and left of the front half.
     """
 
     kind: Literal["bumper"] = "bumper"

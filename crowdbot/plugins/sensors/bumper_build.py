@@ -1,7 +1,7 @@
-"""Bumper: sectors of a ring that is pressed by discs of people, walls and pillars.
+"""Bumper: sectors of a ring that discs of people, walls and pillars press.
 
-A body presses the sector in which its nearest point lies; the bodies are those of the contact
-model: people are discs, walls are segments.
+A body presses the sector that contains its nearest point; bodies are those of the contact model:
+people are discs, walls are segments.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugins.sensors.bumper import BumperSpec
 
-_EDGE = 1e-9  # rad; what presses the very edge of the outer sectors is felt
+_EDGE = 1e-9  # rad; contacts at the very edge of the outer sectors count
 
 
 class Bumper:
@@ -47,11 +47,14 @@ class Bumper:
         )
 
     def info(self) -> SensorInfo:
-        """Constant description; ``angles`` are the (sectors + 1,) borders of the sectors."""
+        """Return the constant description.
+
+        ``angles`` are the (sectors + 1,) borders of the sectors.
+        """
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """1.0 for each sector that touches."""
+        """Return 1.0 for each sector in contact."""
         del t, rng
         spec = self._spec
         (x, y, _), yaw = sensor_pose_in_world(spec.mount, scene, pose)
@@ -71,7 +74,7 @@ def _press(
     people: Array, radius: Array, present: NDArray[np.bool_], pillars: Array,
     pillar_heights: Array, walls: Array, wall_heights: Array, pressed: Array,
 ) -> None:  # fmt: skip
-    """Write 1 for each sector of the ring (centre x, y) that something presses."""
+    """Write 1 for each sector of the ring (centre x, y) that a body presses."""
     for i in range(people.shape[0]):
         if present[i]:
             px, py = people[i, 0] - x, people[i, 1] - y
@@ -89,7 +92,7 @@ def _press(
 
 @array_kernel
 def _mark(px: float, py: float, begin: float, span: float, pressed: Array) -> None:
-    """Press the sector that looks towards (px, py), if any does."""
+    """Press the sector that contains the direction to (px, py), if any."""
     way = (math.atan2(py, px) - begin) % (2.0 * math.pi)
     if way <= span + _EDGE:
         pressed[min(int(way / span * len(pressed)), len(pressed) - 1)] = 1.0

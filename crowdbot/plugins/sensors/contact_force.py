@@ -1,4 +1,4 @@
-"""Contact force: what people push the robot with, as a soft skin or a force bumper feels it."""
+"""Contact force: the force of people on the robot, as a soft skin or force bumper measures it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.plugin import Component, Mount, PositiveForce, PositiveFrequency, 
 class ContactForceSpec(SensorSpec):
     """Reading: force x, y (N) and torque about z (N m), in the axes of the mount and about it.
 
-    It is the sum over all who touch, wherever they touch. Walls are not felt.
+    The sum over all people in contact, at any place. Walls are not sensed.
     """
 
     kind: Literal["contact_force"] = "contact_force"

@@ -1,6 +1,6 @@
 """Contact force: the resultant of all contacts with people, moved to the mount.
 
-A force F at the base with the torque T about it has the torque T - r x F about a point r.
+A force F at the base with torque T about it has the torque T - r x F about a point r.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ class ContactForce:
         )
 
     def info(self) -> SensorInfo:
-        """Constant description; ``range_max`` is the largest force, N."""
+        """Return the constant description; ``range_max`` is the largest force, N."""
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Force of people in the last tick, in the axes of the mount."""
+        """Return the force of people in the last tick, in the axes of the mount."""
         del t
         spec, (fx, fy, torque) = self._spec, scene.push
         x, y = _turned(spec.mount.x, spec.mount.y, pose.yaw)

@@ -15,8 +15,8 @@ NotNegative = Annotated[float, Ge(0)]
 class ImuSpec(SensorSpec):
     """Reading: angular rate x, y, z (rad/s) and specific force x, y, z (m/s^2), sensor frame.
 
-    Default noise: data sheets of the L3G4200D, the gyroscope of the Kobuki (0.03 deg/s/sqrt Hz),
-    and of the MPU-6050's accelerometers (400 ug/sqrt Hz).
+    The default noise is from the data sheets of the L3G4200D, the gyroscope of the Kobuki (0.03
+    deg/s/sqrt Hz), and of the MPU-6050's accelerometers (400 ug/sqrt Hz).
     """
 
     kind: Literal["imu"] = "imu"

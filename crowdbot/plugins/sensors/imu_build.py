@@ -1,4 +1,4 @@
-"""IMU: what gyroscopes and accelerometers at its mount feel of the robot's motion.
+"""IMU: gyroscopes and accelerometers at the mount, computed from the robot's motion.
 
 Specific force is the acceleration of the mount minus gravity: at rest it is +g upwards. The
 acceleration is the mean since the last reading: the difference of the mount's velocities, seen
@@ -31,7 +31,7 @@ from crowdbot.plugin import (
 from crowdbot.plugins.sensors.imu import ImuSpec
 
 GRAVITY = 9.81  # m/s^2, the plant's
-#: Layout of the memory: six biases and a reading of six numbers begin where it says.
+#: Layout of the memory: offsets of six biases and of a reading of six numbers.
 STARTED, TIME, YAW, VX, VY, BIAS, READING = 0, 1, 2, 3, 4, 5, 11
 _SIZE = 6
 _NO_DRAWS = np.zeros(0)
@@ -68,13 +68,13 @@ class Imu:
         self._axes = rotation(*self._info.tilt, 0.0)
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         return self._info
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
     ) -> Array:
-        """Angular rate and specific force; reading twice at one instant gives the same.
+        """Return angular rate and specific force; two readings at the same time are equal.
 
         Raises:
             SimulationError: the scene has no robot.
@@ -96,12 +96,12 @@ def _feel(
     memory: Array, t: float, yaw: float, robot_vx: float, robot_vy: float, w: float,
     mount_x: float, mount_y: float, mount_yaw: float, axes: Array, noise: Array, draws: Array,
 ) -> None:  # fmt: skip
-    """Bring the memory to time t.
+    """Advance the memory to time t.
 
     Args:
-        axes: (3, 3) those of the mount, its columns, in a frame of its yaw that is level.
+        axes: (3, 3) the mount's axes as columns, in a level frame with its yaw.
         noise: (3, 6) standard deviations of white noise, of the biases at the start, and of their
-            steps in one second.
+            change in one second.
         draws: (12,) normal numbers for the white noise and for the biases; none: no noise.
     """
     started, dt = memory[STARTED] != 0.0, t - memory[TIME]
@@ -139,7 +139,7 @@ def _feel(
 
 @kernel
 def _turn(angle: float) -> float:
-    """The turn between two headings that differ by ``angle``, from -pi to pi, rad."""
+    """Return the turn between two headings that differ by ``angle``, from -pi to pi, rad."""
     if angle > math.pi:
         return angle - 2.0 * math.pi
     return angle + 2.0 * math.pi if angle < -math.pi else angle

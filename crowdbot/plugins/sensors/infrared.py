@@ -1,4 +1,4 @@
-"""Infrared."""
+"""Infrared range sensor."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.plugin import Component, Incidence, Quantity, RangeSensorSpec, Til
 
 
 class InfraredSpec(RangeSensorSpec):
-    """The nearest surface that faces a narrow beam; the floor for a tilted one alone."""
+    """Measures the nearest surface that faces a narrow beam; the floor only if tilted."""
 
     kind: Literal["infrared"] = "infrared"
     mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
@@ -28,7 +28,7 @@ class InfraredSpec(RangeSensorSpec):
     )
 
     def field_of_view(self) -> tuple[float, float, float]:
-        """First and last angle, rad, and reach, m, for drawings."""
+        """Return first and last angle, rad, and range, m, for drawings."""
         return -self.dispersion, self.dispersion, self.range_max
 
 
@@ -36,5 +36,5 @@ INFRARED = Component(
     spec=InfraredSpec,
     build="crowdbot.plugins.sensors.infrared_build:build",
     summary="narrow beam that sees what faces it",
-    exceptions={"check_exact_without_noise": "its rays are drawn anew for each reading"},
+    exceptions={"check_exact_without_noise": "its rays are random for each reading"},
 )

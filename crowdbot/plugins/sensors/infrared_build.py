@@ -1,7 +1,7 @@
 """Infrared: the nearest hit of random rays in a narrow cone.
 
 The rays aim at a disc at the end of the range. Their distance from its centre is uniform, so that
-their density falls as one over that distance, as that of a beam bright in the middle does.
+their density falls as one over that distance, like a beam that is bright in the middle.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from crowdbot.plugins.sensors.infrared import InfraredSpec
 
 
 class Infrared:
-    """New rays for every reading, from the sensor's own stream, before any noise is drawn."""
+    """Draws new rays for every reading from the sensor's own stream, before any noise."""
 
     def __init__(self, spec: InfraredSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
         self._spec, self._range_model = spec, RangeModel(spec, noise)
@@ -42,11 +42,11 @@ class Infrared:
         )
 
     def info(self) -> SensorInfo:
-        """Constant description; ``angles`` are the edges of the beam."""
+        """Return the constant description; ``angles`` are the edges of the beam."""
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Distance (1,) to the nearest surface that faces the beam, m; inf if there is none."""
+        """Return the distance (1,) to the nearest surface that faces the beam, m; inf if none."""
         del t
         own = self._range_model
         if own.tilted:
@@ -63,7 +63,7 @@ class Infrared:
         return own.measure(distance.min(keepdims=True), rng)
 
     def _rays(self, yaw: float, rng: np.random.Generator) -> Array:
-        """Directions (N, 3), turned by a yaw; 1 along the axis."""
+        """Return directions (N, 3), turned by a yaw; 1 along the axis."""
         share, turn = rng.random((2, self._spec.rays))
         away = share * math.tan(self._spec.dispersion)
         left, up = away * np.cos(2.0 * math.pi * turn), away * np.sin(2.0 * math.pi * turn)

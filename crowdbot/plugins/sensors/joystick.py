@@ -1,4 +1,4 @@
-"""Joystick: what the robot's driver asks for."""
+"""Joystick: the command of the robot's driver."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from crowdbot.plugin import (
     Speed,
 )
 
-#: From when on a command holds, s; speed, m/s; yaw rate, rad/s.
+#: Start time of a command, s; speed, m/s; yaw rate, rad/s.
 RecordedCommand = Annotated[
     tuple[NonNegativeDuration, Speed, Annotated[float, Quantity("angular speed")]],
     Field(strict=False),
 ]
-#: x, y, m.
+#: A position x, y, m.
 Place = Annotated[tuple[Length, Length], Field(strict=False)]
 
 
 class JoystickSpec(SensorSpec):
-    """Reading: v (m/s), w (rad/s), the velocity that the driver asks for.
+    """Reading: v (m/s), w (rad/s), the velocity that the driver commands.
 
-    The driver steers straight for the goal, whatever stands in between, or as in `recorded`. All
+    The driver steers straight for the goal regardless of obstacles, or as in `recorded`. All
     defaults are proposed.
     """
 

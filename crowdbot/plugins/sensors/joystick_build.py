@@ -1,7 +1,7 @@
 """Joystick: a driver with a shaky hand points the stick at the goal; or commands are replayed.
 
-The stick goes aside in proportion to the angle between heading and goal, ahead as far as the goal
-is ahead (the cosine of that angle), and back to the middle near the goal. The hand's error is an
+The sideways deflection is proportional to the angle between heading and goal, the forward
+deflection to its cosine; near the goal the stick returns to the centre. The hand's error is an
 Ornstein-Uhlenbeck process, exact at any step (Gillespie, Physical Review E 54, 1996, p. 2084).
 """
 
@@ -23,8 +23,8 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 
-#: Layout of the memory: whether there was a reading, its time, the error of the hand ahead and
-#: aside, in standard deviations.
+#: Layout of the memory: 1 after a reading, its time, and the hand's error ahead and aside, in
+#: standard deviations.
 STARTED, TIME, AHEAD, ASIDE = range(4)
 
 
@@ -51,13 +51,13 @@ class Joystick:
         )
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         return self._info
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
     ) -> Array:
-        """What the driver asks for; reading twice at one instant gives the same."""
+        """Return the driver's command; two readings at the same time are equal."""
         del scene  # the driver knows the robot's pose and ignores the people
         if self._recorded:
             return self._played(t)
@@ -70,7 +70,7 @@ class Joystick:
         )
 
     def _played(self, t: float) -> Array:
-        """The recorded command that holds; before the first one the stick is in the middle."""
+        """Return the recorded command in effect; before the first one the stick is centred."""
         k = bisect.bisect_right(self._from, t) - 1
         return np.array(self._recorded[k][1:]) if k >= 0 else np.zeros(2)
 
@@ -83,7 +83,7 @@ class Joystick:
         return near * max(0.0, math.cos(off)), near * _full(aside)
 
     def _tremble(self, memory: Array, t: float, rng: np.random.Generator) -> None:
-        """Bring the hand's error to time t."""
+        """Advance the hand's error to time t."""
         stays = 0.0
         if memory[STARTED] != 0.0:
             stays = math.exp((memory[TIME] - t) / self._spec.noise_time)

@@ -1,4 +1,4 @@
-"""What lidars of one layer and of several have in common."""
+"""Shared parts of lidars with one layer and with several."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class LidarSpec(RangeSensorSpec):
 
     @property
     def beams(self) -> int:
-        """Beams of a fan."""
+        """Return the number of beams of a fan."""
         return max(1, round((self.angle_max - self.angle_min) / self.angle_step))
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""Planar lidar: a fan of rays from one point, level unless its mount is tilted."""
+"""Planar lidar: a fan of rays from one point, horizontal unless its mount is tilted."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 
 
 class Lidar2d:
-    """All beams are taken at one instant, whatever the robot's tilt.
+    """All beams are measured at the same time, whatever the robot's tilt.
 
-    One that looks down sees the floor.
+    A lidar that is tilted down sees the floor.
     """
 
     def __init__(self, spec: Lidar2dSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
@@ -46,11 +46,11 @@ class Lidar2d:
         self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
     def info(self) -> SensorInfo:
-        """Constant description; ``angles`` are in the sensor frame."""
+        """Return the constant description; ``angles`` are in the sensor frame."""
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Ranges (R,) in m, inf for no return."""
+        """Return ranges (R,) in m, inf for no return."""
         del t
         own = self._range_model
         if own.tilted:

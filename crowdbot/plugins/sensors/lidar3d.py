@@ -15,7 +15,7 @@ Elevation = Annotated[float, Ge(-1.5), Le(1.5), Quantity("angle")]
 
 
 class Lidar3dSpec(LidarSpec):
-    """Fans of beams, one above the other: a part of a sphere. It also sees the floor.
+    """Fans of beams one above the other, forming part of a sphere. It also sees the floor.
 
     The layers lie evenly from ``elevation_min`` to ``elevation_max``, both included, unless
     ``elevations`` lists them.
@@ -38,7 +38,7 @@ class Lidar3dSpec(LidarSpec):
 
     @property
     def elevation(self) -> tuple[float, ...]:
-        """Elevation of each layer over the horizon, rising, rad."""
+        """Return the elevation of each layer above the horizon, rising, rad."""
         if self.elevations or self.layers == 1:
             return self.elevations or (0.5 * (self.elevation_min + self.elevation_max),)
         step = (self.elevation_max - self.elevation_min) / (self.layers - 1)

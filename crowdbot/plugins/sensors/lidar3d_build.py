@@ -1,4 +1,4 @@
-"""Multi-layer lidar: a grid of rays from one point, level unless its mount is tilted."""
+"""Multi-layer lidar: a grid of rays from one point, horizontal unless its mount is tilted."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from crowdbot.plugins.sensors.lidar3d import Lidar3dSpec
 
 
 class Lidar3d:
-    """All beams are taken at one instant; the floor is hit, the robot is not."""
+    """All beams are measured at the same time; they hit the floor but not the robot."""
 
     def __init__(self, spec: Lidar3dSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
         self._range_max, self._range_model = spec.range_max, RangeModel(spec, noise)
@@ -45,11 +45,14 @@ class Lidar3d:
         self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
     def info(self) -> SensorInfo:
-        """Constant description; ``angles`` (L, C, 2) are azimuth and elevation of each beam."""
+        """Return the constant description.
+
+        ``angles`` (L, C, 2) are each beam's azimuth and elevation.
+        """
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Ranges (L, C) in m, lowest layer first, inf for no return."""
+        """Return ranges (L, C) in m, lowest layer first, inf for no return."""
         del t
         own = self._range_model
         if own.tilted:

@@ -1,4 +1,4 @@
-"""Ground truth of the people around the robot: privileged."""
+"""Privileged sensor: ground truth of the people around the robot."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from crowdbot.plugin import (
 class PeopleTrackerSpec(SensorSpec):
     """Reading (max_people, 5), nearest first: id, x, y (m), vx, vy (m/s), in base_link's axes.
 
-    The id is a person's place in the crowd's list; rows without anybody have id -1 and zeros.
-    Privileged: no sensor of a real robot knows this, so a planner must say that it is.
+    The id is a person's index in the crowd; unused rows have id -1 and zeros. Privileged: no real
+    sensor measures this, so a planner that uses it must declare itself privileged.
     """
 
     kind: Literal["people_tracker"] = "people_tracker"
@@ -55,7 +55,7 @@ class PeopleTrackerSpec(SensorSpec):
     )
 
     def field_of_view(self) -> tuple[float, float, float]:
-        """First and last angle, rad, and reach, m, for drawings."""
+        """Return first and last angle, rad, and range, m, for drawings."""
         return -0.5 * self.view, 0.5 * self.view, self.range_max
 
 

@@ -1,8 +1,8 @@
-"""Tracker of people: the truth, as far as it is in line of sight, with noise and misses.
+"""People tracker: ground truth within the line of sight, with noise and misses.
 
-A line of sight goes from the mount to the trunk of a person, three quarters up: to its middle, or
-to 0.8 of its radius on either side. Somebody is seen if one of the three meets nobody else, no
-wall and no pillar first.
+Lines of sight go from the mount to a person's trunk at three quarters of the height: to its centre,
+and to 0.8 of its radius on either side. A person is seen if at least one line reaches them without
+meeting another person, a wall or a pillar first.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from crowdbot.plugin.for_sensors import trunk_radius
 from crowdbot.plugins.sensors.people_tracker import PeopleTrackerSpec
 
 NOBODY = (-1.0, 0.0, 0.0, 0.0, 0.0)
-_AIM_HEIGHT = 0.75  # of a person's height
-_AIM_ASIDE = (0.0, -0.8, 0.8)  # of the trunk's radius
+_AIM_HEIGHT = 0.75  # share of a person's height
+_AIM_ASIDE = (0.0, -0.8, 0.8)  # share of the trunk's radius
 
 
 class PeopleTracker:
@@ -48,11 +48,11 @@ class PeopleTracker:
         )
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Whom it sees, nearest first."""
+        """Return the people it sees, nearest first."""
         del t
         spec = self._spec
         seen = self._candidates(scene, pose)
@@ -61,7 +61,7 @@ class PeopleTracker:
         rows = np.empty((spec.max_people, 5))
         rows[:] = NOBODY
         if self._info.random:
-            # Drawn for everybody, so that one's errors do not depend on who else is there.
+            # Drawn for everyone, so that one person's errors do not depend on who else is there.
             missed = rng.random(len(scene.people)) < spec.miss
             errors = rng.standard_normal((len(scene.people), 4))
             seen = seen[~missed[seen]]
@@ -74,7 +74,7 @@ class PeopleTracker:
         return rows
 
     def _candidates(self, scene: Scene, pose: Pose) -> Indices:
-        """People present, in range and in the field of view; nearest first."""
+        """Return people present, in range and in the field of view; nearest first."""
         spec = self._spec
         (x, y, _), yaw = sensor_pose_in_world(spec.mount, scene, pose)
         away = np.where(scene.present[:, None], scene.people[:, :2] - (x, y), math.inf)
@@ -87,11 +87,11 @@ class PeopleTracker:
         return found
 
     def _in_sight(self, scene: Scene, pose: Pose, people: Indices) -> NDArray[np.bool_]:
-        """Which of some people a line of sight reaches (K,)."""
+        """Return a mask (K,) of people that a line of sight reaches."""
         at, _ = sensor_pose_in_world(self._spec.mount, scene, pose)
         away = scene.people[people, :2] - at[:2]
         distance = np.hypot(away[:, 0], away[:, 1])
-        # Somebody who stands on the mount is aimed at along x: every ray begins inside.
+        # A person at the mount's position is aimed at along x: every ray begins inside.
         ahead = np.where(
             distance[:, None] > 0.0, away / np.maximum(distance, 1e-300)[:, None], (1.0, 0.0)
         )
@@ -110,7 +110,7 @@ class PeopleTracker:
 
 
 def _in_base(people: Array, pose: Pose) -> Array:
-    """Positions and velocities (K, 4) of the world in base_link's axes."""
+    """Transform positions and velocities (K, 4) from the world to base_link's axes."""
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     turn = np.array([[c, -s], [s, c]])
     return np.hstack([(people[:, :2] - (pose.x, pose.y)) @ turn, people[:, 2:] @ turn])

@@ -1,4 +1,4 @@
-"""Depth camera, with colour where wanted."""
+"""Depth camera, optionally with colour."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from crowdbot.plugin import (
 
 DepthRenderer = Annotated[int, Ge(2), Le(4096)]
 FieldOfView = Annotated[float, Gt(0), Lt(math.pi), Quantity("angle")]
-#: DepthRenderer of one image; more is a slip of the pen.
+#: Largest number of pixels of one image; more is a typing error.
 MOST_PIXELS = 4_000_000
 
 
@@ -67,7 +67,7 @@ class RgbdCameraSpec(SensorSpec):
     )
 
     def field_of_view(self) -> tuple[float, float, float]:
-        """First and last angle, rad, and reach, m, for drawings."""
+        """Return first and last angle, rad, and range, m, for drawings."""
         return -0.5 * self.horizontal_view, 0.5 * self.horizontal_view, self.depth_max
 
     @model_validator(mode="after")

@@ -1,8 +1,8 @@
 """Depth camera: one ray for each pixel, through the centre of the pixel.
 
-Depth is measured along the optical axis: a wall that faces the camera has one depth everywhere.
-The random error grows as the square of the depth, as triangulation has it (Khoshelham and
-Elberink, "Accuracy and resolution of Kinect depth data", Sensors 12, 2012, equation 12).
+Depth is measured along the optical axis: a wall that faces the camera has one depth everywhere. The
+random error grows with the square of the depth, as in triangulation (Khoshelham and Elberink,
+"Accuracy and resolution of Kinect depth data", Sensors 12, 2012, equation 12).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Image = NDArray[np.float32]
 
 
 class RgbdCamera:
-    """A global shutter; the robot's own tilt does not move the axis."""
+    """Depth camera with a global shutter; the robot's own tilt does not move the axis."""
 
     def __init__(self, spec: RgbdCameraSpec) -> None:
         self._spec = spec
@@ -55,7 +55,7 @@ class RgbdCamera:
         self._renderer = DepthRenderer(pinhole, spec.depth_min, spec.depth_max)
         self._step = (spec.depth_max - spec.depth_min) / 2.0**spec.bits if spec.bits else 0.0
         self._limited = spec.max_incidence < math.pi / 2
-        # Azimuths of a grid rise: its columns run from right to left.
+        # Azimuths of a grid increase, so its columns run from right to left.
         camera = self._renderer
         self._grid = RayGrid(np.arctan(camera.left[::-1]), camera.slope, camera.cos_azimuth[::-1])
         errors = spec.noise, spec.resolution, spec.bits, spec.dropout
@@ -69,11 +69,14 @@ class RgbdCamera:
         )
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Depth (H, W) float32 in m, first row on top: inf for nothing in reach, 0 for too near."""
+        """Return depth (H, W) float32 in m, first row on top.
+
+        Inf if nothing is in range, 0 if too near.
+        """
         del t
         spec = self._spec
         at, yaw = sensor_pose_in_world(spec.mount, scene, pose)
@@ -84,7 +87,7 @@ class RgbdCamera:
         else:
             depth = scene.render_depth(self._renderer, at, yaw)
         if spec.noise > 0.0:
-            # Drawn for every pixel, so that one's noise does not depend on what others see.
+            # Drawn for every pixel, so that a pixel's noise does not depend on what others see.
             noise = rng.standard_normal(self._info.shape, dtype=np.float32)
             _disturb(depth, noise, spec.noise, spec.depth_min, spec.depth_max)
         if spec.resolution > 0.0:
@@ -96,7 +99,7 @@ class RgbdCamera:
         return cast(Array, depth)
 
     def _slanted(self, scene: Scene, at: tuple[float, float, float], pose: Pose) -> Image:
-        """Depth (H, W) seen by a camera that is not level; ray by ray."""
+        """Return depth (H, W) of a camera that is not level, ray by ray."""
         spec = self._spec
         turn = sensor_rotation_in_world(spec.mount, pose)
         reach = spec.depth_max * float(self._stretch.max())
@@ -107,7 +110,7 @@ class RgbdCamera:
         return depth.reshape(self._info.shape).astype(np.float32)
 
     def _facing(self, scene: Scene, at: tuple[float, float, float], yaw: float) -> Image:
-        """Depth (H, W) of what is not struck at too large an angle; ray by ray."""
+        """Return depth (H, W) of surfaces not hit at too large an angle, ray by ray."""
         spec, grid = self._spec, self._grid
         scale = grid.slope_scale
         stretch = np.sqrt(1.0 + (grid.slope[:, np.newaxis] * scale) ** 2) / scale
@@ -121,7 +124,7 @@ class RgbdCamera:
     def depth_mm(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator
     ) -> NDArray[np.uint16]:
-        """Depth (H, W) in whole millimetres, 0 for too near and for nothing in reach."""
+        """Return depth (H, W) in whole millimetres, 0 if too near or nothing is in range."""
         if self._exact:
             at, yaw = sensor_pose_in_world(self._spec.mount, scene, pose)
             return scene.render_depth_mm(self._renderer, at, yaw)
@@ -129,7 +132,7 @@ class RgbdCamera:
 
 
 def _pixels(camera: DepthRenderer) -> tuple[Array, Array]:
-    """Directions (H * W, 3) of the pixels' rays, and their lengths (H * W,) per metre of depth."""
+    """Return the pixels' ray directions (H * W, 3), and lengths (H * W,) per metre of depth."""
     rays = np.ones((*camera.shape, 3))
     rays[..., 1], rays[..., 2] = camera.left, camera.slope[:, np.newaxis]
     flat = rays.reshape(-1, 3)
@@ -139,7 +142,7 @@ def _pixels(camera: DepthRenderer) -> tuple[Array, Array]:
 
 @kernel
 def _disturb(depth: Image, noise: Image, deviation: float, nearest: float, farthest: float) -> None:
-    """Add an error to the depths (H, W) that were measured, in place.
+    """Add an error to the measured depths (H, W), in place.
 
     Args:
         noise: (H, W) with a standard deviation of 1.
@@ -155,7 +158,7 @@ def _disturb(depth: Image, noise: Image, deviation: float, nearest: float, farth
 
 @kernel
 def _round(depth: Image, step: float, nearest: float, farthest: float) -> None:
-    """Round the depths that were measured to multiples of ``step``, in place."""
+    """Round the measured depths to multiples of ``step``, in place."""
     for r in range(depth.shape[0]):
         for c in range(depth.shape[1]):
             if 0.0 < depth[r, c] < math.inf:
@@ -165,7 +168,7 @@ def _round(depth: Image, step: float, nearest: float, farthest: float) -> None:
 
 @kernel
 def _round_down(depth: Image, step: float, nearest: float) -> None:
-    """Round the depths that were measured down to multiples of ``step``, in place."""
+    """Round the measured depths down to multiples of ``step``, in place."""
     for r in range(depth.shape[0]):
         for c in range(depth.shape[1]):
             if 0.0 < depth[r, c] < math.inf:

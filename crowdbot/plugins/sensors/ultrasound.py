@@ -1,4 +1,4 @@
-"""Ultrasound."""
+"""Ultrasonic range sensor."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _DEGREE = math.pi / 180.0
 
 
 class UltrasoundSpec(RangeSensorSpec):
-    """The nearest thing in a drop-shaped zone, whatever its direction.
+    """Measures the nearest object in a drop-shaped zone, whatever its orientation.
 
-    The floor is seen by a tilted one alone, wherever the zone meets it: `max_incidence` leaves
-    out echoes that a smooth floor would throw away from the sensor.
+    Only a tilted sensor sees the floor, wherever the zone meets it; `max_incidence` drops echoes
+    that a smooth floor would reflect away from the sensor.
     """
 
     kind: Literal["ultrasound"] = "ultrasound"
@@ -31,11 +31,11 @@ class UltrasoundSpec(RangeSensorSpec):
 
     @property
     def half_angle(self) -> float:
-        """Opening of the zone to one side, rad."""
+        """Return the zone's opening to one side, rad."""
         return math.atan(8.0 * self.radius / (3.0 * math.sqrt(3.0) * self.range_max))
 
     def field_of_view(self) -> tuple[float, float, float]:
-        """First and last angle, rad, and reach, m, for drawings."""
+        """Return first and last angle, rad, and range, m, for drawings."""
         return -self.half_angle, self.half_angle, self.range_max
 
 

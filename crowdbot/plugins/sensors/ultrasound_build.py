@@ -46,11 +46,11 @@ from crowdbot.plugin.for_sensors import (
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 
 _HALVINGS = 40
-_ROUNDING = 1e-12  # the tangent of the zone's own edge is within it
+_ROUNDING = 1e-12  # so that the tangent of the zone's own edge is within it
 
 
 def zone_length(angle: Array, length: float, radius: float) -> Array:
-    """How far the zone reaches at angles to its axis, m; 0 outside."""
+    """Return how far the zone extends at angles to its axis, m; 0 outside."""
     sine = np.tan(angle) * 3.0 * math.sqrt(3.0) * length / (8.0 * radius)
     t = math.pi - np.arcsin(np.minimum(sine, 1.0))
     reach: Array = 0.5 * length * (1.0 - np.cos(t)) / np.cos(angle)
@@ -58,7 +58,7 @@ def zone_length(angle: Array, length: float, radius: float) -> Array:
 
 
 class Ultrasound:
-    """Rays on a regular grid of azimuth and elevation, its middle on the axis.
+    """Rays on a regular grid of azimuth and elevation, centred on the axis.
 
     The outermost rays are the zone's tangents at the sensor.
     """
@@ -88,11 +88,11 @@ class Ultrasound:
         self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
     def info(self) -> SensorInfo:
-        """Constant description; ``angles`` are the edges of the zone at the sensor."""
+        """Return the constant description; ``angles`` are the edges of the zone at the sensor."""
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Distance (1,) to the nearest thing in the zone, m; inf if there is none."""
+        """Return the distance (1,) to the nearest object in the zone, m; inf if there is none."""
         del t
         own, grid, longest = self._range_model, self._grid, self._spec.range_max
         at, yaw = own.pose_in_world(scene, pose)
@@ -101,7 +101,7 @@ class Ultrasound:
         if own.tilted:
             distance = own.cast_tilted(scene, pose, self._rays).reshape(self._reach.shape)
             nearest[0] = _nearest(distance, self._reach)
-        elif own.drops_slanted:  # a slanted surface may hide what is behind it
+        elif own.drops_slanted:  # a slanted surface may hide objects behind it
             distance, incidence, _ = scene.cast_grid(grid, at, yaw, longest)
             own.drop_slanted(distance, incidence)
             nearest[0] = _nearest(distance, self._reach)
@@ -114,7 +114,7 @@ class Ultrasound:
 
 @kernel
 def _nearest(distance: Array, reach: Array) -> float:
-    """The least distance that lies within the reach of its ray; inf if none does."""
+    """Return the least distance within its ray's reach; inf if none."""
     best = math.inf
     for r in range(distance.shape[0]):
         for c in range(distance.shape[1]):
@@ -127,7 +127,7 @@ def _nearest(distance: Array, reach: Array) -> float:
 def _nearest_by_rays(
     z: float, slope: Array, reach: Array, length: float, work: Array, filled: Indices
 ) -> float:
-    """As `_nearest`, of rays from a height ``z`` and what `fill_columns` found in their columns."""
+    """As `_nearest`, for rays from height ``z`` and the columns of `fill_columns`."""
     best = math.inf
     for c in range(reach.shape[1]):
         if filled[c] == 0 or work[c, 0, NEAR] >= best:
@@ -148,11 +148,11 @@ def _nearest_by_rays(
 
 @kernel
 def _depth(x: float, y: float, length: float, narrow: float) -> float:
-    """How far out a point is in the zone's level section, which is convex: 1 on its edge.
+    """Return the depth of a point in the zone's level section, which is convex: 1 on its edge.
 
     Args:
         x, y: m, from the sensor, x along the axis; not outside of the cone at its tip.
-        narrow: of the cone at the tip, 1 / tan of half its angle.
+        narrow: 1 / tan of half the angle of the cone at the tip.
     """
     sine = min(1.0, narrow * abs(y) / x) if x > 0.0 else 0.0
     return x / (0.5 * length * (1.0 + math.sqrt(1.0 - sine * sine)))
@@ -162,7 +162,10 @@ def _depth(x: float, y: float, length: float, narrow: float) -> float:
 def _to_wall(
     ax: float, ay: float, bx: float, by: float, length: float, narrow: float, most: float
 ) -> float:
-    """Least distance of what of a segment is in the level section, m; inf if it is ``most``."""
+    """Return the least distance of a segment's part inside the level section, m.
+
+    At most ``most``.
+    """
     ex, ey = bx - ax, by - ay
     low, high = 0.0, 1.0
     for side in (-1.0, 1.0):  # cut to the cone, |y| narrow <= x
@@ -183,7 +186,7 @@ def _to_wall(
         return math.inf
     if _depth(ax + foot * ex, ay + foot * ey, length, narrow) > 1.0:
         inside, left, right = foot, low, high
-        for _ in range(_HALVINGS):  # to the point that is deepest inside: depth is convex
+        for _ in range(_HALVINGS):  # to the deepest point inside: depth is convex
             first, second = left + (right - left) / 3.0, right - (right - left) / 3.0
             if _depth(ax + first * ex, ay + first * ey, length, narrow) < _depth(
                 ax + second * ex, ay + second * ey, length, narrow
@@ -194,7 +197,7 @@ def _to_wall(
             inside = 0.5 * (left + right)
         if _depth(ax + inside * ex, ay + inside * ey, length, narrow) > 1.0:
             return math.inf
-        for _ in range(_HALVINGS):  # and back to the edge
+        for _ in range(_HALVINGS):  # back to the edge
             middle = 0.5 * (foot + inside)
             if _depth(ax + middle * ex, ay + middle * ey, length, narrow) > 1.0:
                 foot = middle
@@ -211,15 +214,15 @@ def _nearest_at_all(
     filled: Indices, directions: Array, runs: Indices,
     walls: Array, wall_heights: Array, discs: Array, owner: Indices,
 ) -> float:  # fmt: skip
-    """The nearest hit of any ray, or what is nearer at the height of the sensor, exactly, m.
+    """Return the nearest hit of any ray, or the exact nearer distance at the sensor's height, m.
 
-    Walls filled wherever the zone cuts them, cylinders where they face the sensor; what is between
-    them and the sensor is in the zone itself, and nearer.
+    Walls count wherever the zone cuts them, cylinders where they face the sensor; objects in
+    between are in the zone themselves, and nearer.
 
     Args:
         x, y, z, yaw: origin and direction in the world frame, m and rad.
-        reach: (R, C) how far the zone reaches along each ray, m.
-        length, narrow: of the zone, see `_depth`.
+        reach: (R, C) extent of the zone along each ray, m.
+        length, narrow: the zone's size, see `_depth`.
         azimuth to runs: fields of `GridArrays`.
         walls to owner: fields of `Obstacles`.
     """

@@ -25,7 +25,7 @@ class OdometrySpec(SensorSpec):
     )
     noise: Annotated[float, Ge(0)] = Field(
         default=0.0,
-        description="Standard deviation of each wheel's rate, anew at each reading, rad/s.",
+        description="Standard deviation of each wheel's rate, drawn at each reading, rad/s.",
     )
     heading: Literal["wheels", "gyro"] = Field(
         default="wheels", description="Where yaw and w come from; a Kobuki can use its gyro."
@@ -56,7 +56,7 @@ class WheelOdometrySpec(OdometrySpec):
 class HolonomicOdometrySpec(OdometrySpec):
     """Reading: x, y (m), yaw (rad), v (m/s), w (rad/s), vy (m/s); starts at the start pose.
 
-    A third wheel, under the robot's frame, rolls to the left.
+    A third wheel under the robot's frame rolls sideways, positive to the left.
     """
 
     kind: Literal["holonomic_odometry"] = "holonomic_odometry"

@@ -1,13 +1,13 @@
 """Wheel odometry: encoder ticks of two or three wheels, integrated by the midpoint rule.
 
-Between two readings the left and right wheel roll s_l and s_r, whole ticks long. The robot turns
-by (s_r - s_l) / track and moves (s_l + s_r) / 2 along the heading half-way through the turn, which
-is exact on straight lines and second-order on arcs. A holonomic robot has a third wheel, which
-rolls s_s to the left of that heading. With ``heading: gyro`` the turn is the one that a gyro
-measures, whose noise of density n adds n sqrt(dt) (Woodman 2007, section 3.2.1).
+Between two readings the left and right wheels roll s_l and s_r, in whole ticks. The robot turns by
+(s_r - s_l) / track and moves (s_l + s_r) / 2 along the heading half-way through the turn, which is
+exact on straight lines and second-order on arcs. A holonomic robot has a third wheel, which rolls
+s_s to the left of that heading. With ``heading: gyro`` the turn is measured by a gyro, whose noise
+density n adds n sqrt(dt) (Woodman 2007, section 3.2.1).
 
-``noise`` makes a wheel seem to turn faster or slower by as much as a draw says, anew from one
-reading to the next; the encoders count what the wheels seem to do.
+``noise`` scales a wheel's apparent rotation by a new random draw between readings; the encoders
+count the apparent rotation.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SimulationError, kernel
 from crowdbot.plugins.sensors.wheel_odometry import HolonomicOdometrySpec, WheelOdometrySpec
 
-#: Layout of the memory: three errors (rad) and a reading of six numbers begin where it says.
+#: Layout of the memory: offsets of three errors (rad) and of a reading of six numbers.
 STARTED, TIME, LEFT, RIGHT, SIDE, YAW, ERRORS, READING = 0, 1, 2, 3, 4, 5, 6, 9
 _SIZE = 15
 _NO_DRAWS = np.zeros(0)
@@ -28,7 +28,7 @@ _NO_DRAWS = np.zeros(0)
 class WheelOdometry:
     """Reading: x, y (m), yaw (rad, in [-pi, pi]), v (m/s), w (rad/s), and perhaps vy (m/s).
 
-    The frame is the one of the pose at the first reading; velocities are means since the last one.
+    The frame is that of the pose at the first reading; velocities are means since the last one.
     """
 
     def __init__(
@@ -60,13 +60,13 @@ class WheelOdometry:
         )
 
     def info(self) -> SensorInfo:
-        """Constant description."""
+        """Return the constant description."""
         return self._info
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
     ) -> Array:
-        """Pose and twist; reading twice at one instant gives the same.
+        """Return pose and twist; two readings at the same time are equal.
 
         Raises:
             SimulationError: the scene has no robot.
@@ -91,12 +91,12 @@ def _roll(
     gyro: bool, ticks: float, metre: float, track: float, noise: float, gyro_noise: float,
     draws: Array,
 ) -> None:  # fmt: skip
-    """Bring the memory to time t.
+    """Advance the memory to time t.
 
     Args:
-        ticks, metre: of an encoder in one turn; way of its wheel in one tick, m.
-        draws: normal numbers for the errors of the left and the right wheel, of the turn and, of
-            a holonomic robot, of the third wheel; none: no noise.
+        ticks, metre: an encoder's ticks per turn, and its wheel's distance per tick, m.
+        draws: normal numbers for the errors of the left wheel, the right wheel, the turn and, for a
+            holonomic robot, the third wheel; empty: no noise.
     """
     dt, turned = t - memory[TIME], 0.0
     if memory[STARTED] != 0.0:
@@ -129,13 +129,13 @@ def _roll(
 
 @kernel
 def _count(angle: float, ticks: float) -> float:
-    """What an encoder has counted when its wheel stands at an angle (rad)."""
+    """Return an encoder's count when its wheel is at an angle (rad)."""
     return float(math.floor(angle / (2.0 * math.pi) * ticks))
 
 
 @kernel
 def _wrapped(angle: float) -> float:
-    """The same direction from -pi to pi, rad."""
+    """Return the same direction from -pi to pi, rad."""
     while angle > math.pi:
         angle -= 2.0 * math.pi
     while angle < -math.pi:

@@ -89,7 +89,7 @@ def test_an_entrance_in_a_wall_is_refused(tmp_path: Path, stream: str) -> None:
         _scenario(tmp_path, stream)
     (found,) = caught.value.diagnostics
     assert found.code == "E143"
-    assert found.message == "nobody of stream 'some' can come in around (2.5, 3)"
+    assert found.message == "people of stream 'some' cannot come in around (2.5, 3)"
     assert (found.mark.line, found.mark.column) == (21, 36)
 
 
@@ -99,5 +99,5 @@ def test_an_entrance_in_a_wall_is_refused_when_people_are_placed(tmp_path: Path)
     assert scenario.crowd is not None
     streams = {"some": scenario.crowd.streams["some"].model_copy(update={"origin": "within"})}
     crowd = scenario.crowd.model_copy(update={"streams": streams})
-    with pytest.raises(InputError, match="nobody can come in at the origin of stream 'some'"):
+    with pytest.raises(InputError, match="people cannot come in at the origin of stream 'some'"):
         realise(scenario.model_copy(update={"crowd": crowd}), parts)

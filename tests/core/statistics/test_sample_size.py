@@ -25,7 +25,7 @@ def test_a_sample_below_it_has_no_verdict_whatever_the_difference(count: int) ->
     assert size is not None
     assert (size.draws, size.pairs, size.least) == (count, count, 6)
     assert size.too_small == (count < 6)
-    assert ("at least 6 crowd draws" in size.text) == size.too_small
+    assert ("a verdict needs at least 6" in size.text) == size.too_small
     assert (summary.comparisons[0].verdict == "better") == (not size.too_small)
 
 

@@ -79,7 +79,7 @@ def test_names_of_columns_and_of_people(tmp_path: Path) -> None:
     assert run.agents.x[:2].tolist()[0] == [1.0, 2.0]
     assert run.trips.agent.tolist() == [1]
     trips.write_text("agent,t0,t1,reached\nbo,0,1,1\n")
-    with pytest.raises(InputError, match="nobody is called 'bo'; did you mean 'bob'"):
+    with pytest.raises(InputError, match="no one is called 'bo'; did you mean 'bob'"):
         crowdbot.Trajectories.from_csv(robot, agents, trips, columns=names, **BODY)
     with pytest.raises(InputError, match="no column 'pos_xx'; did you mean 'pos_x'"):
         crowdbot.Trajectories.from_csv(robot, columns={"robot": {"x": "pos_xx"}}, **BODY)

@@ -110,7 +110,7 @@ def test_reactive_people_follow_the_record_and_avoid_what_is_in_the_way(table: P
 
 
 def test_an_agent_that_is_not_recorded_is_refused(table: Path) -> None:
-    with pytest.raises(InputError, match="nobody with id 4"):
+    with pytest.raises(InputError, match="no person with id 4"):
         build(words(table), [], Agents.of(id=[3, 4], x=[0, 1], y=0.0))
 
 

@@ -25,7 +25,7 @@ def is_clearly_longer(x: float, y: float, length: float) -> bool:
 def nearest_on_segment(
     px: float, py: float, ax: float, ay: float, bx: float, by: float
 ) -> tuple[float, float]:
-    """Point of segment a-b nearest to p."""
+    """Return the point of segment a-b nearest to p."""
     ex, ey = bx - ax, by - ay
     length2 = ex * ex + ey * ey
     s = 0.0
@@ -36,7 +36,7 @@ def nearest_on_segment(
 
 @kernel
 def time_to_disc(rx: float, ry: float, vx: float, vy: float, gap2: float) -> float:
-    """Time until a disc that moves at v relative to another touches it; inf if never.
+    """Return the time until a disc with relative velocity v touches another; inf if never.
 
     Args:
         rx, ry: centre of the other disc minus own centre, m.
@@ -48,14 +48,14 @@ def time_to_disc(rx: float, ry: float, vx: float, vy: float, gap2: float) -> flo
     root = approach * approach - speed2 * gap2
     if approach <= 0.0 or root <= 0.0:
         return math.inf
-    return gap2 / (approach + math.sqrt(root))  # the cancellation-free form of the smaller root
+    return gap2 / (approach + math.sqrt(root))  # the form of the smaller root without cancellation
 
 
 @kernel
 def time_to_segment(
     vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """Time until a disc at the origin with velocity v touches segment a-b; inf if never.
+    """Return the time until a disc at the origin with velocity v touches segment a-b; inf if never.
 
     The disc must not touch the segment yet.
     """
@@ -66,7 +66,7 @@ def time_to_segment(
     cross = vx * sy - vy * sx
     if abs(cross) < 1e-5:  # parallel
         return first
-    # The point of the line that is touched lies abreast of the centre when it is touched.
+    # On contact, the touched point of the line is level with the centre.
     t = (ax * sy - ay * sx) / cross - radius * math.hypot(sx, sy) / abs(cross)
     along = (vx * t - ax) * sx + (vy * t - ay) * sy
     if t >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
@@ -78,10 +78,9 @@ def time_to_segment(
 def crossing_time(
     vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """As `time_to_segment`, in the original engine's way.
+    """As `time_to_segment`, computed like the original engine.
 
-    There the interior of a segment counts if the centre, not the point of contact, is going to
-    cross it.
+    There the interior of a segment counts if the centre will cross it, not the point of contact.
     """
     first = math.inf
     for ex, ey in ((ax, ay), (bx, by)):
@@ -99,7 +98,7 @@ def crossing_time(
 
 @kernel
 def single_angle(ax: float, ay: float, bx: float, by: float) -> float:
-    """Angle between two vectors in [0, pi] with the rounding of the original engine.
+    """Return the angle between two vectors in [0, pi] with the original engine's rounding.
 
     In single precision; 0 if a vector vanishes or rounding puts the cosine outside [-1, 1].
     """

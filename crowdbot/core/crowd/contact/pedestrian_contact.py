@@ -1,4 +1,4 @@
-"""Pushes between people who overlap, walls and fixed discs."""
+"""Contact forces between people, walls and fixed discs."""
 
 from __future__ import annotations
 

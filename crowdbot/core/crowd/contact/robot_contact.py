@@ -1,4 +1,4 @@
-"""Forces between a robot and people."""
+"""Forces between robots and people."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows, as_record, as_rows, record_type
 from crowdbot.core.types.arrays import Array, Indices
 
-#: A contact has ended when the surface gap exceeds this, m (metric specification, 3.10).
+#: A contact ends when the surface gap exceeds this, m (metric specification, 3.10).
 RELEASE_GAP = 0.05
 #: Columns of a robot row for numpy, in the order of the fields of `RobotRecord`.
 RX, RY, RVX, RVY, R_BODY, R_SEEN, R_YAW, R_W = range(8)
@@ -49,7 +49,7 @@ class RobotRecord:
 ROBOT = record_type(RobotRecord)
 #: Outline of a robot that is a disc.
 DISC = np.zeros((0, 2))
-#: Nearer to an edge a point's direction from it is rounding: the edge's normal counts, m.
+#: Nearer to an edge the direction from it is rounding, so the edge's normal is used, m.
 _ON_EDGE = 1e-12
 
 
@@ -67,7 +67,7 @@ def robot_contacts(
     dt: float,
     reaction: Array,
 ) -> None:
-    """`robot_contact` with each robot that is there.
+    """Compute `robot_contact` for each robot present.
 
     Args:
         contacts: what each of all robots feels, changed in place: the last part of the crowd's
@@ -102,11 +102,11 @@ def robot_contact(
     dt: float,
     reaction: Array,
 ) -> None:
-    """Hunt-Crossley force F = k d (1 + c d'), never pulling; equal and opposite by one number.
+    """Compute the Hunt-Crossley force F = k d (1 + c d'), repulsive, equal and opposite.
 
-    Nothing rubs: the force is along the normal through the person's centre. Writes the force on
-    the robot (N) and its torque about the base (N m) to ``felt``, adds the force on each agent (N)
-    to ``reaction`` (N, 2), and records the contacts in ``touches``.
+    There is no friction: the force is along the normal through the person's centre. Writes the
+    force on the robot (N) and its torque about the base (N m) to ``felt``, adds the force on each
+    agent (N) to ``reaction`` (N, 2), and records the contacts in ``touches``.
 
     Args:
         felt, touches: of this robot; (N,) of each person.
@@ -174,8 +174,8 @@ def overlap(
         reach: radius of the person and of the robot's rounding together, m.
 
     Returns:
-        depth (m), negative: a gap; unit normal towards the robot; and from the robot's base the
-        point of its outline where they meet, before rounding (m). World frame.
+        depth (m), negative for a gap; unit normal towards the robot; and the outline's point of
+        contact relative to the base, before rounding (m). World frame.
     """
     if outline.shape[0] == 0:
         distance = math.sqrt(dx * dx + dy * dy)
@@ -215,7 +215,7 @@ def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, floa
 
 @kernel
 def extent_of(outline: Array) -> float:
-    """Distance of the farthest corner from the base, m."""
+    """Return the distance of the farthest corner from the base, m."""
     farthest = 0.0
     for k in range(outline.shape[0]):
         farthest = max(farthest, math.hypot(outline[k, 0], outline[k, 1]))
@@ -224,7 +224,7 @@ def extent_of(outline: Array) -> float:
 
 @kernel
 def bearing(robot: RobotRecord, x: float, y: float) -> float:
-    """Direction of a vector (world frame) as the robot sees it, rad, counter-clockwise."""
+    """Return the direction of a world vector in the robot's frame, rad, counter-clockwise."""
     angle = math.atan2(y, x) - robot.yaw
     return math.atan2(math.sin(angle), math.cos(angle))
 

@@ -1,7 +1,7 @@
 """Responses of people to robots, contact apart.
 
-- `parameters`: what of a response can be chosen; `from_spec` takes it from a scenario.
-- `notice`: who has noticed a robot.
-- `evasion`: how those who have steer and brake, decided with their way.
-- `standing`: how people stop short of a robot that stands.
+- `parameters`: parameters of a response; `from_spec` reads them from a scenario.
+- `notice`: detection of robots.
+- `evasion`: steering and braking after detection, at each decision.
+- `standing`: stopping in front of a standing robot.
 """

@@ -1,6 +1,6 @@
 """Evasion of robots that people have noticed: sideways in time, and by braking.
 
-Decided with their way, so that own will and evasion together stay within what legs can do.
+Computed at each decision, so that the desired acceleration plus evasion stays within human limits.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def evade_robots(
     response: Rows[DecisionResponse],
     now: float,
 ) -> None:
-    """Change the accelerations that people desire to those that evade robots, in place.
+    """Change people's desired accelerations to evade robots, in place.
 
     Args:
         agents: (N,) of the state; ``ax`` and ``ay`` hold what each wants without robots.
@@ -55,7 +55,7 @@ def evade_robots(
     seen, own = as_rows(robots, ROBOT), response[0]
     for i in range(agents.shape[0]):
         if not heeds[i]:
-            if own.all_stop != 0.0:  # of no robot but one that stands
+            if own.all_stop != 0.0:  # only of standing robots
                 reacts(agents, i, radius[i], late[i], seen, outlines, own, now)
             continue
         if not reacts(agents, i, radius[i], late[i], seen, outlines, own, now):
@@ -73,7 +73,10 @@ def evade_robots(
 
 @kernel
 def _put_first(agents: People, i: int, ex: float, ey: float, most: float) -> None:
-    """Lay evasion over own will: what opposes it is dropped, and both keep within ``most``."""
+    """Add evasion to the desired acceleration.
+
+    Opposing parts are dropped, and the sum is limited.
+    """
     wx, wy = agents[i].ax, agents[i].ay
     against = min(0.0, wx * ex + wy * ey) / (ex * ex + ey * ey)
     wx += ex - against * ex
@@ -92,11 +95,11 @@ def evasion(
     outline: Array,
     response: DecisionResponse,
 ) -> tuple[float, float]:
-    """Acceleration with which agent i evades one robot that keeps its course, m/s^2.
+    """Return the acceleration with which agent i evades a robot on a constant course, m/s^2.
 
-    The way of the agent relative to the robot is a ray. Each corner of the outline (a disc: its
-    centre) lies at some place along it and across it. The agent has to shift by so much that the
-    outline, grown by both radii and the clearance, lies beside the ray; it takes the shorter side.
+    The agent's path relative to the robot is a ray. Each corner of the outline (a disc: its centre)
+    has a position along and across it. The agent shifts until the outline, expanded by both radii
+    and the clearance, lies beside the ray; it takes the shorter side.
     """
     wx, wy = agents[i].vx - robot.vx, agents[i].vy - robot.vy
     speed = math.hypot(wx, wy)
@@ -132,11 +135,11 @@ def _way_round(
 
     Args:
         ux, uy: direction of the ray.
-        wanted: distance that the outline's corners are to have from the ray, m.
+        wanted: required distance of the outline's corners from the ray, m.
 
     Returns:
-        by how much the agent has to shift; the place along the ray of the corner that decides;
-        where the grown outline begins and where its last corner lies; whether to the left. m.
+        required shift; position along the ray of the decisive corner; start of the expanded outline
+        and position of its last corner, m; True for a shift to the left.
     """
     c, s = math.cos(robot.yaw), math.sin(robot.yaw)
     dx, dy = robot.x - agents[i].x, robot.y - agents[i].y

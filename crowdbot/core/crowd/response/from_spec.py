@@ -1,4 +1,4 @@
-"""The response of a world, made from the field ``crowd.robot_response``."""
+"""Build the response of a world from the field ``crowd.robot_response``."""
 
 from __future__ import annotations
 

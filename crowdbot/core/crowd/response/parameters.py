@@ -52,27 +52,27 @@ DECISION_RESPONSE, TICK_RESPONSE = record_type(DecisionResponse), record_type(Ti
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Human:
-    """People notice a robot, think, and evade it within what legs can do.
+    """People notice a robot, react after a delay, and evade it within human limits.
 
     Attributes:
         sight: surface gap within which attentive people notice, and beyond which all forget, m.
-        field_of_view: full angle about the way faced in which people notice, rad.
-        late_time, late_time_standing: time to contact at which late people notice a robot that
-            moves, and one that stands, s.
-        late_gap: surface gap at which late people notice in any case, m.
-        reaction_time: from noticing to doing something, s.
-        horizon: how far ahead in time people look, s.
-        clearance: gap that they want when they pass, m.
+        field_of_view: full angle around the facing direction in which people notice, rad.
+        late_time, late_time_standing: time to contact at which late people notice a moving and a
+            standing robot, s.
+        late_gap: surface gap at which late people always notice, m.
+        reaction_time: from noticing to reacting, s.
+        horizon: time horizon, s.
+        clearance: desired gap when passing, m.
         lateral_acceleration: largest sideways, m/s^2.
-        braking: largest against the own way, m/s^2.
-        total_acceleration: largest of own will and evasion together, m/s^2.
-        stop_gap: gap at which those who brake come to rest, m.
-        standing_speed, moving_speed: a robot stands below the first, moves above the second and
-            is something between the two in between, m/s.
-        standing_gap: gap that people keep to a robot that stands, m.
-        standing_stiffness: how firmly they keep it, 1/s^2.
-        shown_to_policies: whether crowd policies of attentive people are shown robots, too.
-        all_stop_short: whether those who take no notice of robots stop short of one that stands.
+        braking: largest deceleration, m/s^2.
+        total_acceleration: largest sum of desired acceleration and evasion, m/s^2.
+        stop_gap: gap after braking, m.
+        standing_speed, moving_speed: a robot stands below the first and moves above the second,
+            with a smooth transition, m/s.
+        standing_gap: gap to a standing robot, m.
+        standing_stiffness: stiffness of that gap, 1/s^2.
+        shown_to_policies: True if policies of attentive people also see robots.
+        all_stop_short: True if people who ignore robots stop in front of a standing one.
     """
 
     sight: float = 6.0

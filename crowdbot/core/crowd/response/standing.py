@@ -58,7 +58,7 @@ def stop_short(
             continue
         depth, nx, ny, _, _ = overlap(robots[r].yaw, outline, dx, dy, reach)
         away = _away(agents, i, nx, ny, -depth, response)
-        if away > 0.0:  # what own will does in the same direction counts, what it undoes does not
+        if away > 0.0:  # the desired acceleration counts where it also brakes, not where it opposes
             away = share * max(0.0, away + agents[i].ax * nx + agents[i].ay * ny)
             ax -= away * nx
             ay -= away * ny
@@ -71,7 +71,7 @@ def stands(robot: RobotRecord, extent: float, standing: float, moving: float) ->
 
     Args:
         extent: distance of its farthest corner from the base, m.
-        standing, moving: speeds below and above which it does, m/s.
+        standing, moving: speed limits of standing and moving, m/s.
     """
     speed = math.hypot(robot.vx, robot.vy) + abs(robot.turning) * extent
     share: float = (moving - speed) / (moving - standing)
@@ -82,7 +82,10 @@ def stands(robot: RobotRecord, extent: float, standing: float, moving: float) ->
 def _away(
     agents: People, i: int, nx: float, ny: float, gap: float, response: TickResponse
 ) -> float:
-    """Least acceleration away from a standing robot that ``n`` points to, m/s^2; 0: none."""
+    """Return the required acceleration away from a standing robot in direction ``n``, m/s^2.
+
+    Or 0.
+    """
     closing = agents[i].vx * nx + agents[i].vy * ny
     room = gap - response.standing_gap
     lean = response.standing_stiffness * max(0.0, -room)

@@ -1,1 +1,1 @@
-"""Global paths: how people find their way around walls, and around each other where it is full."""
+"""Path finding of people around walls, and around each other in congestion."""

@@ -1,4 +1,4 @@
-"""Corners around which shortest paths bend, and which of them see each other.
+"""Corners at which shortest paths bend, and visibility between them.
 
 A shortest path among polygons bends only at their corners, and passes each of them tangentially:
 Lozano-Pérez, Wesley, "An algorithm for planning collision-free paths among polyhedral obstacles",
@@ -16,16 +16,16 @@ from crowdbot.core.crowd.routing.sight import Sight, crosses, is_clear
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Columns of a corner: place; places of its neighbours on the outline; way out of the corner, a
-#: unit vector into the free floor; free room that way.
+#: Columns of a corner: position; positions of its neighbours on the outline; a unit vector from the
+#: corner into the free floor; free room in that direction.
 X, Y, BEFORE_X, BEFORE_Y, AFTER_X, AFTER_Y, OUT_X, OUT_Y, ROOM = range(9)
 CORNER_COLUMNS = 9
-#: Farther than this the room at a corner is not looked at, m.
+#: Largest room that is measured at a corner, m.
 MOST_ROOM = 10.0
 
 
 class Corners(NamedTuple):
-    """Corners and the links between those that see each other.
+    """Corners and links between mutually visible ones.
 
     Attributes:
         table: (V, `CORNER_COLUMNS`).
@@ -40,10 +40,10 @@ class Corners(NamedTuple):
 
     @classmethod
     def of(cls, rings: list[Array], sight: Sight) -> Corners:
-        """Corners of outlines (K, 2) that have what is taken on their left.
+        """Return the corners of outlines (K, 2) with obstacles on their left.
 
         Args:
-            sight: edges a little within the outlines, so that nothing is lost by rounding.
+            sight: edges slightly inside the outlines, so that rounding blocks nothing.
         """
         table = np.concatenate([np.zeros((0, CORNER_COLUMNS)), *map(_rows, rings)])
         _look_out(table, sight)
@@ -56,7 +56,7 @@ class Corners(NamedTuple):
 
 
 def _rows(ring: Array) -> Array:
-    """The corners of one outline at which what is taken stands out."""
+    """Return the convex corners of one outline."""
     before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     come, go = ring - before, after - ring
     bends = come[:, 0] * go[:, 1] - come[:, 1] * go[:, 0] > 1e-12
@@ -69,7 +69,7 @@ def _rows(ring: Array) -> Array:
 
 @kernel
 def _look_out(table: Array, sight: Sight) -> None:
-    """Fill in how much room there is at each corner."""
+    """Fill in the free room at each corner."""
     for v in range(table.shape[0]):
         x, y = table[v, X], table[v, Y]
         fx, fy = x + MOST_ROOM * table[v, OUT_X], y + MOST_ROOM * table[v, OUT_Y]
@@ -98,7 +98,7 @@ def bends_past(table: Array, v: int, x: float, y: float) -> bool:
 def _links(
     table: Array, sight: Sight, count: Indices, first: Indices, linked: Indices, length: Array
 ) -> None:
-    """Count links, or list them where ``linked`` has room for them."""
+    """Count links, or list them if ``linked`` has room for them."""
     count[:] = 0
     for v in range(table.shape[0]):
         for w in range(v + 1, table.shape[0]):

@@ -12,25 +12,25 @@ from numpy.typing import NDArray
 
 from crowdbot.core.types.arrays import Array
 
-#: Sides of the polygon that stands for a pillar.
+#: Number of sides of the polygon for a pillar.
 _PILLAR_SIDES = 16
-#: How far beyond a body's radius the margin reaches at a corner, as a multiple: flat there.
+#: Extent of the margin at a corner, relative to a body's radius; the corner is cut there.
 _MITRE = 1.1
-#: Corners that stand out by less are left away, m.
+#: Smaller convex corners are removed, m.
 _SIMPLER = 0.005
-#: What is farther from a part than this is not on its border, m.
+#: Larger distances from a part mean not on its border, m.
 _BESIDE = 1e-6
-#: The floor goes on so far beyond everything that is on it, m.
+#: Extent of the floor beyond everything on it, m.
 _AROUND = 5.0
 
 
 @dataclass(frozen=True, slots=True)
 class FreeSpace:
-    """Parts of the floor between which there is no way.
+    """Disconnected parts of the free floor.
 
     Attributes:
-        taken: (Multi)polygon in which no centre can be.
-        parts: polygons that are left, from the largest to the smallest.
+        taken: (multi)polygon that centres cannot enter.
+        parts: remaining polygons, largest first.
     """
 
     taken: Any
@@ -43,8 +43,8 @@ class FreeSpace:
         Args:
             walls: (S, 4) segments, m.
             pillars: (P, 3) x, y, radius, m.
-            radius: of the body, m.
-            points: (M, 2) places that the floor holds, m.
+            radius: radius of the body, m.
+            points: (M, 2) positions on the floor, m.
         """
         taken = taken_by(walls, pillars, radius)
         ends = np.concatenate([walls.reshape(-1, 2), pillars[:, :2], points])
@@ -54,7 +54,7 @@ class FreeSpace:
         return cls(taken, tuple(sorted(parts, key=lambda p: (-p.area, *p.bounds))))
 
     def part_of(self, points: Array) -> NDArray[np.int64]:
-        """Number (M,) of the part in which each of (M, 2) points lies; -1 in none."""
+        """Return the index (M,) of the part that contains each of (M, 2) points; -1 if none."""
         found = np.full(len(points), -1, np.int64)
         for number, part in enumerate(self.parts):
             open_ = np.flatnonzero(found < 0)
@@ -66,7 +66,7 @@ class FreeSpace:
         return found
 
     def holding(self, points: Array) -> FreeSpace:
-        """The parts in which some of (M, 2) points lie, with the same that is taken."""
+        """Return only the parts that contain some of (M, 2) points."""
         numbers = sorted(set(self.part_of(points).tolist()) - {-1})
         return FreeSpace(self.taken, tuple(self.parts[n] for n in numbers))
 
@@ -78,17 +78,17 @@ class FreeSpace:
         return inside
 
     def borders(self) -> list[Array]:
-        """Outlines (K, 2) of what is taken as seen from the parts, not closed."""
+        """Return outlines (K, 2) of obstacles as seen from the parts, not closed."""
         found, outermost = [], shapely.bounds(self.taken)
         for part in self.parts:
             low, high = np.split(np.asarray(part.bounds) - outermost, 2)
-            ends_nowhere = np.all(low < 0.0) and np.all(high > 0.0)  # where the floor was cut
+            ends_nowhere = np.all(low < 0.0) and np.all(high > 0.0)  # where the floor was cut off
             rings = part.interiors if ends_nowhere else (part.exterior, *part.interiors)
             found += [np.asarray(ring.coords)[:-1] for ring in rings]
         return found
 
     def rings(self) -> list[Array]:
-        """Outlines (K, 2) of what is taken, not closed; it is on the left of each."""
+        """Return outlines (K, 2) of obstacles, not closed, with the obstacle on their left."""
         found = []
         for polygon in shapely.get_parts(self.taken):
             whole = shapely.geometry.polygon.orient(polygon)
@@ -99,7 +99,7 @@ class FreeSpace:
 def taken_by(walls: Array, pillars: Array, margin: float) -> Any:
     """The space within a margin of walls and pillars, as a (multi)polygon.
 
-    Corners stand out by at most a tenth of the margin: round ones would have more corners.
+    Its corners exceed the margin by at most a tenth: round ones would have more corners.
     """
     lines = shapely.line_merge(shapely.multilinestrings(walls.reshape(-1, 2, 2)))
     around = shapely.buffer(

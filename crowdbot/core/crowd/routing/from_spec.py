@@ -1,4 +1,4 @@
-"""From a scenario's words to how people find their way."""
+"""Build path finding from a scenario."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Corners and sight in two arrays: each array that Python hands to compiled code costs time."""
+"""Corners and sight packed in two arrays, since each array passed from Python takes time."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from crowdbot.core.crowd.routing.sight import Sight
 from crowdbot.core.support.compile import inline_kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: The head: where the corners end in ``reals``; then for each sight, where its arrays begin and
-#: end: edges and frame in ``reals``, start, listed and shape in ``wholes``.
+#: The head: end of the corners in ``reals``; then, for each sight, start and end of its arrays:
+#: edges and frame in ``reals``, start, listed and shape in ``wholes``.
 _OF_SIGHT = 9
 _HEAD = 1 + 2 * _OF_SIGHT
 
@@ -21,7 +21,7 @@ class PackedMesh(NamedTuple):
     """The head and all arrays, one after the other.
 
     Attributes:
-        wholes: head, then the arrays of whole numbers.
+        wholes: head, then the integer arrays.
         reals: the corners' table, then the others, m.
     """
 
@@ -48,13 +48,13 @@ class PackedMesh(NamedTuple):
 
 @inline_kernel
 def table_in(wholes: Indices, reals: Array) -> Array:
-    """The table of corners, a view."""
+    """Return a view of the table of corners."""
     return reals[: wholes[0]].reshape((wholes[0] // CORNER_COLUMNS, CORNER_COLUMNS))
 
 
 @inline_kernel
 def sight_in(wholes: Indices, reals: Array, number: int) -> Sight:
-    """The sight 0 or 1: views."""
+    """Return views of sight 0 or 1."""
     h = wholes[1 + number * _OF_SIGHT : 1 + (number + 1) * _OF_SIGHT]
     edges = reals[h[0] : h[1]].reshape(((h[1] - h[0]) // 4, 4))
     start, listed, shape = wholes[h[3] : h[4]], wholes[h[5] : h[6]], wholes[h[7] : h[8]]

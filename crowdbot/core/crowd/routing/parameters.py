@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WayFinding:
-    """People find their way around walls and pillars; see `crowdbot.dsl.scenario.routing`.
+    """Path finding around walls and pillars; see `crowdbot.dsl.scenario.routing`.
 
     Attributes:
-        spread: how far aside of a corner people pass at most, m.
-        patience: without headway for so long, they look for another way, s.
-        detour: which is at most so many times as long.
-        key: of the draws of how far aside each passes.
+        spread: largest distance from a corner when passing, m.
+        patience: time without progress before looking for another path, s.
+        detour: largest relative length of the other path.
+        key: key of the random distances from corners.
     """
 
     spread: float = 0.5

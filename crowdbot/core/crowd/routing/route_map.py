@@ -1,4 +1,4 @@
-"""RouteMap: corners and sight for bodies of one radius, and the shortest ways among them."""
+"""RouteMap: corners and sight for bodies of one radius, and shortest paths among them."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from crowdbot.core.crowd.routing.trees import TO_GOAL, plan_tree
 from crowdbot.core.types.arrays import Array, Indices
 from crowdbot.errors import InputError
 
-#: Corners lie so far outside of the margin of a body, so that sight along a margin is clear, m.
+#: Distance of corners outside of a body's margin, so that sight along a margin is free, m.
 _OUTSIDE = 0.01
-#: People who were pushed look past edges at this share of their radius.
+#: People who were pushed use this share of their radius to look past edges.
 _WIDER = 0.5
-#: More corners take too long to link.
+#: Largest number of corners; more take too long to link.
 MOST_CORNERS = 12_000
 
 
@@ -27,9 +27,9 @@ class RouteMap:
     """A map for bodies of one radius.
 
     Attributes:
-        space: where their centres can be.
-        corners: around which shortest ways bend.
-        sight, wider: edges at the margin of a body, and nearer to the walls.
+        space: free floor for their centres.
+        corners: corners of shortest paths.
+        sight, wider: edges at a body's margin, and nearer to the walls.
     """
 
     space: FreeSpace
@@ -39,12 +39,12 @@ class RouteMap:
 
     @classmethod
     def of(cls, walls: Array, pillars: Array, radius: float, points: Array) -> RouteMap:
-        """The map of a place.
+        """Return the map of a place.
 
         Args:
-            walls, pillars: (S, 4), (P, 3) what people walk around, m.
-            radius: of the bodies, m.
-            points: (M, 2) places that it has to hold, m.
+            walls, pillars: (S, 4), (P, 3) obstacles, m.
+            radius: radius of the bodies, m.
+            points: (M, 2) positions that it has to contain, m.
 
         Raises:
             InputError: the place has too many corners.
@@ -66,12 +66,12 @@ class RouteMap:
         return len(self.corners.table)
 
     def plan(self, x: float, y: float, left: Array, after: Indices) -> None:
-        """Write the shortest ways to a goal, see `plan_tree`."""
+        """Write the shortest paths to a goal, see `plan_tree`."""
         heap, at = np.zeros(self.count, np.int64), np.zeros(self.count, np.int64)
         plan_tree(x, y, self.corners, self.sight, self.wider, left, after, heap, at)
 
     def way(self, start: tuple[float, float], goal: tuple[float, float]) -> Array:
-        """The shortest way (K, 2), both ends included, m; straight where there is none."""
+        """Return the shortest path (K, 2), including both ends; straight if there is none."""
         if is_clear(*start, *goal, self.sight):
             return np.array([start, goal])
         left, after = np.zeros(self.count), np.zeros(self.count, np.int64)

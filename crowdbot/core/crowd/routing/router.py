@@ -15,7 +15,7 @@ from crowdbot.core.crowd.routing.route_map import RouteMap
 from crowdbot.core.crowd.routing.waypoints import Habits, find_waypoints
 from crowdbot.core.types.arrays import Array
 
-#: Bodies are rounded up to a multiple of this, so that few maps are needed, m.
+#: Radii are rounded up to a multiple of this, so that few maps are needed, m.
 _RADIUS_STEP = 0.05
 _SLACK = 1e-9
 #: Trees of goals that no person has any more are kept as long as there are not more.
@@ -58,20 +58,20 @@ class Router:
             one.find(people, self._agents, self._habits, dt, decision)
 
     def way(self, row: int, start: tuple[float, float], goal: tuple[float, float]) -> Array:
-        """The shortest way (K, 2) for agent ``row`` from a point to another, both included, m."""
+        """Return the shortest path (K, 2) for agent ``row`` between two points, including both."""
         found = next(one for one in self._classes if row in one.members)
         return found.routes.way(start, goal)
 
 
 def rounded(radius: Array) -> Array:
-    """Radii (N,) that maps are made for: a little larger, and few different ones, m."""
+    """Return radii (N,) of the maps: rounded up, with few different values, m."""
     steps = np.ceil(radius / _RADIUS_STEP - _SLACK)
     one = len(radius) > 0 and np.all(radius == radius[0])
     return radius.copy() if one else np.round(steps * _RADIUS_STEP, 9)
 
 
 class _BodyClass:
-    """People of about the same radius, who share a map."""
+    """People of similar radius, who share a map."""
 
     def __init__(self, members: NDArray[np.int64], routes: RouteMap, people: int) -> None:
         self.members, self.routes = members, routes
@@ -104,7 +104,7 @@ class _BodyClass:
         )  # fmt: skip
 
     def _plan(self, people: s.People, k: int) -> None:
-        """Find the ways to a member's new goal."""
+        """Find the paths to a member's new goal."""
         row = self.members[k]
         x, y = float(people["goal_x"][row]), float(people["goal_y"][row])
         self._goal[k, 0], self._goal[k, 1] = x, y
@@ -112,7 +112,7 @@ class _BodyClass:
         people["corner"][row], people["waypoint_x"][row] = 0.0, np.nan
 
     def _tree(self, x: float, y: float) -> int:
-        """The row of the ways to a goal, found or planned."""
+        """Return the row of the paths to a goal, found or planned."""
         known = self._rows.get((x, y))
         if known is not None:
             return known

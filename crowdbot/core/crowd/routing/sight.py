@@ -10,14 +10,14 @@ import numpy as np
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Cells hold about so many edges; they are not smaller than this, m.
+#: Average number of edges per cell; smallest size of cells, m.
 _EDGES_PER_CELL, _LEAST_CELL = 2.0, 0.5
-#: At most so many cells along one axis.
+#: Largest number of cells along one axis.
 _MOST_CELLS = 512
 
 
 class Sight(NamedTuple):
-    """Edges that block, sorted into square cells.
+    """Blocking edges, sorted into square cells.
 
     Attributes:
         edges: (E, 4) x0, y0, x1, y1, m.
@@ -35,7 +35,7 @@ class Sight(NamedTuple):
 
     @classmethod
     def of(cls, rings: list[Array]) -> Sight:
-        """The edges of closed outlines (K, 2)."""
+        """Return the edges of closed outlines (K, 2)."""
         closed = [np.concatenate([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
         edges = np.concatenate([np.zeros((0, 4)), *closed])
         ends = edges.reshape(-1, 2)
@@ -98,7 +98,7 @@ def crosses(px: float, py: float, qx: float, qy: float, edge: Array) -> bool:
 def is_clear(px: float, py: float, qx: float, qy: float, sight: Sight) -> bool:
     """Return True if the straight way from p to q crosses nothing.
 
-    Cells are visited in the order of the way, as by Amanatides and Woo (Eurographics 1987).
+    Cells are visited in order along the path, as in Amanatides and Woo (Eurographics 1987).
     """
     side, nx, ny = sight.frame[2], sight.shape[0], sight.shape[1]
     x, y = (px - sight.frame[0]) / side, (py - sight.frame[1]) / side

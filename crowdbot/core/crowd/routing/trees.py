@@ -1,4 +1,4 @@
-"""Shortest ways from every corner to one goal."""
+"""Shortest paths from every corner to one goal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def plan_tree(
     gx: float, gy: float, corners: Corners, sight: Sight, wider: Sight,
     left: Array, after: Indices, heap: Indices, at: Indices,
 ) -> None:  # fmt: skip
-    """Dijkstra's algorithm, from the goal outwards.
+    """Run Dijkstra's algorithm from the goal outwards.
 
     Args:
         sight: edges at the margin of a body; where the goal is not seen so, it is looked for
@@ -54,7 +54,7 @@ def _see_goal(
     gx: float, gy: float, corners: Corners, sight: Sight, left: Array, after: Indices,
     heap: Indices, at: Indices,
 ) -> int:  # fmt: skip
-    """Put every corner that sees the goal into the heap; returns how many."""
+    """Put every corner that sees the goal into the heap; return their number."""
     size = 0
     for v in range(corners.table.shape[0]):
         left[v], after[v], at[v] = math.inf, TO_GOAL, -1

@@ -22,21 +22,21 @@ from crowdbot.core.crowd.velocity_search import counter_rng
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Of the room at a corner, how much of it people spread over.
+#: Share of the room at a corner over which people spread.
 _SHARE_OF_ROOM = 0.8
 #: A person nearer to the place aside of a corner, or to the corner, has reached it, m.
 _REACHED = 0.4
 #: Waypoints that are nearer are moved on, so that people do not brake at them, m.
 _LEAST_AHEAD = 1.0
-#: Corners that are not farther from each other, beside the room at them, are one opening, m.
+#: Corners closer to each other than this, plus the room at them, form one opening, m.
 _SAME_OPENING, _WIDEST_OPENING = 1.0, 3.0
 #: Below this share of the preferred speed a person makes no headway.
 _SLOW = 0.25
-#: People look around at every so manieth decision, at each one when a corner is near, m.
+#: People look around at every n-th decision, and at each decision near a corner, m.
 _LOOKS_EVERY, _NEAR_CORNER = 4, 1.0
-#: In place of a corner: a place to one side of who is in the way.
+#: In place of a corner: a position to one side of an obstructing person.
 _ASIDE_OF_ALL = -1.0
-#: It is so far off, m; reached when so near, m; and so many are looked at, with these draws.
+#: Its distance, m; reached within this, m; number of positions tried, with these draws.
 _STEP, _STEPPED, _SIDES, _SIDE_DRAWS = 1.0, 0.4, 4, 1 << 40
 #: On the way there: speed, m/s, and the time in which it is reached, s.
 _SQUEEZE, _RELAXATION = 0.4, 0.5
@@ -48,10 +48,10 @@ class Habits(NamedTuple):
     """Habits of people who choose among ways.
 
     Attributes:
-        spread: how far aside of a corner they pass at most, m.
-        patience: without headway for so long, they look for another way, s.
-        detour: which is at most so many times as long.
-        key: of the draws.
+        spread: largest distance from a corner when passing, m.
+        patience: time without progress before looking for another path, s.
+        detour: largest relative length of the other path.
+        key: key of the random draws.
     """
 
     spread: float
@@ -76,13 +76,12 @@ def find_waypoints(
         goals: (K, 2) to which ``tree_of`` leads.
         tree_of: (N,) row of ``left`` and ``after`` that leads to each one's goal.
         left, after: (T, V) see `plan_tree`.
-        wholes, reals: see `PackedMesh`: corners; sight at the margin of a body, and nearer
-            to walls.
+        wholes, reals: see `PackedMesh`: corners; sight at a body's margin, and nearer to walls.
         spread, patience, detour, key: see `Habits`.
 
     Returns:
-        1 + the place in ``members`` of the first with another goal than ``goals`` says, and
-        nothing was set; 0 if there is none.
+        1 + the index in ``members`` of the first with a goal other than in ``goals``, and then
+        nothing was set; otherwise 0.
     """
     for k in range(members.shape[0]):
         i = members[k]
@@ -119,7 +118,7 @@ def _look(
     agents: People, i: int, number: int, left: Array, after: Indices, table: Array,
     sight: Sight, wider: Sight, blocked: bool, habits: Habits,
 ) -> None:  # fmt: skip
-    """Agent i looks for its goal, or for the corner on the way to it."""
+    """Find agent i's waypoint: its goal, or the corner on the path to it."""
     if blocked:
         agents[i].detours += 1.0
     if agents[i].corner == _ASIDE_OF_ALL:
@@ -138,7 +137,7 @@ def _look(
     if blocked and v >= 0:
         _choose(agents, i, left, after, table, sight, v, habits)
         _set_waypoint(agents, i, number, table, sight, habits)
-        if agents[i].corner == v + 1.0:  # there is no other way
+        if agents[i].corner == v + 1.0:  # there is no other path
             _step_aside(agents, i, number, sight, habits)
         return
     found = _follow(agents, i, number, after, left, table, sight, wider, habits)
@@ -212,7 +211,7 @@ def _no_headway(agents: People, i: int, preferred: float, patience: float, dt: f
 
 @kernel
 def _forget(agents: People, i: int) -> None:
-    """Agent i walks straight to its goal."""
+    """Let agent i walk straight to its goal."""
     agents[i].corner, agents[i].aside = 0.0, 1.0
     agents[i].waypoint_x, agents[i].waypoint_y = agents[i].goal_x, agents[i].goal_y
 
@@ -227,7 +226,7 @@ def _beside(
     table: Array,
     habits: Habits,
 ) -> tuple[float, float]:
-    """The place beside corner v at which agent i passes it on this trip."""
+    """Return the position beside corner v at which agent i passes it on this trip."""
     trip, draw = int(agents[i].trip), int(agents[i].detours)
     u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, (v << 16) + draw)
     corner = table[v]
@@ -240,10 +239,10 @@ def _follow(
     agents: People, i: int, number: int, after: Indices, left: Array, table: Array,
     sight: Sight, wider: Sight, habits: Habits,
 ) -> bool:  # fmt: skip
-    """Go on to the corner after the one aimed at, where that is seen; drop one out of sight.
+    """Continue to the next corner if it is visible; drop one that is out of sight.
 
     Returns:
-        whether the point to walk to has been set.
+        True if the waypoint was set.
     """
     v = int(agents[i].corner) - 1
     if v < 0 or not math.isfinite(left[v]):
@@ -265,7 +264,7 @@ def _follow(
             return False
     bx, by = _beside(agents, i, number, v, agents[i].aside, table, habits)
     if not near and math.hypot(bx - x, by - y) < _REACHED:
-        agents[i].aside = 0.0  # there, and what comes after is out of sight: to the corner itself
+        agents[i].aside = 0.0  # reached, and the next one is out of sight: go to the corner itself
         return False
     if is_clear(x, y, bx, by, sight):
         _head_for(agents, i, bx, by)
@@ -283,8 +282,8 @@ def _choose(
     """The corner in sight from which the whole way is shortest; 0 where there is none.
 
     Args:
-        avoided: a corner through whose opening the way must not lead, unless every other one is
-            too long; -1 for none.
+        avoided: a corner whose opening is avoided, unless all other paths are too long; -1 for
+            none.
     """
     x, y = agents[i].x, agents[i].y
     best, limit = -1, math.inf
@@ -323,7 +322,7 @@ def _set_waypoint(
 ) -> None:
     """Set the point that agent i walks to."""
     v = int(agents[i].corner) - 1
-    if v < 0:  # nothing is in sight, as in the thick of a wall
+    if v < 0:  # nothing is visible, as inside a wall
         _forget(agents, i)
         return
     x, y = agents[i].x, agents[i].y
@@ -335,7 +334,7 @@ def _set_waypoint(
 
 @kernel
 def _head_for(agents: People, i: int, x: float, y: float) -> None:
-    """Agent i walks to a point; towards one that is too near, beyond it."""
+    """Set agent i's waypoint; beyond the point if that is too near."""
     dx, dy = x - agents[i].x, y - agents[i].y
     away = math.hypot(dx, dy)
     if 0.0 < away < _LEAST_AHEAD:

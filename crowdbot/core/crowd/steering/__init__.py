@@ -1,4 +1,4 @@
-"""Steering parts: what people do beside their crowd policy, whatever that is.
+"""Steering parts: behaviour besides the crowd policy, for any policy.
 
 - `parameters`: which parts a crowd has; their numbers are those of `dsl.scenario.steering`.
 - `parts`: the table of parts, in the order in which they change what a policy wants.

@@ -1,4 +1,4 @@
-"""Lanes: among people who come the other way, step behind those who walk one's own way."""
+"""Lanes: in opposing flow, step behind people with the same direction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The steering parts, in the order in which they change what a policy wants."""
+"""The steering parts, in the order in which they change accelerations."""
 
 from __future__ import annotations
 

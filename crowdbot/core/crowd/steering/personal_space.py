@@ -1,4 +1,4 @@
-"""Personal space: a push away from where others are going to be, stronger ahead than behind."""
+"""Personal space: a push away from others' future positions, stronger ahead than behind."""
 
 from __future__ import annotations
 

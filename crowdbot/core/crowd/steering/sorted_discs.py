@@ -1,4 +1,4 @@
-"""Discs and headings of all people, sorted along x, for the steering parts."""
+"""Discs and headings of all people, sorted by x, for the steering parts."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from crowdbot.core.support.compile import array_kernel, kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
-#: Centres that are farther apart do not matter to any part, m.
+#: Centres farther apart do not affect any part, m.
 REACH = 3.0
-#: Slower people face their goal rather than where they drift, m/s.
+#: Slower people face their goal rather than their motion, m/s.
 _SLOW = 0.3
 
 
@@ -29,8 +29,8 @@ class SortedDiscs(NamedTuple):
     Attributes:
         discs: (D,) people, images across a border, robots and pillars, by x.
         row: (N,) row of each person in ``discs``, -1 for absent ones.
-        heading: (N, 2) unit vectors between the ways to the goal and of walking.
-        decides: (N,) True for people who are steered.
+        heading: (N, 2) unit vectors between the directions to the goal and of walking.
+        decides: (N,) True for people with steering.
     """
 
     discs: Rows[DiscRecord]
@@ -40,7 +40,7 @@ class SortedDiscs(NamedTuple):
 
 
 def sorted_discs(view: CrowdView) -> SortedDiscs:
-    """The discs at the decision that a view shows."""
+    """Return the discs at the decision of a view."""
     agents, boundary = view.agents, view.periodic_boundary
     fixed = len(view.robot) + len(view.pillars)
     room = most_discs(len(view.position), fixed, boundary is not None)
@@ -79,7 +79,7 @@ def _face(position: Array, velocity: Array, goal: Array, heading: Array) -> None
 
 @kernel
 def first_within(discs: Rows[DiscRecord], a: int, reach: float) -> int:
-    """First row whose x is within ``reach`` (m) of that of row a."""
+    """Return the first row whose x is within ``reach`` (m) of row a."""
     low = discs[a].x - reach
     while a > 0 and discs[a - 1].x >= low:
         a -= 1

@@ -45,7 +45,7 @@ def _limit(
         uy = velocity[i, 1] + relaxation * wanted[i, 1]
         ahead = ux * heading[i, 0] + uy * heading[i, 1]
         if ahead <= 0.0:
-            continue  # about to stop or to step back
+            continue  # about to stop or step back
         fastest = allowed_speed(
             discs, int(row[i]), heading[i, 0], heading[i, 1], time, oncoming_time, room, half_width
         )
@@ -65,11 +65,11 @@ def allowed_speed(
     room: float,
     half_width: float,
 ) -> float:
-    """Largest speed that the discs ahead of row a allow, m/s; inf with a free way.
+    """Return the largest speed that the discs ahead of row a allow, m/s; inf if free.
 
     Args:
         discs: (D,) sorted by x.
-        hx, hy: unit vector of the way faced.
+        hx, hy: unit vector of the facing direction.
         time to half_width: see `TimeGap`.
     """
     fastest = math.inf

@@ -1,4 +1,4 @@
-"""Wall push: a push away from walls, which falls off with the gap."""
+"""Wall push: a push away from walls that decreases with the gap."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.dsl.scenario.steering import WallPushSpec
 
 #: Largest push by one wall, m/s^2.
 HARDEST = 8.0
-#: Below this share of its strength the push is left out.
+#: Share of its strength below which the push is ignored.
 _LEAST = 4.6  # e-folds: 1 %
 
 

@@ -1,8 +1,7 @@
-"""Wander: a slow random acceleration of each person, from a stream of its own.
+"""Wander: a slow random acceleration of each person, from its own random stream.
 
-It is a function of time: normal numbers at knots, of which two are mixed so that the variance is
-the same at any time. So it needs no state, and a run that goes on from some state is the same.
-Each person has knots at times of its own.
+It is a function of time: two normal numbers at knots are mixed with constant variance. So it needs
+no state, and a run continued from any state is the same. Each person has individual knot times.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ def _wander(
 
 @kernel
 def wandering(agent: int, knots: float, key: np.uint64) -> tuple[float, float]:
-    """Two independent numbers of mean 0 and variance 1, slow in ``knots``."""
+    """Return two independent numbers with mean 0 and variance 1, slow in ``knots``."""
     at = knots + uniform(key, agent, 0, WANDER, 2)
     knot = math.floor(at)
     angle = 0.5 * math.pi * (at - knot)
@@ -52,7 +51,7 @@ def wandering(agent: int, knots: float, key: np.uint64) -> tuple[float, float]:
 
 @kernel
 def _normal(agent: int, knot: int, key: np.uint64) -> tuple[float, float]:
-    """Two normal numbers (Box and Muller 1958)."""
+    """Return two normal numbers (Box and Muller 1958)."""
     u = 1.0 - uniform(key, agent, knot, WANDER, 0)
     v = uniform(key, agent, knot, WANDER, 1)
     size = math.sqrt(-2.0 * math.log(u))

@@ -1,4 +1,4 @@
-"""Velocity search: costs over candidate velocities, and how the cheapest is found.
+"""Velocity search: costs over candidate velocities, and finding the cheapest.
 
 - `cost`: the contract of cost functions; `cost_calls` calls them by address, `collision` is what
   many of them share, `minstd` their random numbers.

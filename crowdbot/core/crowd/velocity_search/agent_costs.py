@@ -15,10 +15,9 @@ from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: Table (K, 8) of addresses: a row for each cost function, columns as below.
+#: Table (K, 8) of addresses: a row per cost function, columns as below.
 Functions = NDArray[np.intp]
-# Columns of `Functions`: the parts of a function, 0 for one that it lacks; its parameters; its
-# scratch table.
+# Columns of `Functions`: the parts of a function, 0 if missing; its parameters; its scratch table.
 BASES, PREPARES, EXCESSES, LOWER_BOUNDS, GRADIENTS, OPTIMA, PARAMS, WORK = range(8)
 FUNCTION_COLUMNS = 8
 
@@ -30,7 +29,7 @@ class AgentCosts(NamedTuple):
         agent: the agent.
         functions: (K, `FUNCTION_COLUMNS`) addresses.
         weights: (K,) of the functions.
-        active: (T,) numbers of the functions that have an excess here.
+        active: (T,) indices of the functions with an excess.
     """
 
     agent: AgentRecord
@@ -46,7 +45,7 @@ def prepare(
     """Prepare all functions for the agent in row b of the table, after `describe`.
 
     Returns:
-        how many have an excess; their numbers are in ``active`` (K,).
+        number of functions with an excess; their indices are in ``active`` (K,).
     """
     agent, near, found = around.deciding[0], around.near, around.found
     near_count = gather(
@@ -67,7 +66,7 @@ def prepare(
 
 @kernel
 def in_preferred_frame(ux: float, uy: float, agent: AgentRecord) -> tuple[float, float]:
-    """A velocity in the world frame as seen along the preferred velocity, m/s."""
+    """Return a world velocity in the frame of the preferred velocity, m/s."""
     preferred = agent.preferred
     return (
         (ux * agent.pvx + uy * agent.pvy) / preferred,
@@ -84,7 +83,7 @@ def base_cost(
     functions: Functions,
     weights: Array,
 ) -> float:
-    """Weighted sum of the bases for a candidate in the preferred frame."""
+    """Return the weighted sum of the bases for a candidate in the preferred frame."""
     total = 0.0
     for k in range(weights.shape[0]):
         if weights[k] != 0.0:
@@ -96,7 +95,7 @@ def base_cost(
 
 @kernel
 def excess_of(costs: AgentCosts, k: int, ux: float, uy: float, budget: float) -> float:
-    """Excess of function k at a velocity in the world frame, or anything above ``budget``."""
+    """Return the excess of function k at a world velocity, or anything above ``budget``."""
     functions = costs.functions
     return float(
         call_excess(
@@ -108,7 +107,7 @@ def excess_of(costs: AgentCosts, k: int, ux: float, uy: float, budget: float) ->
 
 @kernel
 def cost_of(costs: AgentCosts, k: int, ux: float, uy: float) -> float:
-    """Cost of a velocity in the world frame by function k alone, without its weight."""
+    """Return the unweighted cost of a world velocity by function k alone."""
     agent, functions = costs.agent, costs.functions
     along, across = in_preferred_frame(ux, uy, agent)
     cost = call_base(

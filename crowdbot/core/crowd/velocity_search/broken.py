@@ -1,4 +1,4 @@
-"""Cost functions that return NaN: the search notes that it saw one, here it is found which."""
+"""Find the cost function that returned NaN; the search itself only detects it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.errors import PluginError
 
-#: Candidates around each agent's velocity that a function is asked about again, m/s.
+#: Candidates around each agent's velocity with which a function is tested again, m/s.
 _SPEEDS, _ANGLES = np.linspace(0.0, 2.0, 9), np.linspace(-np.pi, np.pi, 25)
 
 
@@ -21,14 +21,14 @@ def check_numbers(costs: WeightedCosts, view: CrowdView, around: Surroundings) -
     """Refuse a decision in which a compiled function returned NaN.
 
     Raises:
-        PluginError: one did; with its name, where that can be found out.
+        PluginError: one did; the message names it, if known.
     """
     if around.deciding["broken"][0] != 0.0:
         report_broken(costs, view, "a cost")
 
 
 def report_broken(costs: WeightedCosts, view: CrowdView, what: str) -> NoReturn:
-    """Say which function returned NaN: the one that does so again, or else all that may have.
+    """Report the function that returned NaN: the one that does so again, or else all that may have.
 
     Raises:
         PluginError: always.

@@ -25,16 +25,16 @@ PREFERRED_SPEED, MAXIMUM_SPEED, MAXIMUM_ACCELERATION = range(3)  # radius
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampling:
-    """Which candidates are tried.
+    """The candidates to try.
 
     Attributes:
-        speeds, angles: of the regular fan.
-        opening: of the fan, rad.
-        include_base: whether the first of the speeds is the base itself.
+        speeds, angles: numbers of the regular fan.
+        opening: angle of the fan, rad.
+        include_base: True if the first of the speeds is the base itself.
         base: ``ZERO`` or ``CURRENT`` velocity.
         direction: ``UNIT`` (along x), ``ALONG_CURRENT`` or ``ALONG_PREFERRED`` velocity.
-        radius: ``PREFERRED_SPEED``, ``MAXIMUM_SPEED`` or ``MAXIMUM_ACCELERATION``: what the
-            latter reaches in one decision, at most twice the largest speed.
+        radius: ``PREFERRED_SPEED``, ``MAXIMUM_SPEED`` or ``MAXIMUM_ACCELERATION``: the change of
+            velocity in one decision, at most twice the largest speed.
         random: number of random candidates instead of the regular fan; 0 for the fan.
     """
 
@@ -48,17 +48,17 @@ class Sampling:
     random: int = 0
 
     def fan(self) -> Array:
-        """The regular candidates (S, 2) of the unit fan."""
+        """Return the regular candidates (S, 2) of the unit fan."""
         return fan(self.speeds, self.angles, self.opening, include_base=self.include_base)
 
 
 class FanOptions(NamedTuple):
-    """Options of `Sampling` that say where the fan of an agent is, for compiled code.
+    """Options of `Sampling` that define an agent's fan, for compiled code.
 
     Attributes:
         base, direction, radius: their codes.
         half: half the opening, rad.
-        drawn: whether candidates are random.
+        drawn: True if candidates are random.
     """
 
     base: int
@@ -68,17 +68,17 @@ class FanOptions(NamedTuple):
     drawn: bool
 
 
-#: The search of the method ``global`` where no closed form is known.
+#: The search for ``global`` if there is no closed form.
 EVERYWHERE = Sampling(
     speeds=11, angles=36, opening=2.0 * math.pi, direction=UNIT, radius=MAXIMUM_SPEED
 )
 
 
 def fan(speeds: int, angles: int, opening: float, *, include_base: bool = True) -> Array:
-    """Candidates (S, 2) of radius 1 around the direction (1, 0): rings, slow to fast.
+    """Return candidates (S, 2) of radius 1 around the direction (1, 0): rings, slow to fast.
 
     Within a ring from -opening/2 to +opening/2, counter-clockwise. With the base included, it
-    takes the place of the first ring.
+    replaces the first ring.
     """
     turns = 2.0 * math.pi
     closed = math.isclose(opening, turns, rel_tol=1e-9)
@@ -93,7 +93,7 @@ def fan(speeds: int, angles: int, opening: float, *, include_base: bool = True) 
 
 @kernel
 def radius_of(agent: AgentRecord, kind: int) -> float:
-    """Radius R of an agent's fan, m/s."""
+    """Return the radius R of an agent's fan, m/s."""
     if kind == PREFERRED_SPEED:
         return float(agent.preferred)
     if kind == MAXIMUM_SPEED:
@@ -103,7 +103,7 @@ def radius_of(agent: AgentRecord, kind: int) -> float:
 
 @kernel
 def direction_of(agent: AgentRecord, kind: int) -> tuple[float, float]:
-    """Base direction of an agent's fan, of length 1.
+    """Return the base direction of an agent's fan, of length 1.
 
     An agent at rest has no direction: the preferred one is taken instead. The original takes the
     zero vector, so that all candidates are the base.
@@ -133,7 +133,7 @@ def frame_of(agent: AgentRecord, options: FanOptions, frame: Array) -> float:
     fastest = scale if options.base == ZERO else scale + math.hypot(frame[0], frame[1])
     agent.fastest = (1.0 + 1e-9) * fastest
     agent.asked_x, agent.asked_y = frame[0], frame[1]
-    # Under parity candidates are rounded to single precision.
+    # With parity, candidates are rounded to single precision.
     agent.asked_radius = scale + (1e-9 if agent.parity == 0.0 else 1e-6) * fastest
     return scale
 
@@ -151,7 +151,7 @@ def draw_candidates(agent: AgentRecord, half: float, radius: float, drawn: Array
         state = following(state)
         drawn[s, 1] = between(state, 0.0, radius) * fraction
     agent.random = float(state)
-    for s in range(drawn.shape[0]):  # apart from the draws, so that it runs on several at once
+    for s in range(drawn.shape[0]):  # separate from the draws, so that it vectorises
         cosine, sine = turn(drawn[s, 0])
         length = drawn[s, 1]
         drawn[s, 0], drawn[s, 1] = length * cosine, length * sine
@@ -166,7 +166,7 @@ _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = (
 
 @inline_kernel
 def turn(angle: float) -> tuple[float, float]:
-    """Cosine and sine of an angle in [-pi, pi], by Taylor series of a quarter of it."""
+    """Return cosine and sine of an angle in [-pi, pi], by Taylor series of a quarter of it."""
     q = 0.25 * angle
     z = q * q
     s = q + q * z * (_S1 + z * (_S2 + z * (_S3 + z * (_S4 + z * (_S5 + z * (_S6 + z * _S7))))))

@@ -1,4 +1,4 @@
-"""First collision of an agent that keeps a velocity; shared by all costs that ask for it."""
+"""First collision of an agent with constant velocity, shared by many costs."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from crowdbot.core.support.records import Rows, as_record, as_rows, record_type
 
 
 class CollisionHeader:
-    """Row 0 of ``work``: counts of discs, of wall segments after them, of both that touch already.
+    """Row 0 of ``work``: number of discs, of wall segments after them, and of those in contact.
 
-    What touches the agent is not listed.
+    Discs and walls in contact with the agent are not listed.
     """
 
     discs: float
@@ -33,7 +33,7 @@ class DiscRow:
 
     Attributes:
         gap2: squared distance minus squared sum of radii, m^2.
-        earliest: time before which nothing can happen, s.
+        earliest: time before which there is no contact, s.
     """
 
     x: float
@@ -45,7 +45,7 @@ class DiscRow:
 
 
 class SegmentRow:
-    """A wall segment in ``work``, after the discs: both ends; ``earliest`` as of `DiscRow`."""
+    """A wall segment in ``work``, after the discs: both ends; ``earliest`` as in `DiscRow`."""
 
     ax: float
     ay: float
@@ -59,10 +59,10 @@ _HEADER = record_type(CollisionHeader)
 _DISC = record_type(DiscRow, WORK_COLUMNS)
 _SEGMENT = record_type(SegmentRow, WORK_COLUMNS)
 _SAFE = 1.0 - 1e-12
-#: Discs that are sorted by that time; all others come later. To sort hundreds would take longer
-#: than to pass them over.
+#: Number of discs sorted by that time; all others come later. Sorting hundreds would take longer
+#: than skipping them.
 _SORTED = 12
-#: Discs in lower bounds: those after them seldom are the first.
+#: Number of discs in lower bounds: later ones are seldom the first.
 _FEW = 3
 
 
@@ -77,12 +77,13 @@ def list_obstacles(
     work: Pointer,
     fastest: float,
 ) -> int:
-    """Write everything within range to ``work``; return how many rows that are.
+    """Write everything within range to ``work``; return the number of rows.
 
-    Uses the first six columns and the first three entries of row 0; the others are the caller's.
+    Uses the first six columns and the first three entries of row 0; the others belong to the
+    caller.
 
     Args:
-        fastest: the largest speed that `first_collision` is going to be asked for, m/s.
+        fastest: largest speed in later calls of `first_collision`, m/s.
     """
     return list_approaching(
         agent, near, near_count, walls, wall_count, params, work, 0.0, 0.0, fastest, math.inf
@@ -103,14 +104,13 @@ def list_approaching(
     spread: float,
     horizon: float,
 ) -> int:
-    """As `list_obstacles`, without the discs that cannot be touched until ``horizon``, s.
+    """As `list_obstacles`, without discs that cannot be touched until ``horizon``, s.
 
-    Most of those in a range of 100 m walk away or are too far. Under parity all are written,
-    since `first_contact` looks at them.
+    Most discs in a range of 100 m move away or are too far. With parity all are written, since
+    `first_contact` uses them.
 
     Args:
-        ux, uy, spread: all velocities that `first_collision` is going to be asked for lie in this
-            disc, m/s.
+        ux, uy, spread: disc with all velocities in later calls of `first_collision`, m/s.
     """
     own, header = as_record(params, COST_PARAMS), as_record(work, _HEADER)
     rows, segments = as_rows(work, _DISC), as_rows(work, _SEGMENT)
@@ -126,7 +126,7 @@ def list_approaching(
             touched += 1
             continue
         vx, vy, distance = near[j].nvx, near[j].nvy, math.sqrt(d2)
-        # The distance shrinks at most at this speed; the factor is for rounding.
+        # The distance decreases at most at this speed; the factor covers rounding.
         closing = spread + ((ux - vx) * near[j].rx + (uy - vy) * near[j].ry) / distance
         earliest = _SAFE * (distance - reach) / closing if closing > 0.0 else math.inf
         if earliest > most:
@@ -164,12 +164,12 @@ def list_approaching(
 
 @array_kernel
 def first_collision(ux: float, uy: float, until: float, agent: AgentRecord, work: Pointer) -> float:
-    """Time until a collision with what `list_obstacles` wrote, s; ``inf`` if there is none.
+    """Return the time until a collision with a row of `list_obstacles`, s; ``inf`` if none.
 
-    What touches already does not count: see `first_contact`.
+    Existing contacts do not count, see `first_contact`.
 
     Args:
-        until: a time below which the exact value does not matter; the search stops there.
+        until: a time below which any value is accepted; the search stops there.
     """
     header, rows, segments = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _SEGMENT)
     first, discs = math.inf, int(header.discs)
@@ -191,7 +191,7 @@ def first_collision(ux: float, uy: float, until: float, agent: AgentRecord, work
         ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
         if agent.parity != 0.0:
             t = crossing_time(ux, uy, agent.radius, ax, ay, bx, by)
-            if t <= 0.0:  # counted from the centre, this may be 0 short of a touch
+            if t <= 0.0:  # from the centre, this may be 0 just before contact
                 continue
         else:
             t = time_to_segment(ux, uy, agent.radius, ax, ay, bx, by)
@@ -210,10 +210,10 @@ def soonest_disc(
     work: Pointer,
     out: Pointer,
 ) -> None:
-    """One over the time until a disc is touched, 1/s, for many velocities at once.
+    """Write one over the time until a disc is touched, 1/s, for many velocities at once.
 
-    Of the few discs that could be first; zero if none of them is touched. Right but for rounding.
-    See `time_to_disc`.
+    Only for the few discs that could be first; zero if none is touched. Exact up to rounding. See
+    `time_to_disc`.
 
     Args:
         count, ux, uy: velocities; ``factor * u - v`` is kept, m/s.
@@ -225,7 +225,7 @@ def soonest_disc(
         rx, ry, gap2 = rows[j].x, rows[j].y, rows[j].gap2
         wx, wy, per_gap2 = rows[j].vx, rows[j].vy, 1.0 / gap2
         for c in range(count):
-            # Rounded as in `first_collision`, so that both agree on who is just missed.
+            # Rounded as in `first_collision`, so that both agree on near misses.
             ox, oy = factor * ux[c] - vx - wx, factor * uy[c] - vy - wy
             approach = rx * ox + ry * oy
             root = approach * approach - (ox * ox + oy * oy) * gap2
@@ -236,7 +236,7 @@ def soonest_disc(
 
 @array_kernel
 def first_contact(ux: float, uy: float, agent: AgentRecord, work: Pointer) -> float:
-    """As `first_collision`, but 0 where something touches the agent already.
+    """As `first_collision`, but 0 if something is already in contact.
 
     Under parity also 0 beside a disc with exactly the velocity u: the original takes a
     vanishing discriminant for a touch.

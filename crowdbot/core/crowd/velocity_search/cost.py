@@ -1,25 +1,24 @@
-"""The contract of cost functions, compiled or vectorised.
+"""The interface of cost functions, compiled or vectorised.
 
 A cost is split into a *base*, which depends on the candidate alone as seen in the frame of the
-preferred velocity, and an *excess* >= 0 caused by everything else:
-``C(u) = base(u) + excess(u)``. The base is a lower bound of the cost, so that candidates which
-cannot win are never looked at. Either part may be zero; either may be ``inf``, which forbids the
-candidate (never a huge number). Neither may be NaN.
+preferred velocity, and an *excess* >= 0 caused by everything else: ``C(u) = base(u) + excess(u)``.
+The base is a lower bound of the cost, so that candidates that cannot win are skipped. Either part
+may be zero; either may be ``inf``, which forbids the candidate (never a huge number). Neither may
+be NaN.
 
 `CompiledCost`: module-level functions, compiled with ``@njit(SIGNATURE, cache=True,
 error_model="numpy")``; float64 everywhere, SI units, world frame unless said otherwise:
 
 - ``base(ux, uy, preferred, max_speed, params) -> cost``: candidate in the preferred frame, in
   which the preferred velocity is ``(preferred, 0)``, preferred > 0.
-- ``prepare(agent, near, near_count, walls, wall_count, params, work) -> items``: once per agent
-  and decision; writes what the functions below need into ``work``, whose row 0 is for counts and
-  is not cleared between agents: write it always. Where it returns 0 the excess is zero and is
-  not called.
+- ``prepare(agent, near, near_count, walls, wall_count, params, work) -> items``: once per agent and
+  decision; writes data for the functions below to ``work``, whose row 0 is for counts and is not
+  cleared between agents: write it always. If it returns 0 the excess is zero and not called.
 - ``excess(ux, uy, budget, agent, work, params) -> cost``: may stop and return anything above
   ``budget`` as soon as the cost exceeds it. Called for many candidates, in any order.
 - ``lower_bound(count, ux, uy, agent, work, params, out) -> 1``: optional; into ``out`` a lower
-  bound >= 0 of the excess for each of ``count`` candidates, right but for rounding. Worth it where
-  a few operations on all candidates at once, without branches, spare most of them the excess.
+  bound >= 0 of the excess for each of ``count`` candidates, exact up to rounding. Useful if a few
+  operations on all candidates at once, without branches, exclude most of them.
 - ``gradient(ux, uy, agent, work, params, out) -> 1``: optional; derivatives of the whole cost
   along x and y into ``out[0]`` and ``out[1]``; 0 if there is none to write. Without the function:
   central differences over 0.1 m/s of base plus excess. Called after ``prepare``, also where that
@@ -30,11 +29,11 @@ error_model="numpy")``; float64 everywhere, SI units, world frame unless said ot
 
 ``agent``, ``near[j]`` and ``walls[s]`` are records, whose fields have names; see
 `crowdbot.core.crowd.velocity_search.records`. The other arguments that are not numbers are pointers
-to float64: ten thousands of calls per decision would otherwise spend most of their time on handing
-arrays over. A function names its own with `as_record` and `as_rows`, free of charge.
-Functions that ask for the first collision share `crowdbot.core.crowd.velocity_search.collision`.
+to float64: otherwise ten thousands of calls per decision would spend most of their time on passing
+arrays. A function names its own with `as_record` and `as_rows`, free of charge. Functions that ask
+for the first collision share `crowdbot.core.crowd.velocity_search.collision`.
 
-`NumpyCost`: one function over all candidates of an agent, for those who need no speed.
+`NumpyCost`: one function over all candidates of an agent, if speed is not needed.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.support.records import as_record, record_argument, rows_argument
 from crowdbot.core.types.arrays import Array
 
-#: What compiled code is handed instead of an array of float64; indexed like one.
+#: Type in compiled code instead of an array of float64; indexed like one.
 Pointer = Any
 
 _F, _I = types.float64, types.int64
@@ -67,7 +66,10 @@ LOWER_BOUND = types.int64(_I, _P, _P, _AGENT, _P, _P, _P)
 
 
 def work_rows(others: int) -> int:
-    """Rows of ``work`` for so many neighbours and walls: the header, two for each, 8 to spare."""
+    """Return the rows of ``work`` for this many neighbours and walls.
+
+    The header, two each, and 8 spare ones.
+    """
     return 1 + 2 * others + 8
 
 
@@ -80,9 +82,9 @@ class CompiledCost:
         params: (P,), begins with the fields of `CostParams`.
         weight: factor of the cost, >= 0.
         gradient, optimum, lower_bound: numba functions of the signatures above, or None.
-        ordered: excess has to be called for every candidate and in their order, because it draws
-            random numbers.
-        call: the boundary to its plugin, which says its name; None without one.
+        ordered: True if excess must be called for every candidate in order, because it draws random
+            numbers.
+        call: call boundary to its plugin, with its name, or None.
     """
 
     base: Callable[..., Any]
@@ -97,7 +99,7 @@ class CompiledCost:
     call: PluginCall | None = None
 
     def reach(self, radius: float, largest_radius: float) -> float:
-        """Centre distance beyond which no neighbour counts, m."""
+        """Return the centre distance beyond which no neighbour counts, m."""
         distance, from_surface = self.params[:2]
         return _reach(distance, bool(from_surface), radius, largest_radius)
 
@@ -148,10 +150,10 @@ class NumpyCost:
 
     Attributes:
         evaluate: candidates (S, 2), agent, neighbours -> costs (S,); ``inf`` forbids.
-        range: which neighbours and walls it is given, m.
-        from_surface: whether the range is measured between surfaces.
+        range: range of its neighbours and walls, m.
+        from_surface: True if the range is measured between surfaces.
         weight: factor of the cost, >= 0.
-        call: as of `CompiledCost`.
+        call: as in `CompiledCost`.
     """
 
     evaluate: Callable[[Array, AgentView, Neighbours], Array]
@@ -161,7 +163,7 @@ class NumpyCost:
     call: PluginCall | None = None
 
     def reach(self, radius: float, largest_radius: float) -> float:
-        """Centre distance beyond which no neighbour counts, m."""
+        """Return the centre distance beyond which no neighbour counts, m."""
         return _reach(self.range, self.from_surface, radius, largest_radius)
 
 
@@ -175,8 +177,8 @@ def in_range(d2: float, radii: float, params: Pointer) -> bool:
 
     Args:
         d2: squared centre distance to a neighbour, or squared distance to a wall, m^2.
-        radii: what is deducted where the range is measured between surfaces: the sum of the
-            radii, or the agent's radius for a wall, m.
+        radii: subtracted if the range is measured between surfaces: the sum of the radii, or the
+            agent's radius for a wall, m.
     """
     own = as_record(params, COST_PARAMS)
     reach = own.range + own.from_surface * radii

@@ -27,13 +27,13 @@ from crowdbot.core.support.records import start_of
 
 
 def address_of(function: Any, signature: Any) -> int:
-    """Address of the C function that numba compiles; valid while ``function`` lives."""
+    """Return the address of the C function compiled by numba; valid while ``function`` lives."""
     result = function.get_compile_result(signature)
     return int(result.library.get_pointer_to_function(result.fndesc.llvm_cfunc_wrapper_name))
 
 
 def _call(signature: Any, *given: Any) -> tuple[Any, Any]:
-    """Typing and code of a call: address of the function, then its arguments.
+    """Return typing and code of a call: address of the function, then its arguments.
 
     Records, arrays and integers become pointers here.
     """

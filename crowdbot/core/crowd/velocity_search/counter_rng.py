@@ -11,7 +11,7 @@ from numba import uint64
 
 from crowdbot.core.support.compile import kernel
 
-#: What a draw is for; keeps draws with equal counters apart.
+#: Purposes of draws, which keep draws with equal counters separate.
 GOAL, ENTRY, ROUTE, WANDER = 0, 1, 2, 3
 
 
@@ -24,7 +24,7 @@ def _mix(word: np.uint64) -> np.uint64:
 
 @kernel
 def uniform(key: np.uint64, agent: int, trip: int, purpose: int, counter: int) -> float:
-    """A number in [0, 1) that depends on its arguments only."""
+    """Return a number in [0, 1) that depends only on its arguments."""
     state = uint64(key)
     for word in (agent, trip, purpose, counter):
         state = _mix(state + uint64(0x9E3779B97F4A7C15) * (uint64(word) + uint64(1)))

@@ -1,4 +1,4 @@
-"""Total cost of given velocities, without any shortcut."""
+"""Total cost of given velocities, without shortcuts."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class Evaluator:
         self.costs = costs
 
     def total(self, view: CrowdView, velocities: Array, *, compiled: bool = True) -> Array:
-        """Weighted sums (N, S) of all costs at velocities (N, S, 2), m/s.
+        """Return weighted sums (N, S) of all costs at velocities (N, S, 2), m/s.
 
-        Zero for agents that are absent or have arrived, ``inf`` where a velocity is forbidden.
+        Zero for agents that are absent or have arrived, ``inf`` for forbidden velocities.
 
         Args:
-            compiled: False leaves the compiled functions out.
+            compiled: False to exclude the compiled functions.
 
         Raises:
             ValueError: a vectorised function returned NaN or a wrong number of costs.
@@ -122,7 +122,7 @@ def _neighbours(
 
 
 def _columns(rows: Rows[Any], chosen: Mask, *names: str) -> Array:
-    """Some fields of the chosen rows, side by side."""
+    """Return some fields of the chosen rows, side by side."""
     return np.column_stack([rows[name][chosen] for name in names])
 
 

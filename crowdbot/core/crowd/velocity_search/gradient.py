@@ -32,19 +32,19 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
-#: Half the span of central differences, m/s.
+#: Half the width of central differences, m/s.
 STEP = 0.1
 _AROUND = STEP * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 
 
 class Descent:
-    """Weighted costs whose gradient is followed."""
+    """Weighted costs with gradient descent."""
 
     def __init__(self, costs: WeightedCosts) -> None:
         self.costs = costs
 
     def accelerations(self, view: CrowdView) -> Array:
-        """Minus the gradient (N, 2) at the current velocity, m/s^2.
+        """Return minus the gradient (N, 2) at the current velocity, m/s^2.
 
         Infinite away from a forbidden velocity within `STEP`; zero for agents that are absent or
         have arrived. Never NaN.
@@ -118,7 +118,7 @@ def _descend(
 
 @kernel
 def _differences(costs: AgentCosts, k: int, vx: float, vy: float, out: Array) -> None:
-    """Central differences of one function; infinite where one side is forbidden."""
+    """Write central differences of one function; infinite if one side is forbidden."""
     for axis in range(2):
         dx, dy = (STEP, 0.0) if axis == 0 else (0.0, STEP)
         low = cost_of(costs, k, vx - dx, vy - dy)

@@ -1,4 +1,4 @@
-"""Everything that people see as a disc, in one table: people, robots, pillars, images."""
+"""All discs that people see, in one table: people, robots, pillars, images."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.core.types.arrays import Array
 
 
 def most_discs(people: int, others: int, periodic: bool) -> int:
-    """Return how many rows `write_discs` may write at most."""
+    """Return the largest number of rows that `write_discs` may write."""
     return people * (9 if periodic else 1) + others
 
 
@@ -33,9 +33,9 @@ def write_discs(
     reach: float,
     discs: Rows[DiscRecord],
 ) -> int:
-    """Write all discs; return how many they are.
+    """Write all discs; return their number.
 
-    Preferred velocities are zero at the goal; robots are taken to prefer the one they have.
+    Preferred velocities are zero at the goal; robots are assumed to prefer their current one.
 
     Args:
         position, velocity, goal: (N, 2); radius, preferred (speed), present: (N,).
@@ -82,7 +82,7 @@ def write_discs(
 def _write_images(
     discs: Rows[DiscRecord], people: int, count: int, box: Array, diagonal: bool, reach: float
 ) -> int:
-    """Append people as they appear across a periodic boundary."""
+    """Append the images of people across a periodic boundary."""
     width, height = box[1] - box[0], box[3] - box[2]
     for sx in (-1.0, 0.0, 1.0):
         for sy in (-1.0, 0.0, 1.0):

@@ -14,13 +14,13 @@ from crowdbot.core.types.arrays import Array
 
 
 class DiscRecord:
-    """A disc in a table of all.
+    """A disc in a table of all discs.
 
     Attributes:
         x, y, vx, vy, radius: position, velocity, radius.
         wanted_x, wanted_y: preferred velocity.
         pillar: 1 for a pillar.
-        index: of the agent, or -1.
+        index: index of the agent, or -1.
     """
 
     x: float
@@ -43,7 +43,7 @@ Starts = NDArray[np.int64]
 
 @kernel
 def strip_height(discs: Rows[DiscRecord], count: int, reach: float) -> float:
-    """Height of strips that suits a search within ``reach``, m."""
+    """Return a height of strips that suits a search within ``reach``, m."""
     low, high = np.inf, -np.inf
     for b in range(count):
         low, high = min(low, discs[b].y), max(high, discs[b].y)
@@ -57,11 +57,11 @@ def sort_discs(
 ) -> tuple[float, Starts]:
     """Write the first ``count`` discs to ``table``, strip by strip, each sorted by x.
 
-    The order depends on where discs are, not on their order in ``discs``.
+    The order depends on the discs' positions, not on their order in ``discs``.
 
     Returns:
-        lower border of the first strip (m); then for each strip, and for none after the last, its
-        first row and where the latest search in it began, which spares the next one the way.
+        lower border of the first strip (m); then, per strip and once after the last, its first row
+        and the start of the last search in it, which speeds up the next one.
     """
     low, high = np.inf, -np.inf
     for b in range(count):
@@ -98,11 +98,11 @@ def gather(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, me: int, distance: float,
     near: Rows[NeighbourRecord],
 ) -> int:  # fmt: skip
-    """Write the discs closer than ``distance`` (centres, strict) to ``near``; return how many.
+    """Write the discs closer than ``distance`` (centres, strict) to ``near``; return their number.
 
     Args:
-        table, starts, low, height: as `sort_discs` left them.
-        me: row of the disc whose neighbours are sought.
+        table, starts, low, height: as from `sort_discs`.
+        me: row of the disc whose neighbours are searched.
         distance: m.
         near: (>= B,) output.
     """
@@ -124,7 +124,7 @@ def gather(
                 break
             ry = table[k].y - py
             d2 = rx * rx + ry * ry
-            # Written in any case, kept if near: a branch would often be guessed wrong.
+            # Written always and kept if near: a branch would often be mispredicted.
             near[count].d2, near[count].rx, near[count].ry = d2, rx, ry
             near[count].nvx, near[count].nvy = table[k].vx, table[k].vy
             near[count].reach = radius + table[k].radius
@@ -138,7 +138,7 @@ def gather(
 def gather_walls(
     walls: Array, px: float, py: float, distance: float, found: Rows[WallRecord]
 ) -> int:
-    """Write the segments not farther than ``distance`` to ``found``; return how many.
+    """Write the segments within ``distance`` to ``found``; return their number.
 
     Args:
         walls: (S, 4) ends of segments, m.

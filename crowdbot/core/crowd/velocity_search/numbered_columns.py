@@ -1,8 +1,7 @@
-"""Numbers of columns, and tables for them: the old way into records, which stays until 1.0.
+"""Column numbers, and tables for them: deprecated access to records, kept until 1.0.
 
 Cost functions of other packages import them from `crowdbot.core.interfaces`. An entry of an agent
-is read as ``agent[PX]`` as before: numba takes a number known in advance for the field in that
-place.
+is read as ``agent[PX]`` as before: numba converts a constant number to the field at that position.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ D2, RX, RY, NVX, NVY, REACH, NPX, NPY, STATIC = range(9)
 AX, AY, BX, BY, NX, NY, WALL_D2 = range(7)
 RANGE, FROM_SURFACE = range(2)
 AGENT_SIZE, NEAR_COLUMNS, WALL_COLUMNS = (columns_of(r) for r in (AGENT, NEIGHBOUR, WALL))
-# Numba wants a length; it is not checked.
+# Numba needs a length; it is not checked.
 _ANY = 1
 
 
@@ -42,17 +41,17 @@ _numbers_of: Any = intrinsic(_numbers)
 
 @njit(cache=True)
 def near_table(near: Any) -> Any:
-    """Neighbours as rows of `NEAR_COLUMNS`."""
+    """Return neighbours as rows of `NEAR_COLUMNS`."""
     return carray(_numbers_of(near), (_ANY, NEAR_COLUMNS))
 
 
 @njit(cache=True)
 def wall_table(walls: Any) -> Any:
-    """Walls as rows of `WALL_COLUMNS`."""
+    """Return walls as rows of `WALL_COLUMNS`."""
     return carray(_numbers_of(walls), (_ANY, WALL_COLUMNS))
 
 
 @njit(cache=True)
 def work_table(work: Any) -> Any:
-    """The scratch table as rows of `WORK_COLUMNS`."""
+    """Return the scratch table as rows of `WORK_COLUMNS`."""
     return carray(work, (_ANY, WORK_COLUMNS))

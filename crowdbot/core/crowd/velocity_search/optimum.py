@@ -1,4 +1,4 @@
-"""The method ``global``: the velocity of least cost, in closed form or by a fine search."""
+"""The method ``global``: the velocity with the lowest cost, in closed form or by a fine search."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
 class Optimum:
-    """Closed form where the costs are one function that has one; otherwise `EVERYWHERE`."""
+    """The closed form if the costs are one function that has one; otherwise `EVERYWHERE`."""
 
     def __init__(self, costs: WeightedCosts) -> None:
         self.costs = costs
@@ -44,7 +44,7 @@ class Optimum:
         self.search = Sampler(EVERYWHERE, costs)
 
     def choose(self, view: CrowdView) -> Array:
-        """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
+        """Return chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
         if not self.is_closed:
             return self.search.choose(view)
         costs, around = self.costs, self.costs.surroundings(view)
@@ -64,11 +64,11 @@ def _solve(
     deciding: Rows[AgentRecord], functions: Functions, weights: Array,
     active: Indices, out: Array, unknown: Mask, chosen: Array,
 ) -> None:  # fmt: skip
-    """Write velocities (N, 2) of least cost to ``chosen``, or say that one is ``unknown`` (N,).
+    """Write velocities (N, 2) with the lowest cost to ``chosen``, or mark them ``unknown`` (N,).
 
     Args:
         table to deciding: fields of `Surroundings`.
-        functions, weights: see `AgentCosts`; of one function.
+        functions, weights: see `AgentCosts`; only one function.
         active, out: (1,), (2,) scratch.
     """
     around = Surroundings(

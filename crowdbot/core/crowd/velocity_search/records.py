@@ -1,6 +1,6 @@
-"""Records that cost functions are called with.
+"""Records with which cost functions are called.
 
-An agent, its neighbours and walls: SI units, positions relative to the agent where said.
+An agent, its neighbours and walls: SI units, positions relative to the agent if stated.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ class AgentRecord:
     Attributes:
         px, py, vx, vy, radius: position, velocity, radius.
         preferred: preferred speed, > 0.
-        fastest: greatest speed that the search asks for.
+        fastest: largest speed in the search.
         time_step: time between decisions.
         gx, gy, pvx, pvy: goal; preferred velocity.
-        max_speed, max_acceleration: largest ones.
+        max_speed, max_acceleration: limits.
         relaxation: the policy's relaxation time.
-        weight: divides forces; 1 unless a case of the original says otherwise, without unit.
-        parity: 1 if the original's defects are wanted.
+        weight: divisor of forces; 1 except in cases of the original, without unit.
+        parity: 1 to reproduce the original's defects.
         random: state of the agent's random numbers, which functions may advance; see
             `crowdbot.core.crowd.velocity_search.minstd`.
         descends: 1 if gradients are followed.
-        broken: 1 after a function has returned NaN; the search's own note.
-        asked_x, asked_y, asked_radius: disc of velocities that holds all that the search asks for.
+        broken: 1 after a function has returned NaN; for internal use.
+        asked_x, asked_y, asked_radius: disc with all velocities of the search.
     """
 
     px: float
@@ -95,10 +95,10 @@ class WallRecord:
 
 
 class CostParams:
-    """The beginning of every ``params``; a cost function's own record adds fields.
+    """The first fields of every ``params``; a cost function's own record adds fields.
 
     Attributes:
-        range: of the function, m.
+        range: range of the function, m.
         from_surface: 1 if it is measured between surfaces.
     """
 
@@ -110,5 +110,5 @@ AGENT = record_type(AgentRecord)
 NEIGHBOUR = record_type(NeighbourRecord)
 WALL = record_type(WallRecord)
 COST_PARAMS = record_type(CostParams)
-#: Float64 in a row of ``work``.
+#: Number of float64 in a row of ``work``.
 WORK_COLUMNS = 8

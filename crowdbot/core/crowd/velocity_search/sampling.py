@@ -1,9 +1,9 @@
-"""Sampling in velocity space: each agent takes the candidate of least total cost.
+"""Sampling in velocity space: each agent takes the candidate with the lowest total cost.
 
-Candidates are fixed in some frame. Where that is the frame of the preferred velocity, their base
-costs are tabulated and sorted once per agent, so that the search stops at the first candidate
-whose lower bound exceeds the best cost so far: exact branch and bound. In other frames the bounds
-are computed at each decision, and candidates above the best cost are passed over.
+Candidates are fixed in a frame. In the frame of the preferred velocity, their base costs are
+tabulated and sorted once per agent, so that the search stops at the first candidate whose lower
+bound exceeds the best cost so far: exact branch and bound. In other frames the bounds are computed
+at each decision, and candidates above the best cost are skipped.
 """
 
 from __future__ import annotations
@@ -68,23 +68,24 @@ class Sampler:
         self._candidates = np.zeros((s.random, 2)) if s.random else s.fan()
         self._polar = np.zeros((1, 2)) if s.random else polar(s)
         self._options = FanOptions(s.base, s.direction, s.radius, 0.5 * s.opening, s.random > 0)
-        # Whether bounds are the same at each decision.
+        # True if the bounds are the same at each decision.
         self._tabulated = not s.random and s.base == ZERO and s.direction == ALONG_PREFERRED
         self._table_dt = math.nan
         # For each agent, or for one that is filled again for each: bounds, and x and y of their
         # candidates; the numbers of these.
         self._ranked = np.zeros((1, 3, len(self._candidates)))
         self._index = np.arange(len(self._candidates))[np.newaxis]
-        # Where each search begins: the previous choice is a good bound, and changes no choice.
+        # Where each search begins: the previous choice is a good bound and does not affect the
+        # result.
         self._first = np.zeros(len(costs.agents), np.int64)
         # Scratch: the frame (base, then direction times radius), candidates in the world frame,
-        # what `search` knows about candidates.
+        # data of `search` about candidates.
         self._frame = np.zeros(4)
         self._world = np.zeros_like(self._candidates)
         self._tried = np.zeros((5, len(self._candidates)))
 
     def choose(self, view: CrowdView) -> Array:
-        """Chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
+        """Return chosen velocities (N, 2), m/s; zero for agents that are absent or have arrived."""
         costs = self.costs
         if costs.vectorised:
             return self._choose_slowly(view)
@@ -109,7 +110,7 @@ class Sampler:
         return found
 
     def _choose_slowly(self, view: CrowdView) -> Array:
-        """Every candidate by every function, where some of these are vectorised."""
+        """Evaluate every candidate by every function, for vectorised functions."""
         found = self.candidates(view)
         total = Evaluator(self.costs).total(view, found)
         if np.any(np.isnan(total)):
@@ -155,7 +156,7 @@ def _tabulate(
         agent.pvx, agent.time_step = agent.preferred, dt
         agent.max_acceleration = traits[i].max_acceleration
         if agent.preferred <= 0.0:
-            continue  # never asked for
+            continue  # never used
         scale = radius_of(agent, radius)
         for c in range(candidates.shape[0]):
             along, across = in_preferred_frame(
@@ -184,12 +185,12 @@ def _choose(
         table to deciding: fields of `Surroundings`.
         functions, weights: see `AgentCosts`.
         base to drawn: fields of `FanOptions`.
-        ordered: whether each function is called for all candidates, in their order.
+        ordered: True to call each function for all candidates, in order.
         candidates, regular: (S, 2) of the unit fan; in single precision, see `single`.
-        tabulated: whether ``ranked`` holds all agents' sorted candidates; else it is scratch.
-        ranked: (N or 1, 3, S) what candidates cost at least, and their x and y.
-        indices: (N or 1, S) numbers of these candidates.
-        first: (N,) place in ``indices`` where each agent's search begins.
+        tabulated: True if ``ranked`` holds all agents' sorted candidates; otherwise it is scratch.
+        ranked: (N or 1, 3, S) lower bounds of candidates, and their x and y.
+        indices: (N or 1, S) indices of these candidates.
+        first: (N,) start of each agent's search in ``indices``.
         frame, world, active, tried: (4,), (S, 2), (K,), (5, S) scratch.
         chosen: (N, 2) result, m/s.
     """
@@ -210,7 +211,7 @@ def _choose(
         to_draw = drawn
         if settings[0].parity != 0.0 and not (ordered and drawn):
             single_candidates(agent, options, regular, world)
-            frame[0], frame[1], frame[2], frame[3] = 0.0, 0.0, 1.0, 0.0  # as they are
+            frame[0], frame[1], frame[2], frame[3] = 0.0, 0.0, 1.0, 0.0  # unchanged
             unit, to_draw = world, False
         if ordered:
             best, place = try_in_order(frame, unit, to_draw, half, scale, costs)

@@ -1,4 +1,4 @@
-"""Branch and bound over one agent's candidates, and the plain loops beside it."""
+"""Branch and bound over one agent's candidates, and plain loops."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
-#: What rounding may make of a cost, as a fraction of it.
+#: Largest relative rounding error of a cost.
 _ROUNDING = 1e-9
-#: Processors compute up to so many candidates at once, and what is left over one by one.
+#: Number of candidates that processors compute at once.
 _STEP = 8
 
 
 @inline_kernel
 def turned(frame: Array, x: float, y: float) -> tuple[float, float]:
-    """A velocity of the unit fan in the world frame (or in that of the given frame), m/s."""
+    """Return a velocity of the unit fan in the world frame (or in the given frame), m/s."""
     return frame[0] + x * frame[2] - y * frame[3], frame[1] + x * frame[3] + y * frame[2]
 
 
 @inline_kernel
 def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
-    """Candidate number c of the unit fan, as `turned`."""
+    """Return candidate number c of the unit fan, as `turned`."""
     return turned(frame, candidates[c, 0], candidates[c, 1])
 
 
 @kernel
 def arrange(candidates: Array, index: Indices, x: Array, y: Array) -> None:
-    """Write candidates (S, 2) to ``x`` and ``y`` (S,), in the order of their numbers."""
+    """Write candidates (S, 2) to ``x`` and ``y`` (S,), in the order of their indices."""
     for c in range(index.shape[0]):
         x[c], y[c] = candidates[index[c], 0], candidates[index[c], 1]
 
@@ -57,10 +57,13 @@ def set_bounds(
     weights: Array,
     bound: Array,
 ) -> int:
-    """Write base costs of all candidates to ``bound`` (S,); return the candidate of the least."""
+    """Write base costs of all candidates to ``bound`` (S,).
+
+    Return the candidate with the lowest.
+    """
     least, preferred, fastest = 0, agent.preferred, agent.max_speed
     cosine, sine = agent.pvx / preferred, agent.pvy / preferred
-    # The frame as seen from the preferred velocity.
+    # The frame relative to the preferred velocity.
     x, y = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
     along, across = frame[2] * cosine + frame[3] * sine, frame[3] * cosine - frame[2] * sine
     for c in range(candidates.shape[0]):
@@ -86,14 +89,13 @@ def search(
     costs: AgentCosts,
     tried: Array,
 ) -> tuple[float, int]:
-    """Least cost, and the place of its candidate; the first one of equals.
+    """Return the lowest cost, and the position of its candidate; of equal ones the first.
 
     Args:
         frame: (4,) see `turned`.
-        x, y, bound, index: (S,) candidates of the unit fan, what each costs at least, and its
-            number.
-        is_sorted: whether bounds rise.
-        start: place of the candidate that is tried first.
+        x, y, bound, index: (S,) candidates of the unit fan, their lower bounds, and indices.
+        is_sorted: True if bounds increase.
+        start: position of the candidate to try first.
         tried: (5, S) scratch.
     """
     ux, uy = turned(frame, x[start], y[start])
@@ -114,7 +116,10 @@ def search(
 
 @kernel
 def _whole_steps(count: int, most: int) -> int:
-    """As many candidates, rounded up to what is computed at once; the last ones are any."""
+    """Return the number of candidates, rounded up to a whole vector.
+
+    The last ones are arbitrary.
+    """
     return min((count + _STEP - 1) // _STEP * _STEP, most)
 
 
@@ -124,14 +129,14 @@ def _possible(
 ) -> int:
     """Write candidates that may be as good as ``best`` to ``tried``; return how many.
 
-    Rows 0, 1, 2 and 4: velocity in the world frame, bound, place.
+    Rows 0, 1, 2 and 4: velocity in the world frame, bound, position.
     """
     ux, uy, least, place = tried[0], tried[1], tried[2], tried[4]
     if is_sorted:
         left = int(np.searchsorted(bound, best, side="right"))
         whole = _whole_steps(left, bound.shape[0])
         bx, by, fx, fy = frame[0], frame[1], frame[2], frame[3]
-        for c in range(whole):  # one row at a time, so that it runs on several numbers at once
+        for c in range(whole):  # one row at a time, so that it vectorises
             ux[c] = bx + x[c] * fx - y[c] * fy
         for c in range(whole):
             uy[c] = by + x[c] * fy + y[c] * fx
@@ -151,7 +156,7 @@ def _possible(
 
 @inline_kernel
 def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCosts) -> float:
-    """Cost of a candidate in the world frame, or anything above ``best`` if it exceeds it."""
+    """Return the cost of a world candidate, or anything above ``best`` if it exceeds it."""
     # A function that stops just above its budget must not be rounded to a tie with the best.
     cost, most = base, best + _ROUNDING * abs(best)
     for term in range(costs.active.shape[0]):
@@ -171,7 +176,7 @@ def cost_within(ux: float, uy: float, base: float, best: float, costs: AgentCost
 def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
     """Leave out candidates whose bound is above ``best``; return how many stay.
 
-    The widest function is asked first: it has most neighbours, and rules out most.
+    The function with the largest range comes first: it has the most neighbours and excludes most.
     """
     ux, uy, least, out, place = tried[0], tried[1], tried[2], tried[3], tried[4]
     functions, most = costs.functions, best + _ROUNDING * abs(best)
@@ -196,9 +201,9 @@ def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
 def try_in_order(
     frame: Array, candidates: Array, drawn: bool, half: float, scale: float, costs: AgentCosts
 ) -> tuple[float, int]:
-    """As `search`, but everything is evaluated in the order of the candidates.
+    """As `search`, but evaluates everything in the order of the candidates.
 
-    For functions that draw random numbers; candidates are drawn one by one, too.
+    For functions that draw random numbers; candidates are drawn one by one too.
     """
     best, place, agent = math.inf, 0, costs.agent
     for c in range(candidates.shape[0]):
@@ -221,7 +226,7 @@ def try_in_order(
 
 @kernel
 def least_forbidden(frame: Array, candidates: Array, costs: AgentCosts) -> int:
-    """The original's choice where every candidate is forbidden; -1 if it finds none.
+    """Return the original's choice if every candidate is forbidden; -1 if it finds none.
 
     There a forbidden candidate costs the largest single-precision number times the function's
     weight, which is less than the worst cost for a weight below 1.

@@ -25,13 +25,13 @@ from crowdbot.core.types.arrays import Array
 
 
 def polar(sampling: Sampling) -> Array:
-    """Angle and ring (S, 2) of the regular candidates; the ring of the base is 0."""
+    """Return angle and ring (S, 2) of the regular candidates; the ring of the base is 0."""
     s = sampling
     half, closed = np.float32(0.5 * s.opening), math.isclose(s.opening, 2.0 * math.pi)
     step = np.float32(2.0) * half / np.float32(s.angles if closed else max(1, s.angles - 1))
     steps = np.full(s.angles, step, np.float32)
     steps[0] = -half
-    theta = np.cumsum(steps, dtype=np.float32)  # step by step, as there, with its rounding
+    theta = np.cumsum(steps, dtype=np.float32)  # step by step, with the original's rounding
     first, last = (1, s.speeds) if s.include_base else (1, s.speeds + 1)
     rings = [np.column_stack([theta, np.full(s.angles, float(k))]) for k in range(first, last)]
     return np.concatenate([np.zeros((1 if s.include_base else 0, 2)), *rings])
@@ -44,7 +44,7 @@ def single_candidates(
     """Fill ``world`` (S, 2) with candidates in the world frame; draws random ones again.
 
     Args:
-        regular: (S, 2) of `polar`, not used for random ones.
+        regular: (S, 2) from `polar`, not used for random ones.
     """
     base, drawn, half = options.base, options.drawn, options.half
     ex, ey = _direction(agent, options.direction)

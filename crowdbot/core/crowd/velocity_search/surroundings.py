@@ -1,8 +1,8 @@
 """Surroundings of all agents at one decision, in the form that compiled loops take.
 
-Numba needs some 3 us to unpack a named tuple that comes from Python, and none for one that
-compiled code packs. So the loops over agents (in `sampling`, `gradient`, `optimum`, `evaluate`)
-take the fields of `Surroundings` one by one, in this order, and pack them before anything else.
+Numba needs about 3 us to unpack a named tuple from Python, and nothing for one packed in compiled
+code. So the loops over agents (in `sampling`, `gradient`, `optimum`, `evaluate`) take the fields of
+`Surroundings` one by one, in this order, and pack them before anything else.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class Surroundings(NamedTuple):
     """All agents and their surroundings at one decision.
 
     Attributes:
-        table: (B,) all discs, as `neighbours.sort_discs` sorts them into strips.
-        starts: (strips + 1, 2) of the same function.
+        table: (B,) all discs, sorted into strips by `neighbours.sort_discs`.
+        starts: (strips + 1, 2) from the same function.
         low, height: lower border of the first strip, and height of a strip, m.
         who: (N,) True for agents whose choice is wanted.
         goal: (N, 2), m.
@@ -88,11 +88,11 @@ def sort_surroundings(
     """Write all discs to ``table``, sorted into strips.
 
     Args:
-        position to discs: as of `neighbour_discs.write_discs`.
+        position to discs: as in `neighbour_discs.write_discs`.
         table: as ``discs``.
 
     Returns:
-        how many discs there are, the strips' height, and what `neighbours.sort_discs` returns.
+        number of discs, the strips' height, and the result of `neighbours.sort_discs`.
     """
     count = write_discs(
         position, velocity, goal, radius, preferred, present, robots, pillars, box, diagonal, reach,
@@ -105,10 +105,10 @@ def sort_surroundings(
 
 @inline_kernel
 def describe(around: Surroundings, b: int) -> int:
-    """Write the record of the agent in row b of the table; return the agent's number.
+    """Write the record of the agent in row b of the table; return the agent's index.
 
-    Returns -1, and writes nothing, for a disc that decides nothing: it is not an agent, its choice
-    is not wanted, or it has arrived.
+    Returns -1, and writes nothing, for a disc without a decision: it is not an agent, its choice is
+    not needed, or it has arrived.
     """
     disc, settings, agent = around.table[b], around.settings[0], around.deciding[0]
     i = int(disc.index)

@@ -1,4 +1,4 @@
-"""Weighted cost functions, made ready for the decisions of one set of agents."""
+"""Weighted cost functions, prepared for the decisions of one set of agents."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class WeightedCosts:
 
     Args:
         relaxation_time: the policy's, s.
-        parity: do as the original engine does, defects included; for comparisons only.
+        parity: reproduce the original engine, defects included; for comparisons only.
         weight: (N,) see `AgentRecord`; 1 by default.
     """
 
@@ -81,7 +81,7 @@ class WeightedCosts:
         self.agents, self.parity, self.relaxation_time = agents, parity, relaxation_time
         self._all = tuple(costs)
         self.largest = float(np.max(agents.avoided_radius, initial=0.0))
-        # Few neighbours first: their excess is the cheaper one.
+        # Functions with few neighbours first: their excess is cheaper.
         self.compiled = sorted(
             (c for c in costs if isinstance(c, CompiledCost)),
             key=lambda c: c.reach(self.largest, self.largest),
@@ -98,7 +98,7 @@ class WeightedCosts:
             row[: len(cost.params)] = cost.params
         self.functions[:, PARAMS] = _layers(self.params)
         self.weights = np.array([c.weight for c in self.compiled], np.float64)
-        # Scratch of compiled loops: the functions whose excess may differ from zero.
+        # Scratch of compiled loops: functions whose excess may be nonzero.
         self.active = np.zeros(len(self.compiled), np.int64)
         ones = np.ones(len(agents)) if weight is None else weight
         self.traits = rows_of(len(agents), TRAITS)
@@ -126,9 +126,9 @@ class WeightedCosts:
         return self._reach
 
     def surroundings(self, view: CrowdView) -> Surroundings:
-        """Sort all discs of a view, and hand out what compiled loops take.
+        """Sort all discs of a view, and return the data for compiled loops.
 
-        Tables and scratch are those of the call before, if there is room in them.
+        Tables and scratch are reused if large enough.
         """
         reach, boundary, walls = self.reach(view), view.periodic_boundary, len(view.walls)
         self._make_room(
@@ -164,5 +164,5 @@ def _addresses(functions: Sequence[object], signature: object) -> _Addresses:
 
 
 def _layers(array: Array) -> _Addresses:
-    """Addresses of the parts of an array along its first axis; valid while it lives."""
+    """Return the addresses of an array's parts along its first axis; valid while it lives."""
     return np.asarray(array.ctypes.data + array.strides[0] * np.arange(len(array)), np.intp)

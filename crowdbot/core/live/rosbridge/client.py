@@ -1,4 +1,4 @@
-"""A client of a rosbridge server that exists, through which nodes of ROS drive the robot."""
+"""A client of an existing rosbridge server, through which ROS nodes drive the robot."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from websockets.asyncio.client import ClientConnection
 
 COMMAND, CLOCK = "/cmd_vel", "/clock"
-#: Images do not go through a connection of text.
+#: Images are not sent over a text connection.
 _LEFT_OUT = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2")
 _AGAIN, _FIRST, _LARGEST = 0.5, 20.0, 2**20  # s, s, bytes
 
 
 class RosbridgeClient:
-    """A door that leads to a server of others; a connection that breaks is made again."""
+    """A live connection to an external server, with automatic reconnection."""
 
     def __init__(
         self, session: LiveSession, uri: str, *, ros: Ros, stamped: bool, external_clock: bool
@@ -36,11 +36,11 @@ class RosbridgeClient:
 
         Args:
             uri: ``ws://HOST:PORT``.
-            stamped: whether commands are TwistStamped.
-            external_clock: whether ``/clock`` is read, not published.
+            stamped: True if commands are TwistStamped.
+            external_clock: True to read ``/clock`` instead of publishing it.
 
         Raises:
-            InputError: nobody answers there.
+            InputError: there is no server.
         """
         self._session, self._uri, self._ros = session, uri, ros
         self._stamped, self._external_clock = stamped, external_clock
@@ -60,7 +60,7 @@ class RosbridgeClient:
 
     # ---------------------------------------------------------------- the simulation's thread
     def open(self, offers: Sequence[Offer]) -> None:
-        """A run begins that offers these topics."""
+        """Start a run that offers these topics."""
         mine = [o for o in offers if o.msgtype not in _LEFT_OUT]
         if self._external_clock:
             mine = [o for o in mine if o.topic != CLOCK]
@@ -68,17 +68,17 @@ class RosbridgeClient:
         self._known = frozenset(o.topic for o in mine)
 
     def wants(self, topic: str) -> bool:
-        """Everything goes to the server, which does not say who listens."""
+        """Return True: the server gets everything, since it does not report its listeners."""
         return topic in self._known and self._connected.is_set()
 
     def publish(self, messages: Sequence[LiveMessage]) -> None:
-        """Tell the server."""
+        """Send messages to the server."""
         known = [m for m in messages if m.topic in self._known]
         if known:
             self._soon(self._published, known)
 
     def close(self) -> None:
-        """Leave."""
+        """Disconnect."""
         self._soon(self._end)
         self._thread.join(5.0)
 
@@ -94,7 +94,7 @@ class RosbridgeClient:
         self._loop.close()
 
     def _end(self, looks: int = 100) -> None:
-        """Leave when all is sent, but not later than half a second from now."""
+        """Disconnect when everything is sent, within half a second."""
         if looks and len(self._outbox) and self._connected.is_set():
             self._loop.call_later(0.005, self._end, looks - 1)
         else:
@@ -138,7 +138,7 @@ class RosbridgeClient:
             await socket.send(await self._outbox.get())
 
     def _introduce(self) -> None:
-        """Say again what there is: the server forgets those who leave."""
+        """Advertise again, since the server forgets disconnected clients."""
         kind = "TwistStamped" if self._stamped else "Twist"
         self._subscribe(COMMAND, f"geometry_msgs/msg/{kind}")
         if self._external_clock:

@@ -1,4 +1,4 @@
-"""One client of the rosbridge server: what it sends, and what it gets."""
+"""One client of the rosbridge server: its requests and messages."""
 
 from __future__ import annotations
 
@@ -21,38 +21,38 @@ from crowdbot.errors import InputError
 
 COMMAND, CLOCK = "/cmd_vel", "/clock"
 _LEVELS = {"none": -1, "error": 0, "warning": 1, "info": 2}
-#: Subscriptions and topics of one client; service calls that may be going on for it.
+#: Limits of subscriptions, topics and parallel service calls per client.
 _MOST_TOPICS, _MOST_CALLS = 1000, 64
-#: A client may send so many messages a second; of one that floods, the rest waits in its socket.
+#: Largest rate of messages per client; above it, messages wait in the socket.
 _PER_SECOND, _BURST, _BYTES = 5000.0, 5000.0, 2000.0
 
 
 class Hub(Protocol):
-    """What a connection needs of the server."""
+    """The part of the server that a connection uses."""
 
     session: LiveSession
     external_clock: bool
 
     @property
     def services(self) -> Mapping[str, Service]:
-        """All services, by name."""
+        """Return all services, by name."""
         ...
 
     def latest(self, topic: str) -> LiveMessage | None:
-        """The message that a new subscriber gets at once."""
+        """Return the message that a new subscriber gets at once."""
         ...
 
     def changed(self) -> None:
-        """Somebody listens to other topics now."""
+        """Handle changed subscriptions."""
         ...
 
     def encoded(self, message: LiveMessage, wish: Wishes) -> Frame:
-        """A message as a frame; made once for all who want the same."""
+        """Return a message as a frame, shared by all clients with the same format."""
         ...
 
 
 class Connection:
-    """A client; lives in the thread of the server."""
+    """A client; used only in the server's thread."""
 
     def __init__(self, hub: Hub, send: Callable[[Frame], Awaitable[None]]) -> None:
         self._hub, self._send = hub, send
@@ -79,7 +79,7 @@ class Connection:
 
     # ------------------------------------------------------------------------- incoming
     async def take(self, frame: Frame) -> None:
-        """Do what a frame says; whatever it is, nothing is raised."""
+        """Handle a frame; never raises."""
         await self._pace(len(frame))
         self._do(frame)
 
@@ -192,7 +192,7 @@ class Connection:
 
     # ------------------------------------------------------------------------- outgoing
     def publish(self, message: LiveMessage) -> None:
-        """Send a message, if it is wanted."""
+        """Send a message if subscribed."""
         feed = self.feeds.get(message.topic)
         if feed is not None:
             feed.take(message)
@@ -213,7 +213,7 @@ class Connection:
             self._outbox.put(json.dumps(message))
 
     async def write(self) -> None:
-        """Send what is to be sent, for ever."""
+        """Send queued frames forever."""
         while True:
             frame = await self._outbox.get()
             self._sending = True
@@ -222,11 +222,11 @@ class Connection:
 
     @property
     def waiting(self) -> bool:
-        """Whether something is still to be sent."""
+        """Return True if frames are queued."""
         return self._sending or len(self._outbox) > 0
 
     def close(self) -> None:
-        """The client is gone."""
+        """Handle a disconnected client."""
         for task in self._calls:
             task.cancel()
         for feed in self.feeds.values():
@@ -253,7 +253,7 @@ def _name(message: Mapping[str, Any]) -> str:
 
 
 def _arguments(service: Service, given: object) -> dict[str, Any]:
-    """By name, or in their order."""
+    """Return arguments by name, or in order."""
     if given is None:
         return {}
     if isinstance(given, Mapping):

@@ -1,4 +1,4 @@
-"""What one client gets of one topic: how often, in what form, and how much may wait."""
+"""One topic for one client: rate, format, and queue."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _LONGEST_THROTTLE = 3_600_000
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """Of one subscription.
+    """Options of one subscription.
 
     Attributes:
-        throttle: least time between two messages, s.
-        queue: so many may wait; 0: the protocol sets no limit.
-        fragment: characters of a piece of text; 0: whole.
+        throttle: smallest time between two messages, s.
+        queue: largest queue; 0: unlimited.
+        fragment: largest number of characters per fragment; 0: not fragmented.
     """
 
     throttle: float = 0.0
@@ -30,10 +30,10 @@ class Wishes:
 
 
 def wishes(message: Mapping[str, Any]) -> tuple[Wishes, str]:
-    """What a ``subscribe`` wants, and what of it we cannot do.
+    """Return the options of a ``subscribe``, and unsupported ones.
 
     Raises:
-        BadFrame: a field is wrong.
+        BadFrame: a field is invalid.
     """
     throttle = _number(message, "throttle_rate", _LONGEST_THROTTLE)
     queue, fragment = _number(message, "queue_length", 10**6), _number(message, "fragment_size")
@@ -59,10 +59,10 @@ Send = Callable[[LiveMessage, Wishes], None]
 
 
 class Feed:
-    """One topic for one client, who may have subscribed several times."""
+    """One topic for one client, which may have several subscriptions."""
 
     def __init__(self, send: Send, later: Later, clock: Callable[[], float]) -> None:
-        """``later(s, f)`` calls ``f`` after so long; ``clock`` is the time in s."""
+        """Build a feed. ``later(s, f)`` calls ``f`` after a delay; ``clock`` is the time in s."""
         self._send, self._later, self._clock = send, later, clock
         self._by_id: dict[str, Wishes] = {}
         self._waiting = deque[LiveMessage]()
@@ -76,7 +76,7 @@ class Feed:
         self._merge()
 
     def unsubscribe(self, name: str | None) -> bool:
-        """Take one away, or all; whether nothing is left."""
+        """Remove one or all subscriptions; return True if none is left."""
         if name is None:
             self._by_id.clear()
         self._by_id.pop(name or "", None)
@@ -84,7 +84,7 @@ class Feed:
         return not self._by_id
 
     def _merge(self) -> None:
-        """Of several subscriptions the most eager one counts, and the latest form."""
+        """Merge subscriptions: the highest rate, and the latest format."""
         every = list(self._by_id.values()) or [Wishes()]
         fragments = [w.fragment for w in every if w.fragment]
         self.wishes = Wishes(
@@ -95,7 +95,7 @@ class Feed:
         )
 
     def take(self, message: LiveMessage) -> None:
-        """Send a message, now, later or never."""
+        """Send a message now, later or never."""
         wish = self.wishes
         if wish.throttle <= 0.0:
             self._send(message, wish)

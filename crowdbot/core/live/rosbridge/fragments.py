@@ -1,4 +1,4 @@
-"""Long text messages in pieces, as the protocol has them."""
+"""Fragments of long text messages in the protocol."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any
 
 from crowdbot.core.live.rosbridge.frames import BadFrame
 
-#: A message in pieces may have so many of them and so many characters; so many may be open.
+#: Limits for fragmented messages: fragments, characters, and open messages.
 _MOST_PIECES, _MOST_CHARACTERS, _MOST_OPEN = 4096, 2**20, 8
 
 
 def split(text: str, size: int, number: int) -> Iterator[str]:
-    """A text as messages of at most ``size`` characters of it each; whole where it fits.
+    """Split a text into messages of at most ``size`` characters; a short one is not split.
 
     Args:
         size: > 0.
-        number: names the message; no other one that is on its way may have it.
+        number: number of the message, unique among pending ones.
     """
     if len(text) <= size:
         yield text
@@ -33,16 +33,16 @@ def split(text: str, size: int, number: int) -> Iterator[str]:
 
 
 class Joiner:
-    """Puts together what comes in pieces, in any order; the oldest that never ends is dropped."""
+    """Joins fragments in any order; the oldest incomplete message is dropped."""
 
     def __init__(self) -> None:
         self._open = OrderedDict[str, dict[int, str]]()
 
     def add(self, message: Mapping[str, Any]) -> str | None:
-        """Take a piece; the whole text when it was the last one.
+        """Add a fragment; return the whole text after the last one.
 
         Raises:
-            BadFrame: it is not a piece, or the whole would be too long.
+            BadFrame: it is not a fragment, or the text is too long.
         """
         name, data = message.get("id"), message.get("data")
         number, total = message.get("num"), message.get("total")

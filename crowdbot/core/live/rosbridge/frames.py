@@ -1,4 +1,4 @@
-"""Frames of the rosbridge protocol: what comes in, with limits, and what goes out, by form."""
+"""Frames of the rosbridge protocol: limits for incoming frames, formats of outgoing ones."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _TAGS = {"u1": 64, "i1": 72, "u2": 69, "u4": 70, "u8": 71, "i2": 77, "i4": 78, "
 
 
 class BadFrame(Exception):  # noqa: N818 - what a client sent, not what we did
-    """What a client sent is not a message of the protocol."""
+    """A client's frame is not a message of the protocol."""
 
 
 def parse(frame: Frame) -> dict[str, Any]:
-    """A message from outside.
+    """Parse an external message.
 
     Raises:
         BadFrame: it is not one: neither JSON (text) nor CBOR (binary), or without ``op``.
@@ -33,7 +33,7 @@ def parse(frame: Frame) -> dict[str, Any]:
         message = json.loads(frame) if isinstance(frame, str) else _cbor(frame)
     except BadFrame:
         raise
-    except Exception as error:  # decoders of others, fed with anything
+    except Exception as error:  # third-party decoders with untrusted input
         raise BadFrame(f"not a message: {type(error).__name__}") from None
     if not isinstance(message, dict) or not isinstance(message.get("op"), str):
         raise BadFrame("a message is an object with 'op'")
@@ -47,7 +47,7 @@ def _cbor(data: bytes) -> Any:
 
 
 def encoded(message: LiveMessage, form: Form, ros: Ros) -> Frame:
-    """``publish`` of a message as one frame."""
+    """Return ``publish`` of a message as one frame."""
     if form == "none":
         plain = to_plain(message.fields, ros, json_array)
         head = json.dumps(message.topic)
@@ -81,7 +81,7 @@ def _ros1_bytes(message: LiveMessage) -> bytes:
 
 
 def as_numbers(value: Any) -> Any:
-    """A CBOR value whose typed arrays are lists."""
+    """Return a CBOR value with typed arrays as lists."""
     import cbor2
 
     if isinstance(value, cbor2.CBORTag):

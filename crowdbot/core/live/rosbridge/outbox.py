@@ -1,4 +1,4 @@
-"""Frames on their way to one client; one that does not read loses the oldest of them."""
+"""Queued frames for one client; a client that does not read loses the oldest."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections import Counter, deque
 
 from crowdbot.core.live.rosbridge.frames import Frame
 
-#: So much may wait for a client, bytes or characters.
+#: Largest queue of a client, bytes or characters.
 MOST = 8 * 2**20
 
 
 class Outbox:
-    """A queue with a limit for all frames, and for those of a topic that wants one."""
+    """A queue with a limit for all frames, and optionally per topic."""
 
     def __init__(self, most: int = MOST) -> None:
         self._most = most
@@ -23,7 +23,7 @@ class Outbox:
         self.lost = 0
 
     def put(self, frame: Frame, topic: str = "", queue: int = 0) -> None:
-        """Add a frame; of a topic with a ``queue`` (> 0) no more than that many wait."""
+        """Add a frame; a topic with a ``queue`` (> 0) has at most that many waiting."""
         self._frames.append((topic, frame))
         self._count[topic] += 1
         self._size += len(frame)
@@ -55,7 +55,7 @@ class Outbox:
         return len(self._frames)
 
     async def get(self) -> Frame:
-        """The oldest frame; waits for one."""
+        """Return the oldest frame; wait for one."""
         while not self._frames:
             self._filled.clear()
             await self._filled.wait()

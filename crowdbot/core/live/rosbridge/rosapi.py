@@ -1,4 +1,4 @@
-"""The services below ``/rosapi``, which clients ask for what there is."""
+"""The services below ``/rosapi``, with which clients query topics and services."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _TWIST = "geometry_msgs/msg/Twist"
 
 @dataclass
 class RosapiWorld:
-    """What clients may ask about.
+    """Data for clients' queries.
 
     Attributes:
         offers: the topics that are published.
-        services: by name; those of rosapi join them.
-        parameters: what clients keep here; ``/use_sim_time`` is true.
+        services: services by name; those of rosapi are added.
+        parameters: parameters set by clients; ``/use_sim_time`` is true.
         now: simulated time, ns.
-        taken: topics that are read: name -> type.
+        taken: subscribed topics: name -> type.
     """
 
     ros: Ros
@@ -36,13 +36,13 @@ class RosapiWorld:
     taken: Mapping[str, str] = field(default_factory=lambda: {"/cmd_vel": _TWIST})
 
     def topics(self) -> dict[str, str]:
-        """Name -> type, as the clients' ROS spells it."""
+        """Return name -> type, in the spelling of the clients' ROS version."""
         found = {o.topic: ros_type(o.msgtype, self.ros) for o in self.offers}
         return {**{n: ros_type(t, self.ros) for n, t in self.taken.items()}, **found}
 
 
 def rosapi(world: RosapiWorld) -> dict[str, Service]:
-    """The services, by name."""
+    """Return the services, by name."""
     found: dict[str, Service] = {}
 
     def add(name: str, request: Fields, response: Fields, call: Callable[[Values], Values]) -> None:
@@ -200,7 +200,7 @@ def _details(world: RosapiWorld, add: Add) -> None:
 
 
 def _message_details(kind: str, version: Ros) -> list[Values]:
-    """The type and all that it consists of."""
+    """Return the type and all types in it."""
     found: dict[str, Values] = {}
     waiting = [kind]
     while waiting:
@@ -229,7 +229,7 @@ def _typedef(name: str, fields: Fields) -> Values:
 
 
 def _length(kind: str) -> int:
-    """-1: no array; 0: of any length."""
+    """Return -1 if not an array, 0 for any length."""
     if "[" not in kind:
         return -1
     inside = kind.partition("[")[2].rstrip("]").lstrip("<=")

@@ -1,4 +1,4 @@
-"""The rosbridge server: a thread of its own with all connections."""
+"""The rosbridge server: a separate thread with all connections."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ if TYPE_CHECKING:
     from websockets.http11 import Request, Response
 
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
-#: The largest frame that a client may send, bytes; what may come in between two looks.
+#: Largest frame from a client, and largest amount between two reads, bytes.
 _LARGEST, _WAITING = 2**20, 16
 _MOST_CLIENTS = 200
 _FAREWELL = 1.0  # s
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a name or address is this machine's own."""
+    """Return True if a name or address is this machine's own."""
     return host in _LOOPBACK or host.startswith("127.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Address:
-    """Where to listen.
+    """The address to listen at.
 
     Attributes:
-        port: 0 takes one that is free.
-        token: what clients have to know; empty: nothing.
+        port: 0: any free port.
+        token: token for clients; empty: none.
     """
 
     host: str = "127.0.0.1"
@@ -55,7 +55,7 @@ class Address:
 
 
 class RosbridgeServer:
-    """A door that speaks rosbridge."""
+    """A live connection with the rosbridge protocol."""
 
     external_clock = False
 
@@ -69,15 +69,15 @@ class RosbridgeServer:
         resend: bool = True,
         external_clock: bool = False,
     ) -> None:
-        """Start to listen.
+        """Start listening.
 
         Args:
-            resend: whether a new subscriber gets the latest message of any topic, as one who
-                comes while the simulation waits must; otherwise only of those that are latched.
-            external_clock: whether ``/clock`` is read, not published.
+            resend: True to send a new subscriber the latest message of any topic, as needed while
+                the simulation waits; otherwise only of latched topics.
+            external_clock: True to read ``/clock`` instead of publishing it.
 
         Raises:
-            InputError: the address cannot be had.
+            InputError: the address is not available.
         """
         self.session, self.ros, self.external_clock = session, ros, external_clock
         self._address, self._resend = address, resend
@@ -106,26 +106,26 @@ class RosbridgeServer:
     # ---------------------------------------------------------------- the simulation's thread
     @property
     def port(self) -> int:
-        """The port that it has."""
+        """Return the port in use."""
         port: int = next(iter(self._server.sockets)).getsockname()[1]
         return port
 
     @property
     def services(self) -> Mapping[str, Service]:
-        """All services, by name."""
+        """Return all services, by name."""
         return self._world.services
 
     def open(self, offers: Sequence[Offer]) -> None:
-        """A run begins that offers these topics."""
+        """Start a run that offers these topics."""
         mine = [o for o in offers if not (self.external_clock and o.topic == "/clock")]
         self._soon(self._opened, mine)
 
     def wants(self, topic: str) -> bool:
-        """Whether a client listens to a topic, or the next one that comes has to get it."""
+        """Return True if a client listens to a topic, or the next client needs it."""
         return topic in self._wanted or topic in self._latched
 
     def publish(self, messages: Sequence[LiveMessage]) -> None:
-        """Tell those who listen."""
+        """Send messages to the listeners."""
         if messages:
             self._soon(self._published, list(messages))
 
@@ -146,7 +146,7 @@ class RosbridgeServer:
         return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=30.0)
 
     def _soon(self, what: Callable[..., object], *given: object) -> None:
-        with suppress(RuntimeError):  # closed already
+        with suppress(RuntimeError):  # already closed
             self._loop.call_soon_threadsafe(what, *given)
 
     # ------------------------------------------------------------------ the server's thread
@@ -166,17 +166,17 @@ class RosbridgeServer:
                 connection.publish(message)
 
     def latest(self, topic: str) -> LiveMessage | None:
-        """The message that a new subscriber gets at once."""
+        """Return the message that a new subscriber gets at once."""
         return self._latest.get(topic)
 
     def changed(self) -> None:
-        """Some client listens to other topics now."""
+        """Handle changed subscriptions."""
         self._wanted = frozenset(t for c in self._connections for t in c.feeds)
 
     def encoded(self, message: LiveMessage, wish: Wishes) -> Frame:
-        """A message as a frame; made once for all who want the same."""
+        """Return a message as a frame, shared by all clients with the same format."""
         key = id(message), wish.form
-        if key not in self._frames:  # the message is kept, so that no other has its id
+        if key not in self._frames:  # the message is kept so that its id is not reused
             self._frames[key] = message, encoded(message, wish.form, self.ros)
         return self._frames[key][1]
 
@@ -198,7 +198,7 @@ class RosbridgeServer:
         )
 
     async def _stop(self) -> None:
-        """Send what waits, the last state above all, but not for ever."""
+        """Send queued frames, above all the last state, within a time limit."""
         end = time.monotonic() + _FAREWELL
         while any(c.waiting for c in self._connections) and time.monotonic() < end:
             await asyncio.sleep(0.005)
@@ -206,7 +206,7 @@ class RosbridgeServer:
         await asyncio.wait_for(self._server.wait_closed(), 10.0)
 
     def _admitted(self, connection: ServerConnection, request: Request) -> Response | None:
-        """None for who may come in; a page of a foreign website may not."""
+        """Return None for allowed clients; pages of foreign websites are refused."""
         if len(self._connections) >= _MOST_CLIENTS:
             return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "too many clients\n")
         if self._address.token:

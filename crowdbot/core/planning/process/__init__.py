@@ -1,1 +1,1 @@
-"""Planners in processes of their own: the processes, the messages, and what is known of them."""
+"""Planners in separate processes: the processes, their messages, and descriptions."""

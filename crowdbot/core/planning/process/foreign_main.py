@@ -1,8 +1,8 @@
-"""Serves a planner in a Python that need not have crowdbot: ``foreign_main.py FILE CLASS``.
+"""Run a planner in a Python without crowdbot: ``foreign_main.py FILE CLASS``.
 
-Run by that Python as a script. It knows only the standard library and the two files beside it, and
-runs on Python 3.8. Where that Python has numpy, planners get arrays, else tuples of numbers. They
-may ``import crowdbot_planner``, which has the names below.
+Run by that Python as a script. It uses only the standard library and the two files beside it, and
+supports Python 3.8. If that Python has numpy, planners get arrays, else tuples of numbers. They may
+``import crowdbot_planner``, which has the names below.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ SensorInfo = namedtuple(
 Reading = namedtuple("Reading", "stamp values colour")
 Truth = namedtuple("Truth", "pose velocity people people_velocity people_radius people_id")
 Observation = namedtuple("Observation", "t pose twist vy goal goal_zone readings log truth")
-#: A planner may raise this when it knows no command; the robot is told to stop.
+#: A planner may raise this if it has no valid command; the robot is stopped.
 NoValidCommand = type("NoValidCommand", (Exception,), {})
 
 
 def _beside(name: str) -> Any:
-    """A module that lies beside this file."""
+    """Import a module that lies beside this file."""
     spec = importlib.util.spec_from_file_location(
         "crowdbot_" + name,
         os.path.join(_HERE, name + ".py"),  # noqa: PTH118
@@ -56,12 +56,12 @@ def _beside(name: str) -> Any:
 
 
 class ForeignSide:
-    """One planner: how it is found, made and asked.
+    """One planner: finds, builds and calls it.
 
     Args:
-        file, name: where its class is.
+        file, name: location of its class.
         serving: the module of that name.
-        array: makes arrays.
+        array: function that builds arrays.
     """
 
     def __init__(self, file: str, name: str, serving: Any, array: Any) -> None:
@@ -74,12 +74,12 @@ class ForeignSide:
         self._doing = ""
 
     def hello(self, sent: dict[str, Any]) -> dict[str, Any]:
-        """Find the class and say what it is."""
+        """Find the class and return its description."""
         self._doing = "cannot be imported"
         self._parameters = sent["parameters"]
         self._kind = self._class()
         self._doing = "parameters"
-        with contextlib.suppress(ValueError):  # a class without a signature tells when called
+        with contextlib.suppress(ValueError):  # a class without a signature fails when called
             inspect.signature(self._kind).bind(**self._parameters)
         self._doing = "what it says of itself"
         return {
@@ -89,7 +89,7 @@ class ForeignSide:
         }  # fmt: skip
 
     def reset(self, sent: dict[str, Any]) -> dict[str, Any]:
-        """Make the planner and reset it."""
+        """Build the planner and reset it."""
         self._doing = "cannot be built"
         self._decoder.open_memory(sent["memory"])
         self._planner = self._kind(**self._parameters)
@@ -101,14 +101,14 @@ class ForeignSide:
         return {"type": "ready"}
 
     def observe(self, sent: dict[str, Any]) -> dict[str, Any]:
-        """One step."""
+        """Run one step."""
         self._doing = "step"
         self._signals = []
         answer = self._planner.step(self._decoder.observation(sent, self._log))
         return {"type": "command", **_command(answer), "signals": self._signals}
 
     def error(self, error: BaseException) -> dict[str, Any]:
-        """What an exception becomes; one called ``NoValidCommand`` stops the robot."""
+        """Convert an exception to a message; ``NoValidCommand`` stops the robot."""
         signals, self._signals = self._signals, []
         if self._doing == "step" and type(error).__name__ == "NoValidCommand":
             return {"type": "stop", "signals": signals}
@@ -141,7 +141,7 @@ class ForeignSide:
         self._signals.append([name, float(value)])
 
     def _where(self, error: BaseException) -> str:
-        """The innermost line of the planner's own files."""
+        """Return the innermost line in the planner's own files."""
         folder = os.path.dirname(self._file)  # noqa: PTH120
         frames = traceback.extract_tb(error.__traceback__)
         own = [f for f in frames if f.filename.startswith(folder)]
@@ -149,10 +149,10 @@ class ForeignSide:
 
 
 def _command(answer: Any) -> dict[str, float]:
-    """An answer as three numbers.
+    """Convert a result to three numbers.
 
     Raises:
-        ValueError: it is something else.
+        ValueError: it is not a command.
     """
     fine = isinstance(answer, tuple) and len(answer) in (2, 3)
     if fine and not any(isinstance(x, (bool, str, bytes, complex)) for x in answer):
@@ -183,7 +183,7 @@ def _arrays(serving: Any) -> Any:
 
 
 def main(file: str, name: str) -> None:
-    """Serve one planner until the simulator closes the line."""
+    """Serve one planner until the simulator closes the connection."""
     sys.path[:] = [p for p in sys.path if os.path.abspath(p or ".") != _HERE]  # noqa: PTH100
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     faulthandler.enable()

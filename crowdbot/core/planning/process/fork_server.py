@@ -1,11 +1,11 @@
-"""The process from which planner processes are forked, and which ends all that they leave.
+"""The process that forks planner processes and ends their leftovers.
 
-It has imported what planners need and nothing else, so that a planner starts in milliseconds and
-finds nothing of another run. It serves one planner at a time. On Linux it is the one to which
-orphans below it are handed: a planner's children cannot run away from it, not by a session of
-their own either. It ends, with everything below it, when the simulator closes the line or dies.
+It has imported only what planners need, so a planner starts in milliseconds and sees nothing of
+another run. It serves one planner at a time. On Linux it is the subreaper: orphaned children of a
+planner stay below it, even with a session of their own. It ends, with everything below it, when the
+simulator closes the connection or dies.
 
-Knows only the standard library until it is told what to import.
+It uses only the standard library until it gets a list of imports.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ from typing import Any, NoReturn
 
 from crowdbot.core.planning.process.inspection import give_up_inspecting, set_inspectable
 
-#: Where a planner finds its descriptors: messages in, messages out, memory, as in `serving`.
+#: A planner's file descriptors: messages in, messages out, memory, as in `serving`.
 _TARGETS = (3, 4, 5)
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 _LINUX = sys.platform == "linux"
 _OUTPUT = (1, 2)
 _HEAD = struct.Struct("<I")
-#: Seconds that a process gets after SIGABRT, to say where it is.
+#: Seconds after SIGABRT for a process to print its position.
 _LAST_WORDS = 0.5
 
 
 def main(descriptor: int) -> None:
-    """Serve until the line is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the simulator
+    """Serve until the connection is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # only the simulator handles Ctrl-C
     if _LINUX:
         _prctl(_PR_SET_CHILD_SUBREAPER, 1)
-        _prctl(_PR_SET_PDEATHSIG, signal.SIGCONT)  # whoever stopped it: it sees the line's end
+        _prctl(_PR_SET_PDEATHSIG, signal.SIGCONT)  # resume if stopped, to see the closed connection
         set_inspectable(False)
     line = socket.socket(fileno=descriptor)
     server = ForkServer(line)
@@ -57,11 +57,11 @@ def main(descriptor: int) -> None:
 
 
 class ForkServer:
-    """Starts one planner at a time, and ends it.
+    """Starts and ends one planner at a time.
 
     Args:
-        line: requests come in, pickled after their length, with descriptors; answers go out,
-            one JSON document a line.
+        line: connection: requests are length and pickle, with descriptors; replies are one JSON
+            document per line.
     """
 
     def __init__(self, line: socket.socket) -> None:
@@ -69,14 +69,14 @@ class ForkServer:
         self._status: int | None = None
 
     def serve_one(self) -> bool:
-        """Do what the next request says; False when there will be none."""
+        """Handle the next request; return False if there are no more."""
         head, descriptors, _, _ = socket.recv_fds(self._line, _HEAD.size, len(_TARGETS) + 1)
         raw = b""
         if len(head) == _HEAD.size:
             raw = self._line.recv(_HEAD.unpack(head)[0], socket.MSG_WAITALL)
         if not raw:
             return False
-        request = pickle.loads(raw)  # noqa: S301 - from who started this process, nobody else
+        request = pickle.loads(raw)  # noqa: S301 - only from this process's parent
         answer = getattr(self, f"_{request['do']}")(request, descriptors)
         for one in descriptors:
             os.close(one)
@@ -87,7 +87,7 @@ class ForkServer:
         return True
 
     def end_all(self) -> int:
-        """Kill the planner and everything below this process; how many there were beside it."""
+        """Kill the planner and everything below this process; return how many others there were."""
         if self._pid:
             with contextlib.suppress(OSError):
                 os.killpg(self._pid, signal.SIGKILL)
@@ -103,7 +103,7 @@ class ForkServer:
                 time.sleep(0.002)
 
     def _import(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> dict[str, Any]:
-        """Import installed modules, for all planners to come."""
+        """Import installed modules for all later planners."""
         del descriptors
         for name in request["modules"]:
             with contextlib.suppress(Exception):
@@ -120,7 +120,7 @@ class ForkServer:
         return {"pid": self._pid}
 
     def _end(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> dict[str, Any]:
-        """End the planner, which may go by itself at first."""
+        """End the planner, after a grace period for it to exit."""
         del descriptors
         pid, gone = self._pid, self._wait(request["grace"])
         if not gone and request.get("ask"):
@@ -133,7 +133,7 @@ class ForkServer:
         return {"status": status, "left": left}
 
     def _wait(self, seconds: float | None) -> bool:
-        """Whether the planner's process has ended, waiting so long, or for ever."""
+        """Return True if the planner's process ended within this time, or wait forever."""
         until = None if seconds is None else time.monotonic() + seconds
         pause = 0.0005
         while self._pid and self._status is None:
@@ -151,7 +151,7 @@ class ForkServer:
         select.select([], [], [], seconds)
 
     def _kill_children(self) -> int:
-        """Kill every process whose parent is this one; those below them come here in turn."""
+        """Kill all children of this process; their orphans become its children in turn."""
         mine, killed = os.getpid(), 0
         for folder in Path("/proc").glob("[0-9]*"):
             try:
@@ -166,7 +166,7 @@ class ForkServer:
 
 
 def _be_planner(request: Mapping[str, Any], descriptors: Sequence[int], parent: int) -> NoReturn:
-    """In the new process: take leave of the server, take on limits, run the planner."""
+    """Run the planner in the new process: detach from the server and apply limits."""
     code = 70
     try:
         os.setsid()
@@ -204,7 +204,7 @@ def _execute(command: Sequence[str]) -> NoReturn:
 
 
 def _leave(code: int) -> NoReturn:
-    """Without waiting for threads; what was printed is written out, files are closed."""
+    """Exit without waiting for threads; flush output and close files."""
     import atexit
 
     with contextlib.suppress(BaseException):
@@ -213,12 +213,12 @@ def _leave(code: int) -> NoReturn:
         with contextlib.suppress(BaseException):
             stream.flush()
     with contextlib.suppress(BaseException):
-        ctypes.CDLL(None).fflush(None)  # what compiled code printed
+        ctypes.CDLL(None).fflush(None)  # output of compiled code
     os._exit(code)
 
 
 def _take_descriptors(given: Sequence[int]) -> None:
-    """Messages at 3 and 4, memory at 5, output at 1 and 2; nothing else stays open."""
+    """Put messages at 3 and 4, memory at 5, output at 1 and 2; close all others."""
     import fcntl
 
     high = [fcntl.fcntl(one, fcntl.F_DUPFD, 64) for one in given]

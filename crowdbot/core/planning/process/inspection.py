@@ -1,8 +1,8 @@
-"""Who may look into the memory of whom: a planner into its own only, not into the simulator's.
+"""Deny planners access to the simulator's memory.
 
 Linux lets a process of the same user open another's ``/proc/PID/mem``, or trace it, unless that
-one says no; and root always, who has to give up the capability. See ptrace(2), section "Ptrace
-access mode checking", and capabilities(7). Knows only the standard library.
+process forbids it; root always may, and has to drop the capability. See ptrace(2), section "Ptrace
+access mode checking", and capabilities(7). Uses only the standard library.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 _PR_SET_DUMPABLE, _PR_CAPBSET_DROP, _PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL = 4, 24, 47, 4
 _VERSION_3 = 0x20080522
 #: CAP_SYS_MODULE, CAP_SYS_RAWIO, CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_PERFMON, CAP_BPF,
-#: CAP_CHECKPOINT_RESTORE: those that lead into the memory of others.
+#: CAP_CHECKPOINT_RESTORE: capabilities that give access to other processes' memory.
 _INTO_OTHERS = (16, 17, 19, 21, 38, 39, 40)
 
 
@@ -27,16 +27,16 @@ class _Sets(ctypes.Structure):
 
 
 def set_inspectable(may: bool) -> None:
-    """Say whether other processes of this user may look into this one; on Linux."""
+    """Allow or forbid other processes of this user to access this one's memory; on Linux."""
     if sys.platform == "linux":
         libc: Any = ctypes.CDLL(None)
         libc.prctl(_PR_SET_DUMPABLE, int(may), 0, 0, 0)
 
 
 def give_up_inspecting() -> None:
-    """Let neither this process nor what it starts look into others, be it root's; on Linux.
+    """Prevent this process and its children from accessing others, even as root; on Linux.
 
-    What cannot be given up is nothing that a user without privileges has.
+    An unprivileged user has no capability that cannot be dropped.
     """
     libc: Any = ctypes.CDLL(None)
     for capability in _INTO_OTHERS:

@@ -1,4 +1,4 @@
-"""What the simulator tells a planner process, as maps of plain values.
+"""Messages from the simulator to a planner process, as maps of plain values.
 
 docs/reference/planner_messages.md describes them.
 """
@@ -24,7 +24,7 @@ _INFO = ("category", "frame", "rate", "ros_type", "range_min", "range_max", "pri
 def reset_message(
     task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
 ) -> dict[str, Any]:
-    """``reset``, but for the size of the memory."""
+    """Return ``reset``, without the size of the memory."""
     return {
         "type": "reset",
         "task": {
@@ -42,10 +42,10 @@ def reset_message(
 
 
 class ObservationWriter:
-    """Makes ``observe`` messages; what does not change from step to step is made once.
+    """Builds ``observe`` messages; constant parts are built once.
 
     Args:
-        memory: for large arrays; None: they go into the message.
+        memory: shared memory for large arrays; None: send them in the message.
     """
 
     def __init__(self, memory: SharedMemory | None) -> None:
@@ -54,7 +54,7 @@ class ObservationWriter:
         self._zone_map: dict[str, Any] = {}
 
     def message(self, step: int, obs: Observation) -> dict[str, Any]:
-        """What the planner sees in one step."""
+        """Return the planner's input in one step."""
         if obs.goal_zone is not self._zone:
             self._zone, self._zone_map = obs.goal_zone, _array(obs.goal_zone)
         message = {
@@ -74,7 +74,7 @@ class ObservationWriter:
 
 
 def reserve(memory: SharedMemory, sensors: Mapping[str, SensorInfo]) -> None:
-    """A place for each array that sensors read."""
+    """Reserve a place for each array of the sensors' readings."""
     for name, info in sensors.items():
         width = 4 if info.camera else 8
         memory.place(name, "values", int(np.prod(info.shape)) * width)

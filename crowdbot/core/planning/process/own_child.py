@@ -1,7 +1,7 @@
-"""What a planner's process does when it runs in crowdbot's own Python.
+"""A planner's process in crowdbot's own Python.
 
-It was forked from `fork_server`, and holds nothing of the simulator: what it knows of the run came
-through the line.
+It is forked from `fork_server` and contains nothing of the simulator: everything about the run
+comes through the connection.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ _TYPES = SimpleNamespace(
 )  # fmt: skip
 
 
-#: The simulator keeps no more of an error, characters.
+#: Longest error text that the simulator keeps, characters.
 _LONGEST_TEXT = 10_000
-#: What describes a planner, the boundary to it, and what makes it.
+#: A planner's description, its call boundary, and its builder.
 _Found = tuple[type, PluginCall, Callable[[], Planner]]
 
 
 class OwnSide:
-    """One planner of our Python: how it is found, made and asked.
+    """One planner in our Python: finds, builds and calls it.
 
     Args:
         what: ``name`` and ``origin`` for messages; ``file`` and ``class``, or ``kind`` and where
@@ -63,7 +63,7 @@ class OwnSide:
         self._signals: list[tuple[str, float]] = []
 
     def hello(self, sent: Mapping[str, Any]) -> dict[str, Any]:
-        """Find the planner and say what it is."""
+        """Find the planner and return its description."""
         del sent
         find = self._file if "file" in self._what else self._kind
         with collected_old_names() as old_names:
@@ -79,7 +79,7 @@ class OwnSide:
         }
 
     def reset(self, sent: Mapping[str, Any]) -> dict[str, Any]:
-        """Make the planner and reset it."""
+        """Build the planner and reset it."""
         assert self._build is not None
         self._decoder.open_memory(sent["memory"])
         who = planner_title(self._what["name"], self._what["origin"])
@@ -95,7 +95,7 @@ class OwnSide:
         return {"type": "ready", "old_names": old_names}
 
     def observe(self, sent: dict[str, Any]) -> dict[str, Any]:
-        """One step."""
+        """Run one step."""
         assert self._guarded is not None
         self._signals = []
         obs = self._decoder.observation(sent, self._log)
@@ -103,7 +103,7 @@ class OwnSide:
         return {"type": "command", "v": v, "w": w, "vy": vy, "signals": self._signals}
 
     def error(self, error: BaseException) -> dict[str, Any]:
-        """What an exception becomes."""
+        """Convert an exception to a message."""
         signals, self._signals = self._signals, []
         if isinstance(error, NoValidCommand):
             return {"type": "stop", "signals": signals}
@@ -125,7 +125,7 @@ class OwnSide:
         return kind, call_of_class(path, name), build
 
     def _kind(self) -> _Found:
-        from crowdbot.core.planning.registered import build_of_kind, load_kind  # they are slow
+        from crowdbot.core.planning.registered import build_of_kind, load_kind  # slow imports
         from crowdbot.core.registry.registry import RegistrySource, discover
 
         where: RegistrySource = self._what["plugins"]
@@ -135,7 +135,7 @@ class OwnSide:
 
 
 def main(what: Mapping[str, Any]) -> None:
-    """Serve one planner until the simulator closes the line."""
+    """Serve one planner until the simulator closes the connection."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stdout = sys.__stdout__ = _stream(1)  # type: ignore[misc]
     sys.stderr = sys.__stderr__ = _stream(2)  # type: ignore[misc]
@@ -144,5 +144,5 @@ def main(what: Mapping[str, Any]) -> None:
 
 
 def _stream(descriptor: int) -> io.TextIOWrapper:
-    """What is printed appears line by line, in a pipe too."""
+    """Return a line-buffered stream, in a pipe too."""
     return open(descriptor, "w", buffering=1, encoding="utf-8", errors="replace", closefd=False)

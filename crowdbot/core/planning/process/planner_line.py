@@ -1,4 +1,4 @@
-"""The simulator's end of the line to a planner process: messages, deadlines, what it prints."""
+"""The simulator's end of the connection to a planner process: messages, deadlines, output."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ from typing import Any
 import msgpack
 
 _HEAD = struct.Struct("<I")
-#: An answer is a command and some signals; more than this is not one.
+#: Largest reply, which is a command and some signals.
 LONGEST_ANSWER = 1 << 20
-#: So much of what a planner prints in a run is shown, bytes.
+#: Largest amount of a planner's output shown per run, bytes.
 LONGEST_OUTPUT = 1 << 20
 _TAIL = 16_384
 _CRASH = "Fatal Python error: "
-#: A frame of what Python says then; not of code that has no file.
+#: A frame of Python's fault handler output, except for code without a file.
 _FRAME = re.compile(r"File \"([^<\"][^\"]*)\", line (\d+) in")
 
 
 class LineClosed(Exception):  # noqa: N818 - what happened, told by who knows the planner
-    """The planner's end of the line is closed."""
+    """The planner's end of the connection is closed."""
 
 
 class LineTimeout(Exception):  # noqa: N818 - as above
-    """There was no answer in time."""
+    """There was no reply in time."""
 
 
 class WrongAnswer(Exception):  # noqa: N818 - as above
-    """What came is not an answer."""
+    """The received data is not a reply."""
 
 
 class PlannerLine:
-    """Three pipes: messages to a planner, messages from it, and what it prints.
+    """Three pipes: messages to a planner, messages from it, and its output.
 
-    What it prints goes to ``sys.stderr`` while an answer is waited for, so that a planner which
-    prints more than a pipe holds does not wait for ever; beyond a bound it is dropped.
+    Its output goes to ``sys.stderr`` while waiting for a reply, so that a planner that prints more
+    than a pipe holds does not block; beyond a limit it is dropped.
 
     Args:
-        write, read, output: descriptors, which it closes.
-        name: how messages call the planner.
+        write, read, output: descriptors, which this class closes.
+        name: name of the planner for messages.
     """
 
     def __init__(self, write: int, read: int, output: int, name: str) -> None:
@@ -60,13 +60,13 @@ class PlannerLine:
         self._came = bytearray()
 
     def ask(self, message: Mapping[str, Any], limit: float) -> dict[str, Any]:
-        """Send a message and wait for the answer.
+        """Send a message and wait for the reply.
 
         Args:
-            limit: seconds that both may take.
+            limit: seconds for both.
 
         Raises:
-            LineClosed, LineTimeout, WrongAnswer: there is none.
+            LineClosed, LineTimeout, WrongAnswer: there is no valid reply.
         """
         if self._came or self._readable():
             raise WrongAnswer("answered before it was asked")
@@ -76,13 +76,13 @@ class PlannerLine:
         return self._answer(until)
 
     def tell(self, message: Mapping[str, Any]) -> None:
-        """Send a message that has no answer, if it can be sent at once."""
+        """Send a message without a reply, if it can be sent at once."""
         raw = msgpack.packb(message)
         with contextlib.suppress(OSError):
             os.write(self._write, _HEAD.pack(len(raw)) + raw)
 
     def drain(self) -> None:
-        """Show what was printed up to now."""
+        """Show the output so far."""
         before = -1
         while self._output >= 0 and before != self._shown:
             before = self._shown
@@ -98,7 +98,7 @@ class PlannerLine:
 
     @property
     def last_words(self) -> str:
-        """The last line that was printed, or where Python says that it crashed."""
+        """Return the last printed line, or the position of a crash in Python."""
         text = self._tail.decode(errors="replace")
         _, crash, trace = text.rpartition(_CRASH)
         if crash and (frame := _FRAME.search(trace)):
@@ -113,7 +113,7 @@ class PlannerLine:
         return any(one == self._read and event & select.POLLIN for one, event in events)
 
     def _send(self, left: memoryview, until: float) -> None:
-        """Write all of it; a planner that does not read is one that does not answer."""
+        """Write all data; a planner that does not read counts as not replying."""
         while left:
             try:
                 left = left[os.write(self._write, left) :]
@@ -154,7 +154,7 @@ class PlannerLine:
         self._came += piece
 
     def _whole(self) -> dict[str, Any] | None:
-        """The answer, once all of it has come."""
+        """Return the reply once it is complete."""
         if len(self._came) < _HEAD.size:
             return None
         (size,) = _HEAD.unpack_from(self._came)
@@ -168,14 +168,14 @@ class PlannerLine:
         self._came.clear()
         try:
             answer = msgpack.unpackb(raw)
-        except Exception as error:  # whatever a library makes of what a stranger sent
+        except Exception as error:  # untrusted data may raise anything
             raise WrongAnswer(f"sent something that is not msgpack: {error}") from None
         if not isinstance(answer, dict):
             raise WrongAnswer(f"sent a {type(answer).__name__}, not a map")
         return answer
 
     def _show(self) -> bool:
-        """Pass on some of what was printed; whether there may be more."""
+        """Pass on some of the output; return True if there may be more."""
         if self._output < 0:
             return False
         try:

@@ -1,4 +1,4 @@
-"""A planner in a process of its own, called like any other."""
+"""A planner in a separate process, with the usual interface."""
 
 from __future__ import annotations
 
@@ -36,27 +36,27 @@ from crowdbot.core.types.task import Task
 from crowdbot.errors import InputError, PlannerError, printable
 from crowdbot.old_names import say_old_names
 
-#: Seconds that a process has to go by itself, and to be gone after it closed its line.
+#: Seconds for a process to exit by itself, and to be gone after closing its connection.
 _LEAVES, _DIES = 1.0, 0.3
 _GIB = 1 << 30
-#: Of what a planner says when it fails, so many characters are kept.
+#: Largest number of characters kept of a planner's error.
 _LONGEST_REASON = 2000
-#: In place of an exit code: the fork server was ended as well.
+#: Stands for an exit code if the fork server was ended too.
 _KILLED_ALL = -(1 << 16)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessPlan:
-    """What a planner process runs.
+    """The program of a planner process.
 
     Attributes:
-        who: begins every message about it.
-        what: for a planner of our Python, as `OwnSide` takes it.
-        command: for any other program, its words.
-        folder: where it is started; empty: where the simulator is.
-        parameters: what it is told of itself; of another program, in ``hello``.
+        who: start of every message about it.
+        what: for a planner in our Python, argument of `OwnSide`.
+        command: for any other program, its command line.
+        folder: its working directory; empty: that of the simulator.
+        parameters: its parameters; another program gets them in ``hello``.
         preload: installed modules that are imported before the process is forked.
-        memory: largest address space, bytes; None sets no limit.
+        memory: largest address space, bytes; None: unlimited.
     """
 
     who: str
@@ -69,27 +69,27 @@ class ProcessPlan:
 
 
 class ProcessLostError(PlannerError):
-    """A planner's process died, hung or said something that is not an answer."""
+    """A planner's process died, hung or sent an invalid reply."""
 
 
 class ProcessDiedError(ProcessLostError):
-    """A planner's process died: by itself, by a signal, for want of memory."""
+    """A planner's process died: by itself, by a signal, or out of memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class NotLoaded:
-    """Stands for what makes a planner that could not be loaded: fails in its place.
+    """Stands for the builder of a planner that could not be loaded, and fails in its place.
 
     Attributes:
-        text: why.
-        died: the same where its process died, so that it may well load the next time; or empty.
+        text: the error.
+        died: the error if its process died, so that a new attempt may succeed; else empty.
     """
 
     text: str
     died: str = ""
 
     def __call__(self) -> NoReturn:
-        """Fail as it did.
+        """Raise the original error.
 
         Raises:
             PlannerError: always.
@@ -100,16 +100,16 @@ class NotLoaded:
 def describe(
     plan: ProcessPlan, *, lenient: bool = False
 ) -> tuple[PlannerDescription, Callable[[], Planner]]:
-    """What a planner says of itself, asked in a process that ends at once, and what makes it.
+    """Return a planner's description, from a short-lived process, and its builder.
 
-    One whose process dies or hangs while it is loaded is a planner that fails in every run.
+    A planner whose process dies or hangs on loading is accepted and fails in every run.
 
     Args:
-        plan: what to run.
-        lenient: so is one that raises.
+        plan: the program.
+        lenient: accept also a planner that raises.
 
     Raises:
-        InputError: it is not there, or what it says is wrong.
+        InputError: it is missing, or its description is invalid.
         PlannerError: it cannot be loaded.
     """
     try:
@@ -124,12 +124,12 @@ def describe(
 
 
 class ProcessPlanner:
-    """A planner that is reached through messages; nothing but these gets to it.
+    """A planner that is called through messages only.
 
-    Its process is ended by `close`, by a failure of whatever kind, and by our own end.
+    Its process ends with `close`, on any failure, and with our own process.
 
     Args:
-        plan: what to run.
+        plan: the program.
 
     Raises:
         InputError, PlannerError: it cannot be loaded.
@@ -157,7 +157,7 @@ class ProcessPlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """As `Planner.reset`; the planner is made now.
+        """As `Planner.reset`; builds the planner.
 
         Raises:
             PlannerError: it failed.
@@ -172,7 +172,7 @@ class ProcessPlanner:
         """As `Planner.step`.
 
         Raises:
-            NoValidCommand: it knows none.
+            NoValidCommand: it has no valid command.
             PlannerError: it failed.
         """
         self._step += 1
@@ -184,19 +184,19 @@ class ProcessPlanner:
         return self._command(said)
 
     def close(self) -> None:
-        """End its process, which has a second to go by itself, and all that it left."""
+        """End its process, which gets a second to exit, and everything that it left."""
         if self._server is not None:
             self._line.tell({"type": "close"})
             self._end(grace=_LEAVES)
 
     def __del__(self) -> None:
-        """As `close`, of one that nobody closed."""
+        """As `close`, for a planner that was not closed."""
         if getattr(self, "_server", None) is not None:
             self.close()
 
     # ----------------------------------------------------------------- its process
     def _start(self) -> PlannerLine:
-        """Start it, once more where the server that does it was ended meanwhile."""
+        """Start the process, with one retry if the server was ended meanwhile."""
         try:
             return self._started()
         except ServerGone:
@@ -242,7 +242,10 @@ class ProcessPlanner:
     def _ask(
         self, doing: str, message: dict[str, Any], limit: float, *wanted: str
     ) -> dict[str, Any]:
-        """Ask, and get an answer of a wanted type; whatever else comes ends the process."""
+        """Send a request and return a reply of the expected type.
+
+        Anything else ends the process.
+        """
         try:
             said = self._line.ask(message, limit)
         except LineTimeout:
@@ -264,7 +267,7 @@ class ProcessPlanner:
         return said
 
     def _failed(self, said: Mapping[str, Any]) -> NoReturn:
-        """What the planner raised, as it tells it itself."""
+        """Raise the planner's own error, as reported by it."""
         self.close()
         text = printable(str(said.get("text", ""))[:_LONGEST_REASON])
         if "MemoryError" in text and self._plan.memory is not None:
@@ -275,7 +278,7 @@ class ProcessPlanner:
         raise error(text if said.get("whole") is True else f"{self._plan.who}: {text}")
 
     def _gone(self, doing: str) -> str:
-        """How a process ended that did not answer."""
+        """Describe how a process without a reply ended."""
         status, where = self._end(grace=_DIES)
         if status is None:
             how = "its process closed the descriptors of its messages"
@@ -288,7 +291,7 @@ class ProcessPlanner:
         return f"did not {doing}: {how}{where}"
 
     def _end(self, *, grace: float = 0.0, ask: bool = False) -> tuple[int | None, str]:
-        """End the process: its exit code, None if it was killed now, and its last words."""
+        """End the process: return its exit code (None if killed now) and its last output."""
         server, self._server = self._server, None
         assert server is not None
         try:
@@ -306,7 +309,7 @@ class ProcessPlanner:
         return status, f" ({words})" if words else ""
 
     def _fail(self, what: str) -> NoReturn:
-        """End the process and say why.
+        """End the process and raise an error.
 
         Raises:
             PlannerError: always.
@@ -336,14 +339,14 @@ class ProcessPlanner:
 
 
 def _here() -> str:
-    """The working directory, to which names of files are relative; empty if it is gone."""
+    """Return the working directory, to which file names are relative; empty if it is gone."""
     with contextlib.suppress(OSError):
         return str(Path.cwd())
     return ""
 
 
 def _check_parameters(plan: ProcessPlan) -> None:
-    """Whether they can be told.
+    """Check that the parameters can be sent.
 
     Raises:
         InputError: one has a type of YAML that msgpack does not have, such as a date.

@@ -1,4 +1,4 @@
-"""Fork servers as the simulator sees them: started when needed, used again, ended with it."""
+"""Fork servers, as used by the simulator: started on demand, reused, ended with it."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
     "from crowdbot.core.planning.process.fork_server import main; main(int(sys.argv[2]))"
 )
-#: Planners think with one thread, as they do in campaigns; a value of the user's own wins.
+#: Planners use one thread, as in campaigns, unless the user sets a value.
 _ONE_THREAD = (
     "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
 )  # fmt: skip
-#: Seconds that a server has to end its planner and itself, and to import what planners need.
+#: Seconds for a server to end its planner and itself, and to import modules.
 _GOES, _IMPORTS = 30.0, 600.0
-#: Variable by which processes are known that came from one server.
+#: Environment variable that identifies processes from the same server.
 _MARK = "CROWDBOT_PLANNER_SERVER"
-#: What every planner of our own Python needs.
+#: Modules that every planner in our Python needs.
 _OWN = ("crowdbot.core.planning.process.own_child",)
 
 
 class ServerGone(PlannerError):  # noqa: N818 - what happened
-    """The fork server does not answer any more: somebody ended it."""
+    """The fork server does not reply any more: it was ended."""
 
 
 class ServerHandle:
-    """One fork server. Has at most one planner."""
+    """One fork server, with at most one planner."""
 
     def __init__(self) -> None:
         set_inspectable(False)  # planners have this user's rights
@@ -78,14 +78,14 @@ class ServerHandle:
         self._unanswered = 0
 
     def has_imported(self, modules: Sequence[str]) -> None:
-        """See to it that modules are imported before the next planner is forked."""
+        """Make sure that modules are imported before the next planner is forked."""
         new = [m for m in modules if m not in self._imported]
         if new:
             self._imported |= set(new)
             self._send({"do": "import", "modules": new})
 
     def start(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> int:
-        """Fork a planner; its process number.
+        """Fork a planner; return its process number.
 
         Raises:
             ServerGone: the server was ended.
@@ -94,14 +94,14 @@ class ServerHandle:
         return int(self._answer(_IMPORTS)["pid"])
 
     def end(self, *, grace: float, ask: bool = False) -> dict[str, Any]:
-        """End the planner and all that it left; how its process ended.
+        """End the planner and everything it left; return how its process ended.
 
         Args:
-            grace: seconds that it may take to go by itself.
-            ask: afterwards, let it say where it is before it is killed.
+            grace: seconds for it to exit by itself.
+            ask: then let it print its position before it is killed.
 
         Raises:
-            ServerGone: the server was ended, or has to be: it does not answer.
+            ServerGone: the server was ended, or does not reply.
         """
         self._send({"do": "end", "grace": grace, "ask": ask})
         with contextlib.suppress(OSError):
@@ -109,7 +109,7 @@ class ServerHandle:
         return self._answer(grace + _GOES)
 
     def sweep(self) -> None:
-        """Kill what a server left that was killed itself, as far as it can be told apart."""
+        """Kill leftovers of a killed server, as far as they can be identified."""
         self.close()
         for folder in Path("/proc").glob("[0-9]*"):
             with contextlib.suppress(OSError):
@@ -128,7 +128,7 @@ class ServerHandle:
 
     @property
     def is_alive(self) -> bool:
-        """Whether it is there, and was started by this process."""
+        """Return True if it runs and was started by this process."""
         return os.getpid() == self._owner and self._process.poll() is None
 
     def _send(self, request: Mapping[str, Any], descriptors: Sequence[int] = ()) -> None:
@@ -141,7 +141,7 @@ class ServerHandle:
         self._unanswered += 1
 
     def _answer(self, limit: float) -> dict[str, Any]:
-        """The answer to the latest request, after those that nobody waited for."""
+        """Return the reply to the latest request, skipping earlier unread ones."""
         answer: dict[str, Any] = {}
         until = time.monotonic() + limit
         while self._unanswered:
@@ -165,17 +165,17 @@ class ServerHandle:
 
 
 class ServerPool:
-    """Idle fork servers; each planner takes one, and gives it back."""
+    """Idle fork servers; each planner takes one and returns it."""
 
     def __init__(self) -> None:
         self._idle: list[ServerHandle] = []
         self._lock = threading.Lock()
 
     def take(self, *, own: bool) -> ServerHandle:
-        """A server without a planner.
+        """Return a server without a planner.
 
         Args:
-            own: whether the planner is one of our Python.
+            own: True for a planner in our Python.
         """
         with self._lock:
             self._idle = [s for s in self._idle if s.is_alive]
@@ -185,12 +185,12 @@ class ServerPool:
         return server
 
     def give_back(self, server: ServerHandle) -> None:
-        """Say that a server has no planner any more."""
+        """Return a server whose planner has ended."""
         with self._lock:
             self._idle.append(server)
 
     def close(self) -> None:
-        """End all that are idle."""
+        """End all idle servers."""
         with self._lock:
             idle, self._idle = self._idle, []
         for server in idle:

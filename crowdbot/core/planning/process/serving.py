@@ -1,8 +1,8 @@
-"""The planner's end of the line: reads messages, makes values of them, answers.
+"""The planner's end of the connection: decode messages and reply.
 
-docs/reference/planner_messages.md describes the messages. Two programs use this: the child of our
-fork server, with crowdbot's own classes, and `foreign_main`, with small ones. It knows only the
-standard library, and runs on Python 3.8, since foreign Pythons run it.
+docs/reference/planner_messages.md describes the messages. Used by children of our fork server, with
+crowdbot's own classes, and by `foreign_main`, with small ones. It uses only the standard library
+and supports Python 3.8, for foreign Pythons.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from types import MappingProxyType
 from typing import Any, Callable  # noqa: UP035 - Python 3.8
 
 PROTOCOL = 1
-#: Descriptors of a planner process: messages come in, go out, and memory that both see.
+#: Descriptors of a planner process: messages in, messages out, and shared memory.
 READ, WRITE, MEMORY = 3, 4, 5
 _HEAD = struct.Struct("<I")
 _LONGEST = 1 << 30
 
 
 class Line:
-    """Messages as msgpack maps, each after its length: four bytes, the lowest first.
+    """Messages as msgpack maps, each preceded by its length: four bytes, little-endian.
 
     Args:
         pack, unpack: msgpack, from a library or from `small_msgpack`.
@@ -35,7 +35,7 @@ class Line:
         self._read, self._write = read, write
 
     def receive(self) -> dict[str, Any] | None:
-        """The next message; None when the other end is closed."""
+        """Return the next message; None if the other end is closed."""
         head = self._bytes(_HEAD.size)
         if head is None:
             return None
@@ -49,14 +49,14 @@ class Line:
         return message
 
     def send(self, message: dict[str, Any]) -> None:
-        """Answer."""
+        """Send a reply."""
         raw = self._pack(message)
         left = memoryview(_HEAD.pack(len(raw)) + raw)
         while left:
             left = left[os.write(self._write, left) :]
 
     def _bytes(self, count: int) -> bytes | None:
-        """So many bytes; None when the other end is closed before."""
+        """Return this many bytes; None if the other end closes before."""
         found = os.read(self._read, count)
         if len(found) == count:
             return found
@@ -68,12 +68,12 @@ class Line:
 
 
 def serve(line: Line, side: Any) -> None:
-    """Answer until the other end says that it is enough.
+    """Reply to messages until the other end finishes.
 
     Args:
-        line: from and to the simulator.
-        side: ``hello``, ``reset`` and ``observe`` take a message and return the answer;
-            ``error`` makes one of an exception.
+        line: the connection to the simulator.
+        side: ``hello``, ``reset`` and ``observe`` take a message and return the reply; ``error``
+            converts an exception to a reply.
     """
     handlers = {"hello": side.hello, "reset": side.reset, "observe": side.observe}
     while True:
@@ -88,7 +88,7 @@ def serve(line: Line, side: Any) -> None:
 
 
 def described(kind: Any) -> dict[str, Any]:
-    """What a class says of itself."""
+    """Return a class's own description."""
     needs, data = getattr(kind, "needs", None), getattr(kind, "data", ())
     return {
         "needs": None if needs is None else [str(n) for n in needs],
@@ -99,12 +99,12 @@ def described(kind: Any) -> dict[str, Any]:
 
 
 class Decoder:
-    """Makes of messages what `reset` and `step` are given.
+    """Converts messages to the arguments of `reset` and `step`.
 
     Args:
-        types: has ``Task``, ``Pose``, ``RobotBody``, ``RobotLimits``, ``SensorInfo``, ``Pinhole``,
-            ``Reading``, ``Observation`` and ``Truth``.
-        array: makes an array of its type (as numpy writes it), shape and bytes.
+        types: module with ``Task``, ``Pose``, ``RobotBody``, ``RobotLimits``, ``SensorInfo``,
+            ``Pinhole``, ``Reading``, ``Observation`` and ``Truth``.
+        array: builds an array from its type (as numpy writes it), shape and bytes.
     """
 
     def __init__(self, types: Any, array: Callable[[str, list[int], bytes], Any]) -> None:
@@ -112,12 +112,12 @@ class Decoder:
         self._memory: mmap.mmap | None = None
 
     def open_memory(self, size: int) -> None:
-        """See the memory that scans and images come through."""
+        """Open the shared memory for scans and images."""
         if size:
             self._memory = mmap.mmap(MEMORY, size, access=mmap.ACCESS_READ)
 
     def array(self, sent: dict[str, Any] | None) -> Any:
-        """An array that was sent, or that lies in the memory."""
+        """Return an array from the message or from shared memory."""
         if sent is None:
             return None
         raw = sent.get("data")
@@ -127,7 +127,7 @@ class Decoder:
         return self._array(sent["dtype"], sent["shape"], raw)
 
     def task(self, sent: dict[str, Any]) -> Any:
-        """Start, goal, time limit, and the robot."""
+        """Return start, goal, time limit, and the robot."""
         return self._types.Task(
             start=self._types.Pose(*sent["start"]),
             goal=tuple(sent["goal"]),
@@ -142,11 +142,11 @@ class Decoder:
         return self._types.RobotBody(**{**sent, "footprint": self.array(sent["footprint"])})
 
     def limits(self, sent: dict[str, Any]) -> Any:
-        """Box of velocities and slew limits."""
+        """Return the box of velocities and slew limits."""
         return self._types.RobotLimits(**sent)
 
     def sensors(self, sent: dict[str, Any]) -> Any:
-        """Description of each sensor by its name."""
+        """Return each sensor's description by name."""
         return MappingProxyType({name: self._sensor(info) for name, info in sent.items()})
 
     def _sensor(self, sent: dict[str, Any]) -> Any:
@@ -161,7 +161,7 @@ class Decoder:
         return self._types.SensorInfo(**{**sent, **made})
 
     def observation(self, sent: dict[str, Any], log: Callable[[str, float], None]) -> Any:
-        """What the planner sees in one step."""
+        """Return the planner's input in one step."""
         return self._types.Observation(
             t=sent["t"],
             pose=self._types.Pose(*sent["pose"]),
@@ -189,14 +189,14 @@ class Decoder:
 
 
 def numpy_array(dtype: str, shape: list[int], raw: bytes) -> Any:
-    """An array on top of the bytes, which nothing can make writable."""
+    """Return a read-only array on top of the bytes."""
     import numpy as np
 
     return np.frombuffer(raw, dtype=dtype).reshape(shape)
 
 
 def tuple_array(dtype: str, shape: list[int], raw: bytes) -> Any:
-    """Tuples of numbers, in tuples where there is more than one dimension; without numpy."""
+    """Return nested tuples of numbers, without numpy."""
     form = {"<f8": "d", "<f4": "f", "|u1": "B", "<i8": "q"}[dtype]
     numbers: Any = struct.unpack(f"<{len(raw) // struct.calcsize(form)}{form}", raw)
     for length in reversed(shape[1:]):

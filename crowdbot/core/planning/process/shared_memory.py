@@ -1,4 +1,4 @@
-"""Memory through which scans and images reach a planner process, which can only read it."""
+"""Shared memory for scans and images, read-only for planner processes."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-#: Arrays below this size travel in the message, bytes.
+#: Smaller arrays are sent in the message, bytes.
 SMALLEST = 1024
 _ALIGN = 64
-#: Linux: no process may change the size or write through a mapping of its own from now on.
+#: Linux: from now on no process may change the size or write through its own mapping.
 _SEALS = 0x0001 | 0x0002 | 0x0004 | 0x0010
 _F_ADD_SEALS = 1033
 
 
 class SharedMemory:
-    """One block, made before the planner's process, sized when its sensors are known.
+    """One block, created before the planner's process and sized once its sensors are known.
 
-    Each place in it belongs to one array of one sensor. The planner's side copies what it hands
-    out, since the next reading overwrites this one.
+    Each place in it belongs to one array of one sensor. The planner's side copies arrays, since the
+    next reading overwrites them.
     """
 
     def __init__(self) -> None:
@@ -34,13 +34,13 @@ class SharedMemory:
         self._size = 0
 
     def place(self, sensor: str, part: str, size: int) -> None:
-        """Reserve a place for an array of so many bytes; small ones get none."""
+        """Reserve a place for an array of this many bytes; small ones get none."""
         if size >= SMALLEST:
             self._places[sensor, part] = self._size
             self._size += -(-size // _ALIGN) * _ALIGN
 
     def open(self) -> int:
-        """Make the block, which only this process can write to from now on; its size, bytes."""
+        """Create the block, writable only by this process from now on; return its size, bytes."""
         if self._size:
             os.ftruncate(self.descriptor, self._size)
             self._block = mmap.mmap(self.descriptor, self._size)
@@ -48,7 +48,7 @@ class SharedMemory:
         return self._size
 
     def put(self, sensor: str, part: str, array: NDArray[Any]) -> dict[str, Any]:
-        """An array as a message tells it: where it lies, or with its bytes."""
+        """Return an array's entry in a message: its location, or its bytes."""
         known = self._views.get((sensor, part))
         if known is None or known[0].shape != array.shape or known[0].dtype != array.dtype:
             at = self._places.get((sensor, part))
@@ -59,26 +59,26 @@ class SharedMemory:
         return known[1]
 
     def _view(self, at: int, array: NDArray[Any]) -> tuple[NDArray[Any], dict[str, Any]]:
-        """Where an array of this kind lies, to write to, and what a message says of it."""
+        """Return a writable view of an array's place, and its entry in a message."""
         assert self._block is not None
         view = np.frombuffer(self._block, array.dtype, array.size, at).reshape(array.shape)
         told = {"dtype": array.dtype.str, "shape": list(array.shape), "offset": at}
         return view, {**told, "bytes": array.nbytes}
 
     def close(self) -> None:
-        """Give it back."""
+        """Free the block."""
         os.close(self.descriptor)
-        self._views.clear()  # they hold the block
+        self._views.clear()  # they reference the block
         if self._block is not None:
             self._block.close()
             self._block = None
 
 
 def in_message(array: NDArray[Any]) -> dict[str, Any]:
-    """An array with its bytes."""
+    """Return an array's message entry with its bytes."""
     return {"dtype": array.dtype.str, "shape": list(array.shape), "data": array.tobytes()}
 
 
 def has_shared_memory() -> bool:
-    """Whether this system has what keeps a planner from changing it."""
+    """Return True if this system can make memory read-only for a planner."""
     return sys.platform == "linux" and hasattr(os, "memfd_create")

@@ -1,7 +1,7 @@
-"""A small msgpack, for Pythons that have no library for it: what planner messages consist of.
+"""A small msgpack for Pythons without a library: the types in planner messages.
 
-None, bool, int, float, str, bytes, list (tuple) and dict. Knows only the standard library, and
-runs on Python 3.8, since foreign Pythons run it.
+None, bool, int, float, str, bytes, list (tuple) and dict. Uses only the standard library and
+supports Python 3.8, for foreign Pythons.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _NUMBERS = {
     0xCA: ">f", 0xCB: ">d", 0xCC: ">B", 0xCD: ">H", 0xCE: ">I", 0xCF: ">Q",
     0xD0: ">b", 0xD1: ">h", 0xD2: ">i", 0xD3: ">q",
 }  # fmt: skip
-#: First byte -> format of the length of a text, of bytes, of a list, of a map.
+#: First byte -> format of the length of a text, bytes, a list, a map.
 _LENGTHS = {
     0xD9: ("str", ">B"), 0xDA: ("str", ">H"), 0xDB: ("str", ">I"),
     0xC4: ("bin", ">B"), 0xC5: ("bin", ">H"), 0xC6: ("bin", ">I"),
@@ -25,10 +25,10 @@ _CONSTANTS: dict[int, Any] = {0xC0: None, 0xC2: False, 0xC3: True}
 
 
 def packb(value: Any) -> bytes:
-    """A value as msgpack.
+    """Encode a value as msgpack.
 
     Raises:
-        TypeError: it holds something that is not in the list above.
+        TypeError: it contains an unsupported type.
         OverflowError: a whole number does not fit into 64 bits.
     """
     out = bytearray()
@@ -76,10 +76,10 @@ def _pack_int(value: int, out: bytearray) -> None:
 
 
 def unpackb(raw: bytes) -> Any:
-    """The value that msgpack stands for.
+    """Decode a msgpack value.
 
     Raises:
-        ValueError: it is not msgpack, or not of this kind.
+        ValueError: it is not supported msgpack.
     """
     try:
         value, end = _unpack(memoryview(raw), 0, 0)

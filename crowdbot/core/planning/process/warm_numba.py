@@ -1,6 +1,6 @@
-"""Imported by fork servers for planners that use numba: makes it ready to compile.
+"""Prepare numba for compilation in fork servers, for planners that use it.
 
-Numba loads most of itself when it compiles for the first time, which takes longer than its import.
+Numba loads most of itself on the first compilation, which takes longer than its import.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""The MCAP file: chunks, records and attached files, written and read within limits."""
+"""The MCAP file: chunks, records and attachments, written and read within limits."""

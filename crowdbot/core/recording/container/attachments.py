@@ -1,4 +1,4 @@
-"""Files inside a recording: what was simulated, and what came of it."""
+"""Files attached to a recording: the scenario, and the results."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from crowdbot.core.recording.container.chunk import serialised
 from crowdbot.core.recording.container.ending import END_OF_DATA_SIZE, FileIndex, ending
 from crowdbot.errors import InputError
 
-#: Bytes before the content of a record: what it is, and its length.
+#: Header of a record: its type and length.
 _HEAD = 9
 _TYPES = {".json": "application/json", ".yaml": "application/yaml", ".csv": "text/csv"}
 
 
 def attach(path: Path, files: Mapping[str, bytes]) -> None:
-    """Put files into a complete recording, instead of those that it has.
+    """Attach files to a complete recording, replacing earlier ones.
 
     Args:
-        path: the recording; a process that is killed meanwhile leaves one that can be recovered.
+        path: the recording; if the process is killed meanwhile, it can be recovered.
         files: name -> content.
 
     Raises:
-        InputError: it has no index, as one that was cut off.
+        InputError: it has no index, because it is incomplete.
     """
     index, end = _index(path)
     data, found = b"", []
@@ -53,10 +53,10 @@ def attach(path: Path, files: Mapping[str, bytes]) -> None:
 
 
 def attached(path: Path) -> list[tuple[str, bytes]]:
-    """The files in a complete recording, names and contents, in their order.
+    """Return the files in a complete recording, names and contents, in order.
 
     Raises:
-        InputError: they cannot be read, or their checksums say otherwise.
+        InputError: they cannot be read, or their checksums are wrong.
     """
     try:
         with path.open("rb") as file:
@@ -65,7 +65,7 @@ def attached(path: Path) -> list[tuple[str, bytes]]:
                 raise ValueError("it has no index")
             return [_content(file, place) for place in summary.attachment_indexes]
     except (McapError, OSError, ValueError, EOFError, struct.error) as error:
-        why = str(error) or "it ends within a record"  # which is all that the reader means
+        why = str(error) or "it ends within a record"  # the only meaning in the reader
         raise InputError(f"{path}: its attachments cannot be read: {why}") from error
 
 
@@ -80,7 +80,7 @@ def _content(file: IO[bytes], place: AttachmentIndex) -> tuple[str, bytes]:
 
 
 def _index(path: Path) -> tuple[FileIndex, int]:
-    """What the file says of itself, and where attachments, or else the end of its data, begin."""
+    """Return the file's index, and where attachments, or else the end of data, start."""
     problem = InputError(f"{path}: not a complete recording: it has no index")
     try:
         with path.open("rb") as file:

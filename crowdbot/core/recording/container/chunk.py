@@ -1,7 +1,7 @@
-"""The chunk of an MCAP file that is being filled.
+"""The open chunk of an MCAP file.
 
-A run hands over some hundreds of messages per simulated second, so a message becomes bytes by one
-``pack``; everything rarer is left to `mcap.records`. Layout: https://mcap.dev/spec.
+A run writes hundreds of messages per simulated second, so a message is encoded with a single
+``pack``; rarer records use `mcap.records`. Layout: https://mcap.dev/spec.
 """
 
 from __future__ import annotations
@@ -17,28 +17,28 @@ from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import Channel, ChunkIndex, McapRecord, Schema
 
-#: The lowest level that also codes bytes by how often they come: people are packed so.
+#: The lowest level that uses entropy coding, which people's data needs.
 _COMPRESSION, _LEVEL = "zstd", 1
 _MESSAGE = Struct("<BQHIQQ")  # opcode and length of a record; channel, sequence, both times
 _INDEX = Struct("<BQHI")  # opcode and length of a record; channel, length of the entries
-#: Opcode and length of a record; first and last time, size and CRC without compression; its name;
-#: length of what follows.
+#: Opcode and length of a record; first and last time, uncompressed size and CRC; its compression;
+#: length of the rest.
 _CHUNK = Struct("<BQQQQII4sQ")
-_PREFIX = 1 + 8  # opcode and length, which the length leaves out
+_PREFIX = 1 + 8  # opcode and length, which the length excludes
 _OPCODE, _HEAD = Opcode.MESSAGE, _MESSAGE.size - _PREFIX
 
 Piece = bytes | memoryview
 
 
 class PackedChunk(NamedTuple):
-    """A finished chunk with the indices that follow it, and what the summary says of both."""
+    """A finished chunk with its indices, and the summary's data about both."""
 
     data: bytes
     entry: ChunkIndex
 
 
 def serialised(records: Iterable[McapRecord]) -> bytes:
-    """Records one after another."""
+    """Return records one after another."""
     builder = RecordBuilder()
     for record in records:
         record.write(builder)
@@ -47,7 +47,7 @@ def serialised(records: Iterable[McapRecord]) -> bytes:
 
 
 class OpenChunk:
-    """Collects records in the order in which they come.
+    """Collects records in order.
 
     Attributes:
         size: bytes so far, uncompressed.
@@ -64,13 +64,13 @@ class OpenChunk:
         self.size = 0
 
     def define(self, record: Schema | Channel) -> None:
-        """Add what messages refer to."""
+        """Add a definition that messages refer to."""
         data = serialised([record])
         self._parts.append(data)
         self.size += len(data)
 
     def add(self, channel: int, sequence: int, ns: int, *pieces: Piece) -> None:
-        """Add a message that lies in one or more pieces, logged and published at ``ns`` ns."""
+        """Add a message in one or more pieces, logged and published at ``ns`` ns."""
         length = _HEAD + sum(map(len, pieces))
         self._parts += _MESSAGE.pack(_OPCODE, length, channel, sequence, ns, ns), *pieces
         self._entries[channel] += ns, self.size
@@ -80,7 +80,7 @@ class OpenChunk:
         """Compress what was collected, and begin a new one.
 
         Args:
-            at: where in the file the chunk is going to be.
+            at: position of the chunk in the file.
         """
         plain = b"".join(self._parts)
         packed = self._compressor.compress(plain)
@@ -112,7 +112,7 @@ class OpenChunk:
 
 
 def _index(channel: int, entries: list[int]) -> bytes:
-    """A MessageIndex record."""
+    """Return a MessageIndex record."""
     length = 8 * len(entries)
     head = _INDEX.pack(Opcode.MESSAGE_INDEX, _INDEX.size - _PREFIX + length, channel, length)
     return head + pack(f"<{len(entries)}Q", *entries)

@@ -40,7 +40,7 @@ class FileIndex:
 
 
 def ending(index: FileIndex, at: int) -> bytes:
-    """All bytes from the end of the data on, which is ``at``, to the closing magic."""
+    """Return all bytes from the end of the data, at ``at``, to the closing magic."""
     begin = at + END_OF_DATA_SIZE
     groups: dict[Opcode, Iterable[McapRecord]] = {
         Opcode.SCHEMA: index.schemas,
@@ -57,6 +57,6 @@ def ending(index: FileIndex, at: int) -> bytes:
         data += group
     footer = Footer(summary_start=begin, summary_offset_start=begin + len(data), summary_crc=0)
     data += serialised(offsets)
-    # The checksum is that of the summary and of the footer up to the checksum itself.
+    # The checksum covers the summary and the footer up to the checksum.
     begun = serialised([footer])[:-4]
     return _END_OF_DATA + data + begun + pack("<I", crc32(data + begun)) + MCAP0_MAGIC

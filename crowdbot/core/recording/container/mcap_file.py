@@ -1,6 +1,6 @@
 """An MCAP file of ROS 2 messages, written deterministically.
 
-No wall clock and no library version enters the file: log time is simulated time, so that equal
+The file contains no wall clock time or library version: log time is simulated time, so that equal
 runs give equal bytes. Layout: https://mcap.dev/spec.
 """
 
@@ -24,9 +24,9 @@ CHUNK_SIZE = 256 * 1024
 
 
 def _qos(*, latched: bool) -> str:
-    """Offered quality of service as rosbag2 metadata version 8 spells it.
+    """Return the quality of service in the format of rosbag2 metadata version 8.
 
-    Version 9 uses words instead of numbers and is refused by ROS 2 Humble.
+    Version 9 uses words instead of numbers, which ROS 2 Humble refuses.
     """
     forever = "\n    sec: 2147483647\n    nsec: 4294967295"
     return (
@@ -50,7 +50,7 @@ class _Topic:
 
 
 class McapFile:
-    """Topics are opened by their first message."""
+    """An MCAP file; topics are created by their first message."""
 
     def __init__(self, path: Path) -> None:
         """Start the file.
@@ -74,7 +74,7 @@ class McapFile:
     def put_bytes(
         self, topic: str, ns: int, msgtype: str, *pieces: Piece, latched: bool = False
     ) -> None:
-        """Append one message that is already serialised, in one or more pieces."""
+        """Append one serialised message, in one or more pieces."""
         opened = self._topics.get(topic) or self._open(topic, msgtype, latched)
         chunk = self._chunk
         chunk.add(opened.id, opened.messages, ns, *pieces)
@@ -83,7 +83,7 @@ class McapFile:
             self._finish_chunk()
 
     def copy(self, channel: Channel, schema: Schema | None, ns: int, data: Piece) -> None:
-        """Append a message of another file, whose topic is described as there."""
+        """Append a message of another file, with its topic's description."""
         opened = self._topics.get(channel.topic)
         if opened is None:
             opened = self._adopt(channel, schema)
@@ -105,16 +105,16 @@ class McapFile:
         return opened
 
     def flush(self) -> None:
-        """Finish the open chunk and hand all bytes to the operating system."""
+        """Finish the open chunk and pass all bytes to the operating system."""
         self._finish_chunk()
         self._stream.flush()
 
     def close(self) -> None:
-        """Write index and footer; when this returns the disk has it all, if it is one."""
+        """Write index and footer; on return everything is on disk, if it is a disk."""
         self._finish_chunk()
         self._stream.write(ending(self._index(), self._stream.tell()))
         self._stream.flush()
-        if not stat.S_ISCHR(os.fstat(self._stream.fileno()).st_mode):  # /dev/null keeps nothing
+        if not stat.S_ISCHR(os.fstat(self._stream.fileno()).st_mode):  # /dev/null stores nothing
             os.fsync(self._stream.fileno())
         self._stream.close()
 

@@ -1,7 +1,7 @@
 """Read messages from an MCAP file that may be cut off, damaged or hostile.
 
-A run that was killed leaves a file without index and footer; it is read front to back up to its
-last whole chunk. What follows a broken chunk must be nothing: damage in the middle is an error.
+A run that was killed leaves a file without index and footer; it is read sequentially up to its last
+whole chunk. Nothing may follow a broken chunk: damage in the middle is an error.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ from mcap.stream_reader import MAGIC_SIZE, read_magic
 import crowdbot.core.recording.messages as ros
 from crowdbot.errors import InputError
 
-#: Ours are 256 KiB plus one message. Larger ones are refused before they are unpacked.
+#: Our chunks have 256 KiB plus one message. Larger ones are refused before decompression.
 MAX_CHUNK = 64 * 2**20
 MAX_RECORD = 2 * MAX_CHUNK
 MAX_TOTAL = 4 * 2**30
-#: So many records, and two more for each byte of the file. Ours have some hundred bytes for each
-#: message, and clocks that are packed well have four.
+#: Largest number of records: this many, plus two per byte of the file. Our messages take some
+#: hundred bytes, and well compressed clocks four.
 MAX_RECORDS = 1_000_000
 _PREFIX = struct.Struct("<BQ")  # opcode and length of a record
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, both times
@@ -53,19 +53,19 @@ _BROKEN = (
     struct.error,
     ValueError,
     KeyError,
-    RuntimeError,  # lz4's
+    RuntimeError,  # from lz4
 )
 
 
 class Opened(NamedTuple):
-    """A topic as a file describes it: its channel, and its schema if it has one."""
+    """A topic as described in a file: its channel, and its schema if it has one."""
 
     record: Channel
     schema: Schema | None
 
 
 class Record(NamedTuple):
-    """One message, still serialised."""
+    """One serialised message."""
 
     topic: str
     msgtype: str
@@ -88,7 +88,7 @@ class Records:
         self._path = path
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
-        self._topics: dict[int, tuple[str, str, str]] = {}  # what both say of a channel
+        self._topics: dict[int, tuple[str, str, str]] = {}  # per channel
         self._total = 0
         self._left = MAX_RECORDS
         self._seen = self._attached = 0
@@ -99,7 +99,7 @@ class Records:
 
         Raises:
             InputError: not an MCAP file, damaged before its end, or unreasonably large when
-                unpacked.
+                decompressed.
         """
         try:
             with self._path.open("rb") as file, _mapped(file.fileno()) as data:
@@ -109,7 +109,7 @@ class Records:
             raise InputError(f"{self._path}: cannot be read: {error.strerror}") from error
 
     def channel(self, topic: str) -> Opened:
-        """How the file describes a topic whose messages were seen; the latest of its channels."""
+        """Return the file's description of a topic with messages; the latest of its channels."""
         channel = next(c for c in reversed(self._channels.values()) if c.topic == topic)
         return Opened(channel, self._schemas.get(channel.schema_id))
 
@@ -159,7 +159,7 @@ class Records:
                 raise InputError(f"{self._path}: damaged: {rest} bytes follow its end")
 
     def _unpack(self, chunk: Chunk) -> list[McapRecord] | None:
-        """The records of a chunk, or None where it is broken."""
+        """Return the records of a chunk, or None if it is broken."""
         self._total += chunk.uncompressed_size
         if chunk.uncompressed_size > MAX_CHUNK or self._total > MAX_TOTAL:
             raise InputError(f"{self._path}: refused: unpacks to more than a recording may")
@@ -176,7 +176,7 @@ class Records:
         return found
 
     def _decompress(self, chunk: Chunk) -> bytes:
-        """Never more than the chunk admits to: the frame's own idea of its size may be a bomb."""
+        """Decompress at most the declared size: the frame's own size may be a bomb."""
         if chunk.compression == "":
             return chunk.data
         most = chunk.uncompressed_size + 1
@@ -210,7 +210,7 @@ class Records:
                 self._topics.clear()
 
     def _topic(self, number: int) -> tuple[str, str, str]:
-        """Topic, type and encoding of the messages of a channel."""
+        """Return topic, type and encoding of a channel's messages."""
         channel = self._channels.get(number)
         if channel is None or (channel.schema_id and channel.schema_id not in self._schemas):
             raise InputError(f"{self._path}: damaged: a message belongs to no topic")
@@ -220,7 +220,7 @@ class Records:
 
 
 def _mapped(fileno: int) -> mmap.mmap:
-    """The file as memory: a length that lies cannot make us allocate."""
+    """Return the file as memory, so that a false length cannot cause an allocation."""
     try:
         return mmap.mmap(fileno, 0, access=mmap.ACCESS_READ)
     except ValueError:  # empty
@@ -231,7 +231,7 @@ def _framed(data: mmap.mmap) -> Iterator[McapRecord]:
     """The records of a file that are used, from magic to magic; indices are skipped.
 
     Raises:
-        ValueError, McapError, struct.error: it ends before that, or is damaged.
+        ValueError, McapError, struct.error: it ends early or is damaged.
     """
     read_magic(_stream(data.read(MAGIC_SIZE)))
     opcode = -1
@@ -247,7 +247,7 @@ def _framed(data: mmap.mmap) -> Iterator[McapRecord]:
 
 
 def _split(plain: bytes) -> Iterator[McapRecord]:
-    """The records of a chunk; most are messages, which are read without a stream.
+    """Yield the records of a chunk; messages, the most frequent, are read without a stream.
 
     Raises:
         ValueError: a record is longer than the chunk.
@@ -298,14 +298,14 @@ _READERS: Mapping[int, Callable[[bytes], McapRecord]] = {
 
 
 def decode(path: Path, record: Record) -> Any:
-    """The message of a record.
+    """Decode the message of a record.
 
     Raises:
-        InputError: it cannot be decoded; ``path`` is for the message.
+        InputError: it cannot be decoded; ``path`` is used in the message.
     """
     try:
         return ros.from_cdr(record.data, record.msgtype)
-    except Exception as error:  # the decoder is generated code; anything may surface
+    except Exception as error:  # the decoder is generated code and may raise anything
         raise InputError(
             f"{path}: {record.topic}: a {record.msgtype} that cannot be decoded"
         ) from error

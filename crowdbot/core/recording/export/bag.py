@@ -1,4 +1,4 @@
-"""Recordings as bags of ROS 2 (a folder) and of ROS 1 (a file)."""
+"""Export recordings as bags of ROS 2 (a folder) and ROS 1 (a file)."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ _LATCHED = (
 
 @dataclass(frozen=True, kw_only=True)
 class BagOptions:
-    """How a bag is to be.
+    """Options of a bag.
 
     Attributes:
-        offset: ns that are added to all times.
-        tree: whose pose ``/tf`` has: the true one, or that of odometry below ``odom``.
-        ros_names: whether topics get the names that users of ROS expect.
-        markers: whether people and contacts are added as markers, one for each.
+        offset: ns added to all times.
+        tree: pose in ``/tf``: the true one, or that of odometry below ``odom``.
+        ros_names: True to use the usual ROS names of topics.
+        markers: True to add a marker per person and contact.
         description: the robot's URDF, if it is known.
     """
 
@@ -66,10 +66,10 @@ class _Message(NamedTuple):
 
 
 def write_ros2(path: Path, out: Path, options: BagOptions) -> int:
-    """Write a folder with ``metadata.yaml`` (version 8) and an MCAP file; how many messages.
+    """Write a folder with ``metadata.yaml`` (version 8) and an MCAP file; return the message count.
 
     Raises:
-        InputError: no recording of crowdbot, the folder exists, or odometry was not recorded.
+        InputError: not a crowdbot recording, the folder exists, or odometry was not recorded.
     """
     from rosbags.rosbag2 import StoragePlugin, Writer
 
@@ -78,15 +78,15 @@ def write_ros2(path: Path, out: Path, options: BagOptions) -> int:
 
 
 def write_ros1(path: Path, out: Path, options: BagOptions) -> int:
-    """Write a bag of ROS 1, whose types are those of noetic; how many messages.
+    """Write a ROS 1 bag with noetic's types; return the message count.
 
     Raises:
-        InputError: no recording of crowdbot, or it cannot be written.
+        InputError: not a crowdbot recording, or it cannot be written.
     """
     from rosbags.convert.converter import convert
 
     folder = out.with_name(f".{out.name}.ros2")
-    bag = folder / "ros1.bag"  # the converter goes by the ending
+    bag = folder / "ros1.bag"  # the converter uses the suffix
     shutil.rmtree(folder, ignore_errors=True)
     try:
         folder.mkdir(parents=True)
@@ -118,7 +118,7 @@ def _write(bag: Any, path: Path, options: BagOptions) -> int:
 
 
 def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
-    """What was recorded and what is added, in the order of time."""
+    """Yield recorded and added messages, in order of time."""
     with Recording(path) as recording:
         info, run = recording.info, recording.trajectories()
     header = info.header
@@ -135,7 +135,7 @@ def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
 
 
 def _lacking(topics: Mapping[str, int], samples: int, options: BagOptions) -> Callable[[str], bool]:
-    """Which topics are to be added: that are not recorded, or not at each of the samples."""
+    """Return a test for topics to add: not recorded, or not at every sample."""
 
     def lacking(topic: str) -> bool:
         if topic == Topic.TF and options.tree == "odometry":
@@ -146,7 +146,7 @@ def _lacking(topics: Mapping[str, int], samples: int, options: BagOptions) -> Ca
 
 
 def _sorted(messages: Iterable[_Message]) -> list[_Message]:
-    """A recording writes a second at once; a bag is in the order of time."""
+    """Sort messages by time: a recording writes a second at once."""
     return sorted(messages, key=lambda m: m.ns)
 
 
@@ -158,7 +158,7 @@ def _added(found: Iterable[Extra]) -> Iterator[_Message]:
 def _recorded(
     path: Path, topics: Container[str], names: Mapping[str, str | None], options: BagOptions
 ) -> Iterator[_Message]:
-    """The recording's own messages; ``names``: other names of topics, None leaves one out."""
+    """Yield the recorded messages; ``names``: other names of topics, None drops one."""
     derived = options.tree == "odometry" and Topic.TF_ODOMETRY not in topics
     records = Records(path)
     for k, record in enumerate(records):
@@ -184,7 +184,7 @@ def _declare(records: Records, record: Record) -> None:
 
 
 def _believed(data: bytes) -> bytes:
-    """The transform ``odom`` to ``base_footprint`` of a message of odometry."""
+    """Return the transform ``odom`` to ``base_footprint`` of an odometry message."""
     odometry = ros.from_cdr(data, _ODOMETRY)
     at = odometry.pose.pose
     stamped = ros.transform(0, "odom", BASE, (at.position.x, at.position.y, at.position.z), 0.0)
@@ -195,7 +195,7 @@ def _believed(data: bytes) -> bytes:
 def _names(
     header: RecordingHeader, options: BagOptions, topics: Container[str]
 ) -> dict[str, str | None]:
-    """Recorded topics -> those of the bag; None: left out, since it would be there twice."""
+    """Return recorded topics -> those of the bag; None: dropped as a duplicate."""
     names: dict[str, str | None] = {}
     if options.tree == "odometry":
         names = {Topic.TF: None, Topic.TF_ODOMETRY: str(Topic.TF)}
@@ -212,7 +212,7 @@ def _names(
             names[twice] = None if there in topics else there
     for name in header.sensors if options.ros_names else ():
         for leaf in ("image_raw", "camera_info"):
-            names[f"/{name}/colour/{leaf}"] = f"/{name}/color/{leaf}"  # of older recordings
+            names[f"/{name}/colour/{leaf}"] = f"/{name}/color/{leaf}"  # in older recordings
     return names
 
 

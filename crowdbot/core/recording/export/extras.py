@@ -1,4 +1,4 @@
-"""Topics that users of ROS expect and that a recording may lack: all that follows from it."""
+"""Additional topics that ROS users expect, derived from a recording."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from crowdbot.core.recording.topics import Topic
 from crowdbot.core.recording.viewers import RobotPath
 from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
 
-#: Of samples, and recorded less often where not everything is.
+#: Topics per sample, recorded less often unless everything is recorded.
 OFTEN = (Topic.TF, Topic.PEOPLE_MARKER)
 
 
@@ -32,13 +32,13 @@ class Extra(NamedTuple):
 def extras(
     header: RecordingHeader, run: Trajectories, description: str | None, *, markers: bool
 ) -> Iterator[Extra]:
-    """What may be added to a bag, in the order of time for each topic.
+    """Yield messages to add to a bag, in order of time per topic.
 
-    Clock, frames, poses, people, walls and map are those that a recording of everything has.
+    Clock, frames, poses, people, walls and map are as in a complete recording.
 
     Args:
         description: the robot's URDF, if it is known.
-        markers: whether to add people and contacts as markers, one for each.
+        markers: True to add a marker per person and contact.
     """
     for extra in _tools(header, run, description or ""):
         if markers or extra.topic != Topic.PEOPLE_MARKERS:
@@ -57,18 +57,18 @@ class _Kept:
         self.messages: list[Extra] = []
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
-        """One message, at ``ns`` nanoseconds."""
+        """Collect one message, at ``ns`` nanoseconds."""
         self.put_bytes(topic, ns, message.__msgtype__, ros.to_cdr(message), latched=latched)
 
     def put_bytes(
         self, topic: str, ns: int, msgtype: str, *pieces: Piece, latched: bool = False
     ) -> None:
-        """One message that is serialised, at ``ns`` nanoseconds."""
+        """Collect one serialised message, at ``ns`` nanoseconds."""
         self.messages.append(Extra(str(topic), ns, msgtype, b"".join(pieces), latched))
 
 
 def _tools(header: RecordingHeader, run: Trajectories, description: str) -> list[Extra]:
-    """What follows from header and samples."""
+    """Return messages derived from header and samples."""
     kept = _Kept()
     tools = ToolTopics(kept, header, description)
     robot, people = run.robot, run.agents

@@ -1,4 +1,4 @@
-"""The messages and services of crowdbot as a package for ROS 2, and a layout for Foxglove."""
+"""The ROS 2 package with crowdbot's messages and services, and a layout for Foxglove."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ ament_package()
 
 
 def write_package(folder: Path, version: str) -> list[Path]:
-    """Write the package's files into ``folder/crowdbot_msgs``; their paths."""
+    """Write the package's files to ``folder/crowdbot_msgs``; return their paths."""
     root = folder / NAME
     texts = {f"msg/{n}.msg": t for n, t in {**DEFINITIONS, **LIVE_DEFINITIONS}.items()}
     texts |= {f"srv/{n}.srv": t for n, t in SERVICES.items()}
@@ -65,5 +65,5 @@ def write_package(folder: Path, version: str) -> list[Path]:
 
 
 def layout() -> str:
-    """A layout for Foxglove and Lichtblick, which hide all topics that no layout names."""
+    """Return a layout for Foxglove and Lichtblick, which hide topics without one."""
     return (files(__package__) / LAYOUT).read_text(encoding="utf-8")

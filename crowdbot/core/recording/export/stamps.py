@@ -1,4 +1,4 @@
-"""Moves the times that messages carry: tf2 takes a stamp of 0 for "the latest"."""
+"""Shift the times in messages, since tf2 treats a stamp of 0 as "the latest"."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.template import stamp
 
 _TF, _MARKERS = "tf2_msgs/msg/TFMessage", "visualization_msgs/msg/MarkerArray"
-_HEAD = 4  # bytes in front of a CDR message
+_HEAD = 4  # header bytes of a CDR message
 
 
 def moved(data: bytes, msgtype: str, by: int) -> bytes:
-    """A CDR message whose stamps are ``by`` ns later; as it is where it has none."""
+    """Return a CDR message with stamps shifted by ``by`` ns; unchanged if it has none."""
     if not by:
         return data
     if msgtype in (_TF, _MARKERS):
@@ -29,7 +29,7 @@ def moved(data: bytes, msgtype: str, by: int) -> bytes:
 
 
 def _begun(sec: int, rest: int) -> int:
-    """A time in ns; one nanosecond stands for 0 in recordings."""
+    """Return a time in ns; recordings write one nanosecond instead of 0."""
     ns = sec * 10**9 + rest
     return 0 if ns == 1 else ns
 

@@ -1,6 +1,6 @@
-"""Recordings as tables, for programs that know nothing of robots: CSV, Parquet, GeoJSON, TrajNet++.
+"""Export recordings as tables for general tools: CSV, Parquet, GeoJSON, TrajNet++.
 
-CSV tables are those that `Trajectories.from_csv` reads.
+`Trajectories.from_csv` can read the CSV tables.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ Table = dict[str, Any]
 _ROBOT = ("x", "y", "theta", "v", "w")
 _TRIP = ("agent", "t0", "t1", "reached")
 _CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bearing")
-#: Frames a second of TrajNet++, and the number that stands for the robot there.
+#: Frames per second of TrajNet++, and the robot's number there.
 TRAJNET_RATE, ROBOT_ID = 2.5, 0
 
 
 def tables(run: Trajectories) -> dict[str, Table]:
-    """The tables of a run by name; each is column -> values of equal number."""
+    """Return the tables of a run by name; each is column -> values of equal number."""
     found: dict[str, Table] = {}
     robot, people = run.robot, run.agents
     if robot is not None:
@@ -47,7 +47,7 @@ def tables(run: Trajectories) -> dict[str, Table]:
 
 
 def _people(t: Array, people: AgentTracks) -> Table:
-    """A row for each person and sample in which it is there."""
+    """Return a row per person and sample in which the person is present."""
     k, i = np.nonzero(np.isfinite(people.x))
     jump = np.zeros(people.x.shape, np.bool_)
     if people.jump is not None:
@@ -63,9 +63,9 @@ def _people(t: Array, people: AgentTracks) -> Table:
 
 
 def write_csv(run: Trajectories, out: Path) -> list[str]:
-    """Write ``robot.csv``, ``people.csv``, ``trips.csv``, ``contacts.csv``; those that there are.
+    """Write the existing ones of ``robot.csv``, ``people.csv``, ``trips.csv``, ``contacts.csv``.
 
-    Numbers are written so that they read back bit by bit.
+    Numbers are written exactly.
     """
     written = []
     for name, table in tables(run).items():
@@ -87,7 +87,7 @@ def _cells(column: Any) -> list[Any]:
 
 
 def write_parquet(run: Trajectories, out: Path) -> list[str]:
-    """The same tables in Parquet, packed with zstd."""
+    """Write the same tables as Parquet, compressed with zstd."""
     import pyarrow as pa  # type: ignore[import-untyped]
     import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
@@ -148,7 +148,7 @@ def _pieces(x: Array, jumps: Any) -> list[Any]:
 
 
 def trajnet(run: Trajectories, scenario: str) -> str:
-    """A scene of TrajNet++ in ndjson: 2.5 frames a second, the robot is person 0."""
+    """Return a TrajNet++ scene as ndjson: 2.5 frames per second, the robot is person 0."""
     lines = [*_trajnet_rows(run)]
     if not lines:
         raise InputError("the recording has no second sample at 2.5 frames a second")

@@ -1,1 +1,1 @@
-"""The motion of people, packed: samples as messages, and the codec that predicts them."""
+"""Compressed motion of people: samples as messages, and the predictive codec."""

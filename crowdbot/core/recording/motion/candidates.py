@@ -15,7 +15,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.candidates import VelocityCandidates
 from crowdbot.errors import InputError
 
-#: More candidates do not fit the seven bits that say which was chosen.
+#: Largest number of candidates: a choice is stored in seven bits.
 MOST_CANDIDATES = 120
 
 
@@ -24,7 +24,7 @@ class Choosers:
     """People who choose among the same candidates.
 
     Attributes:
-        candidates: of all of them.
+        candidates: their candidate velocities.
         rows: (P,) their rows in the samples.
         preferred_speed, radius, max_acceleration: (P,) m/s, m, m/s^2.
     """
@@ -41,7 +41,7 @@ class Choosers:
         return 0 < len(self.candidates.unit) <= MOST_CANDIDATES
 
     def to_message(self) -> Any:
-        """As ``crowdbot_msgs/VelocityCandidates``."""
+        """Return ``crowdbot_msgs/VelocityCandidates``."""
         return ros.new(
             "crowdbot_msgs/VelocityCandidates",
             unit=ros.table(self.candidates.unit),
@@ -54,10 +54,10 @@ class Choosers:
 
     @classmethod
     def from_message(cls, message: Any, people: int) -> Choosers:
-        """Inverse of `to_message`.
+        """Read ``crowdbot_msgs/VelocityCandidates``.
 
         Raises:
-            ValueError: the message contradicts itself, or there are not so many people.
+            ValueError: the message is inconsistent, or there are fewer people.
         """
         unit, rows = ros.from_table(message.unit), message.person.astype(np.int64)
         columns = (message.preferred_speed, message.radius, message.max_acceleration)
@@ -78,11 +78,11 @@ class Choosers:
 
 
 class CandidateTable(NamedTuple):
-    """Candidates of everybody, for compiled code.
+    """Candidates of all people, for compiled code.
 
     Attributes:
         unit: (C, 2) the candidates of all groups, one group after the other.
-        first, choices: (M,) those of each person; 0 choices: they are not known.
+        first, choices: (M,) index and number of each person's candidates; 0 choices: unknown.
         speed, radius, limit, relaxation: (M,) preferred speed (m/s), radius (m), largest
             acceleration (m/s^2), relaxation time (s).
     """
@@ -97,7 +97,7 @@ class CandidateTable(NamedTuple):
 
 
 def candidate_table(people: int, choosers: Sequence[Choosers]) -> CandidateTable:
-    """The table of some groups among so many people."""
+    """Return the table of some groups among this many people."""
     first, count = np.zeros(people, np.int64), np.zeros(people, np.int64)
     speed, radius, limit = np.zeros(people), np.zeros(people), np.zeros(people)
     relaxation, units = np.ones(people), [np.zeros((0, 2))]
@@ -112,13 +112,13 @@ def candidate_table(people: int, choosers: Sequence[Choosers]) -> CandidateTable
 
 
 class GoalChanges:
-    """Makes ``crowdbot_msgs/PersonGoals``: who has another goal than in the sample before."""
+    """Builds ``crowdbot_msgs/PersonGoals``: people whose goal changed since the last sample."""
 
     def __init__(self, people: int) -> None:
         self._last = np.zeros((2, people))
 
     def message(self, first: int, goals: Array) -> Any | None:
-        """The changes within samples ``first`` and following, (K, 2, M); None without any."""
+        """Return the changes within the samples from ``first``, (K, 2, M); None without any."""
         with_last = np.concatenate([self._last[np.newaxis], goals]).view(np.int64)
         self._last = goals[-1].copy()
         changed = with_last[1:] != with_last[:-1]
@@ -135,13 +135,13 @@ class GoalChanges:
 
 
 class GoalsReader:
-    """Goals of each sample, from all the changes of a recording."""
+    """Goals at each sample, from all changes in a recording."""
 
     def __init__(self, people: int, messages: Iterable[Any]) -> None:
         """Read the changes.
 
         Raises:
-            InputError: they do not fit each other, or so many people.
+            InputError: they are inconsistent, or do not match the number of people.
         """
         self._now = np.zeros((2, people))
         columns: list[tuple[Array, ...]] = [(m.sample, m.person, m.x, m.y) for m in messages]
@@ -158,7 +158,7 @@ class GoalsReader:
         self._changes = {int(self._sample[a]): slice(a, b) for a, b in pairwise(edges)}
 
     def goals(self, first: int, count: int) -> Array:
-        """(K, 2, M) of ``count`` samples; to be asked in their order."""
+        """Return (K, 2, M) of the next ``count`` samples; call in order."""
         found = np.repeat(self._now[np.newaxis], count, axis=0)
         for k in range(count):
             here = self._changes.get(first + k)

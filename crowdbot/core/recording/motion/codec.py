@@ -1,4 +1,4 @@
-"""Packs the motion of people without losing a bit: differences from a prediction.
+"""Lossless compression of people's motion: differences from a prediction.
 
 Where it is known among which velocities people choose, and where their goals are, the choice says
 it all, unless they are pushed. Else they are predicted from their two samples before. A person
@@ -8,7 +8,7 @@ components of u the larger one follows from the smaller one. Positions follow fr
 by tick, as the simulation adds them up. What is stored is the difference between the bits of a
 number and those of its prediction: 0 for nine numbers of ten where choices are known.
 
-docs/reference/recording.md says it in formulas.
+For formulas see docs/reference/recording.md.
 """
 
 from __future__ import annotations
@@ -46,25 +46,25 @@ from crowdbot.core.types.arrays import Array
 #: Steps in which a person would reach the target velocity, one of which is chosen.
 GAINS = (8.0, 4.0, 2.0, 16.0, 1.0)
 _SAMPLES_FOR_GAIN = 4
-#: Longer steps, or those that are not whole ticks, are predicted as one tick.
+#: Longer steps, or fractional ticks, are predicted as one tick.
 _LONGEST = TICKS_PER_SECOND
 _POSITIVE = 2**63 - 1
 #: Entries of the numbers (4, M) of one sample.
 _VX, _VY = 2, 3
-#: Predictions from here on follow a candidate: how far it is from the one before, in their order.
+#: Prediction numbers from here on mean a candidate, by its distance from the last one in order.
 _CHOICE = SPEEDS + 1
 #: For each gain, the share of a change of velocity that is left in the next step.
 _LEFT = np.array([(gain - 1.0) / gain for gain in GAINS])[:, np.newaxis, np.newaxis, np.newaxis]
 
 
 class Packed(NamedTuple):
-    """Samples of people, packed.
+    """Compressed samples of people.
 
     Attributes:
-        gain: which was chosen.
-        data: byte by byte: which prediction was taken, a byte for each person and sample; then of
-            x, y, vx, vy each the eight bytes of all differences, lowest bytes first, without those
-            of a person and sample where all four are 0.
+        gain: the chosen gain.
+        data: bytes: the prediction used, one byte per person and sample; then, for each of x, y,
+            vx, vy, the eight bytes of all differences, lowest bytes first, except where all four
+            are 0.
     """
 
     gain: float
@@ -72,14 +72,14 @@ class Packed(NamedTuple):
 
 
 class _Samples(NamedTuple):
-    """What is packed or unpacked, as the compiled loops hand it to each other.
+    """Samples being packed or unpacked, for the compiled loops.
 
     Attributes:
         packs: True to pack, False to unpack.
         values, bits: (K, 4, M), the same memory.
         scratch, scratch_bits: (1,), the same memory.
-        taken: (K, M) which predictions.
-        difference: (4, K, M) of the bits.
+        taken: (K, M) predictions used.
+        difference: (4, K, M) differences of the bits.
     """
 
     packs: bool
@@ -92,7 +92,7 @@ class _Samples(NamedTuple):
 
 
 class _Past(NamedTuple):
-    """What is remembered of the samples before, brought up to date.
+    """The state from earlier samples, updated in place.
 
     Attributes:
         last: (2, 4, M) the sample before, and the one before that.
@@ -106,7 +106,7 @@ class _Past(NamedTuple):
 
 
 class MotionCodec:
-    """Packs or unpacks the samples of one recording, in the order in which they were taken.
+    """Packs or unpacks the samples of one recording, in order.
 
     Args:
         people: how many there are.
@@ -116,11 +116,11 @@ class MotionCodec:
     def __init__(self, people: int, choosers: Sequence[Choosers] = ()) -> None:
         self._people = people
         self._candidates = candidate_table(people, choosers)
-        self._choice = np.zeros(people, np.int64)  # the candidate that was taken last
+        self._choice = np.zeros(people, np.int64)  # the last candidate taken
         self._ahead, self._pull = np.zeros((2, people)), np.zeros((2, people))  # see `_code`
         self._followed = np.zeros((4, people))
         self._last_t = math.nan
-        self._last = np.full((2, 4, people), np.nan)  # the sample before, and the one before that
+        self._last = np.full((2, 4, people), np.nan)  # the two previous samples
         self._speeds = np.zeros((people, SPEEDS))
         self._oldest = np.zeros(people, np.int64)
 
@@ -140,10 +140,10 @@ class MotionCodec:
         return Packed(gain, data.tobytes())
 
     def unpack(self, t: Array, packed: Packed, goals: Array | None = None) -> Array:
-        """The samples (K, 4, M) again, bit by bit; ``goals`` as they were packed.
+        """Return the exact samples (K, 4, M); ``goals`` must be as for `pack`.
 
         Raises:
-            ValueError: the data are not those of so many samples and people.
+            ValueError: the data do not match the number of samples and people.
         """
         values = np.zeros((len(t), 4, self._people))
         taken, difference = self._space(len(t))
@@ -176,19 +176,19 @@ class MotionCodec:
         )  # fmt: skip
 
     def _space(self, samples: int) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
-        """Which speeds are taken (K, M), and differences (4, K, M)."""
+        """Return arrays for the predictions used (K, M), and differences (4, K, M)."""
         taken = np.zeros((samples, self._people), np.uint8)
         return taken, np.zeros((4, samples, self._people), np.int64)
 
     def _steps(self, t: Array) -> NDArray[np.int64]:
-        """(K,) ticks since the sample before; 1 where that is not a whole number."""
+        """Return (K,) ticks since the last sample; 1 if not a whole number."""
         gaps = (t - np.concatenate([[self._last_t], t[:-1]])[: len(t)]) * TICKS_PER_SECOND
         self._last_t = float(t[-1]) if len(t) else self._last_t
         whole = (gaps >= 1.0) & (gaps <= _LONGEST) & (gaps == np.rint(gaps))
         return np.where(whole, gaps, 1.0).astype(np.int64)
 
     def _best_gain(self, values: Array) -> float:
-        """The gain whose predictions of velocities are nearest in most places."""
+        """Return the gain that predicts most velocities best."""
         before = np.concatenate([self._last[::-1, _VX:], values[:_SAMPLES_FOR_GAIN, _VX:]])
         with np.errstate(all="ignore"):
             change = np.diff(before, axis=0)
@@ -218,23 +218,23 @@ def _code(
     taken: NDArray[np.uint8],
     difference: NDArray[np.int64],
 ) -> None:
-    """Fill ``taken`` and ``difference`` from ``values``, or the other way round.
+    """Fill ``taken`` and ``difference`` from ``values``, or the reverse.
 
-    One function for both, so that they cannot predict differently.
+    One function for both directions, so that predictions are identical.
 
     Args:
         packs to difference: fields of `_Samples` and `_Past`.
-        steps: (K,) ticks since the sample before.
+        steps: (K,) ticks since the last sample.
         goals: (K, 2, M).
-        choice: (M,) the candidate that was taken last, brought up to date.
-        ahead, pull, followed: (2, M), (2, M), (4, M) scratch: velocities that are preferred,
-            accelerations towards candidates, and where they lead.
+        choice: (M,) the last candidate taken, updated.
+        ahead, pull, followed: (2, M), (2, M), (4, M) scratch: preferred velocities, accelerations
+            towards candidates, and the resulting motion.
     """
     samples = _Samples(packs, values, bits, scratch, scratch_bits, taken, difference)
     past = _Past(last, speeds, oldest)
     chooses = candidates.unit.shape[0] > 0
     for k in range(values.shape[0]):
-        if chooses:  # of all people at once, which compilers make fast
+        if chooses:  # all people at once, which vectorises
             prefer(candidates, last[0], goals[k], ahead)
             _choose(samples, k, steps[k], last[0], candidates, ahead, choice, pull)
             accelerate(last[0], pull, steps[k], followed)
@@ -266,7 +266,7 @@ def _choose(
     choice: NDArray[np.int64],
     pull: Array,
 ) -> None:
-    """Which candidates people take in sample k, if any, and the accelerations towards them."""
+    """Find the candidates that people take in sample k, if any, and the accelerations to them."""
     taken = samples.taken
     for i in range(choice.shape[0]):
         count = candidates.choices[i]
@@ -295,7 +295,7 @@ def _follow(samples: _Samples, k: int, i: int, vx: float, vy: float) -> bool:
 
 @inline_kernel
 def _extrapolate(samples: _Samples, past: _Past, k: int, i: int, ticks: int, gain: float) -> None:
-    """Velocities from those of the two samples before."""
+    """Predict velocities from those of the two previous samples."""
     last, speeds, scratch = past.last, past.speeds[i], samples.scratch
     values, taken = samples.values, samples.taken
     ux = target_velocity(last[1, _VX, i], last[0, _VX, i], gain)
@@ -321,9 +321,9 @@ def _extrapolate(samples: _Samples, past: _Past, k: int, i: int, ticks: int, gai
 
 @inline_kernel
 def _transfer(samples: _Samples, k: int, c: int, i: int) -> None:
-    """Difference of a number's bits from those in scratch, or the other way round.
+    """Store the difference of a number's bits from those in scratch, or the reverse.
 
-    Small differences of either sign become small numbers.
+    Small differences of either sign are stored as small numbers.
     """
     bits, predicted_bits = samples.bits, samples.scratch_bits[0]
     if samples.packs:

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core.support.compile import kernel
 
-#: Added to the number of a prediction of which no difference is stored, since all four are 0.
+#: Added to the number of a prediction without stored differences, since all four are 0.
 EXACT = np.uint8(128)
 
 
 @kernel
 def mark_exact(taken: NDArray[np.uint8], difference: NDArray[np.int64]) -> int:
-    """Mark in ``taken`` (K, M) whose four predictions are right to the bit; count the others."""
+    """Mark exact predictions in ``taken`` (K, M); return the number of others."""
     others = 0
     for k in range(taken.shape[0]):
         for i in range(taken.shape[1]):
@@ -33,7 +33,7 @@ def carry(
     difference: NDArray[np.int64],
     data: NDArray[np.uint8],
 ) -> None:
-    """Fill ``data``, as `Packed` has them, or the other way round, without the marks."""
+    """Fill ``data`` as in `Packed`, or read it, without the marks."""
     count, people = taken.size, taken.shape[1]
     rest, at = (data.shape[0] - count) // 32, count
     for place in range(count):

@@ -1,7 +1,7 @@
 """Predict the motion of people from their two samples before: compiled parts of the codec.
 
-Only additions, multiplications, divisions and square roots of float64 are used, which every
-machine rounds alike.
+Only float64 additions, multiplications, divisions and square roots are used, which round
+identically on every machine.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from crowdbot.core.support.compile import kernel
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 
-#: Speeds remembered of each person.
+#: Number of speeds remembered per person.
 SPEEDS = 3
 _MOST = 2**63 - 1
 #: A person whose acceleration differs by more from that towards a candidate is pushed, m^2/s^4.
 _NEAR = 1e-12
-#: More than its square root, m/s^2.
+#: Larger than its square root, m/s^2.
 _BESIDE = 1e-5
 
 
@@ -51,7 +51,7 @@ def best_speed(
 def predicted(
     taken: int, v: float, up: float, uq: float, gain: float, ticks: int, speeds: Array
 ) -> float:
-    """The larger component of the velocity.
+    """Return the predicted larger component of the velocity.
 
     Args:
         taken: number of the target speed, from 1; 0: the target before, ``uq``.
@@ -83,7 +83,7 @@ def towards(v: float, target: float, gain: float, ticks: int) -> float:
 
 @kernel
 def moved(x: float, before: float, now: float, ticks: int) -> float:
-    """Position one step later, while the velocity changes evenly, added up tick by tick."""
+    """Return the position one step later under linear velocity change, summed tick by tick."""
     change, v = (now - before) / ticks, before
     for _ in range(ticks):
         v += change
@@ -93,7 +93,7 @@ def moved(x: float, before: float, now: float, ticks: int) -> float:
 
 @kernel
 def known(value: float) -> float:
-    """0 for what is not finite: NaN has several spellings."""
+    """Return 0 for non-finite values, since NaN has several bit patterns."""
     return value if math.isfinite(value) else 0.0
 
 
@@ -101,13 +101,13 @@ def known(value: float) -> float:
 def chosen_candidate(
     table: CandidateTable, i: int, before: Array, now: Array, ahead: Array, ticks: int, last: int
 ) -> int:
-    """Which candidate person i took between two samples, from 0; -1 if none.
+    """Return the candidate that person i took between two samples, from 0; -1 if none.
 
     Args:
         before, now: (4, M) samples; x, y, vx, vy.
         ahead: (2, M) from `prefer`.
-        ticks: between the samples.
-        last: the candidate of the step before, which is the likeliest.
+        ticks: number of ticks between the samples.
+        last: the candidate of the last step, which is the most likely.
     """
     count = table.choices[i]
     if count == 0 or not math.isfinite(before[0, i] + before[1, i] + before[2, i] + before[3, i]):
@@ -146,9 +146,9 @@ def _points_elsewhere(
 
 @kernel
 def prefer(table: CandidateTable, before: Array, goal: Array, ahead: Array) -> None:
-    """Write the velocities that people prefer, (2, M) m/s; arguments as `chosen_candidate`.
+    """Write people's preferred velocities, (2, M) m/s; arguments as in `chosen_candidate`.
 
-    Its direction is that of the product of direction and speed, as the crowd computes it.
+    They are computed as the product of direction and speed, as in the crowd.
     """
     for i in range(ahead.shape[1]):
         gx, gy = goal[0, i] - before[0, i], goal[1, i] - before[1, i]
@@ -165,7 +165,7 @@ def prefer(table: CandidateTable, before: Array, goal: Array, ahead: Array) -> N
 def acceleration(
     table: CandidateTable, i: int, candidate: int, ex: float, ey: float, before: Array
 ) -> tuple[float, float]:
-    """Acceleration of person i towards a candidate, m/s^2; (ex, ey) is from `prefer`."""
+    """Return person i's acceleration towards a candidate, m/s^2; (ex, ey) is from `prefer`."""
     c = table.first[i] + candidate
     cx, cy = table.unit[c, 0], table.unit[c, 1]
     relaxation, limit = table.relaxation[i], table.limit[i]
@@ -180,13 +180,13 @@ def acceleration(
 
 @kernel
 def accelerate(before: Array, pull: Array, ticks: int, after: Array) -> None:
-    """Write x, y, vx, vy (4, M) after so many ticks, as the crowd adds them up.
+    """Write x, y, vx, vy (4, M) after this many ticks, summed as in the crowd.
 
     Args:
         before: (4, M).
         pull: (2, M) acceleration of each person in all of these ticks, m/s^2.
-        ticks: how many.
-        after: (4, M) written.
+        ticks: number of ticks.
+        after: (4, M) output.
     """
     for c in range(4):
         for i in range(after.shape[1]):

@@ -1,4 +1,4 @@
-"""Samples of the log as messages: many in one, people packed by `MotionCodec`."""
+"""Samples of the log as messages: several per message, people packed by `MotionCodec`."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 class StateSample(NamedTuple):
-    """One sample: time (s), the robot's row, (4, M) x, y, vx, vy, (M,) who was teleported.
+    """One sample: time (s), the robot's row, (4, M) x, y, vx, vy, (M,) teleports.
 
-    ``goals``: (2, M) to which people went in the step before; None: not known.
+    ``goals``: (2, M) goals in the last step; None: unknown.
     """
 
     t: float
@@ -43,11 +43,11 @@ class States:
 
 
 class StatesWriter:
-    """Makes ``crowdbot_msgs/RunStates`` of the samples of one run.
+    """Builds ``crowdbot_msgs/RunStates`` from the samples of one run.
 
     Args:
-        people: how many there are.
-        choosers: those whose choices are among known candidates.
+        people: number of people.
+        choosers: people with known candidates.
     """
 
     def __init__(self, people: int, choosers: Sequence[Choosers] = ()) -> None:
@@ -56,7 +56,9 @@ class StatesWriter:
         self._changes = GoalChanges(people) if choosers else None
 
     def messages(self, samples: Sequence[StateSample]) -> tuple[Any | None, Any]:
-        """``crowdbot_msgs/PersonGoals`` if any changed, and ``RunStates``, of the next samples.
+        """Return ``PersonGoals`` (if any changed) and ``RunStates`` of ``crowdbot_msgs``.
+
+        They hold the next samples.
 
         Args:
             samples: at least one.
@@ -91,14 +93,14 @@ class StatesReader:
     def __init__(
         self, people: int, candidates: Iterable[Any] = (), goals: Iterable[Any] = ()
     ) -> None:
-        """Be ready for the samples of one run.
+        """Prepare for the samples of one run.
 
         Args:
-            people: how many there are.
+            people: number of people.
             candidates, goals: all ``crowdbot_msgs/VelocityCandidates`` and ``.../PersonGoals``.
 
         Raises:
-            InputError, ValueError: they do not fit each other, or so many people.
+            InputError, ValueError: they are inconsistent, or do not match the number of people.
         """
         self._people, self._read = people, 0
         choosers = [Choosers.from_message(message, people) for message in candidates]
@@ -106,10 +108,10 @@ class StatesReader:
         self._goals = GoalsReader(people, goals) if choosers else None
 
     def states(self, messages: Iterable[Any]) -> States:
-        """All samples of a run.
+        """Return all samples of a run.
 
         Raises:
-            InputError: samples are missing or do not fit each other.
+            InputError: samples are missing or inconsistent.
         """
         parts = [self._of_message(message) for message in messages]
         if len({part.robot.shape[1] for part in parts}) > 1:
@@ -118,7 +120,7 @@ class StatesReader:
             np.concatenate([getattr(part, name) for part in parts])
             for name in ("t", "robot", "has_jump", "jump")
         )
-        agents = np.empty((4, len(t), self._people)).transpose(1, 0, 2)  # each number is a table
+        agents = np.empty((4, len(t), self._people)).transpose(1, 0, 2)  # one table per number
         np.concatenate([part.agents for part in parts], out=agents)
         return States(t, robot, agents, has_jump, jump)
 
@@ -145,19 +147,19 @@ class StatesReader:
 
 
 class SeriesRows:
-    """Values of named series that wait to be written."""
+    """Values of named series, waiting to be written."""
 
     def __init__(self) -> None:
         self._rows: dict[str, tuple[list[float], list[float]]] = {}
 
     def add(self, name: str, t: float, value: float) -> None:
-        """One value; s."""
+        """Add one value; s."""
         times, values = self._rows.setdefault(name, ([], []))
         times.append(t)
         values.append(value)
 
     def messages(self) -> Iterable[tuple[float, Any]]:
-        """Time of the last value and ``crowdbot_msgs/Series`` of each name; forgets them."""
+        """Yield the time of the last value and ``crowdbot_msgs/Series`` per name; clears them."""
         rows, self._rows = self._rows, {}
         for name, (times, values) in rows.items():
             columns = {"t": np.array(times, np.float64), "value": np.array(values, np.float64)}

@@ -1,1 +1,1 @@
-"""Recordings read back: runs, scans, images, commands, and what else is in a file."""
+"""Read recordings: runs, scans, images, commands, and other contents."""

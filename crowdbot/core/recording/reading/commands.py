@@ -26,10 +26,10 @@ def read_commands(
     v_max: float | None = None,
     w_max: float | None = None,
 ) -> Commands:
-    """The commands on two topics of Twist or TwistStamped, by the time they were logged.
+    """Return the commands on two topics of Twist or TwistStamped, by log time.
 
-    Each command holds until the next one of its topic; the record begins when both topics have
-    spoken, and the last command holds until the end of the file.
+    Each command holds until the next one of its topic; the record starts when both topics have a
+    message, and the last command holds until the end of the file.
 
     Args:
         path: a recording.
@@ -39,8 +39,7 @@ def read_commands(
         w_max: largest yaw rate, rad/s; likewise.
 
     Raises:
-        InputError: not an MCAP file, a topic holds something else or nothing, or limits are
-            unknown.
+        InputError: not an MCAP file, a topic is empty or has another type, or limits are unknown.
         UnknownNameError: there is no such topic.
     """
     by_topic: dict[str, list[tuple[int, float, float]]] = {user_topic: [], command_topic: []}
@@ -85,7 +84,7 @@ def _twist(path: Path, record: Record) -> tuple[int, float, float]:
         raise InputError(f"{path}: {record.topic} holds {found}, not {' or '.join(_TWISTS)} (cdr)")
     try:
         message = ros.from_cdr(record.data, record.msgtype)
-    except Exception as error:  # the decoder is generated code; anything may surface
+    except Exception as error:  # the decoder is generated code and may raise anything
         raise InputError(f"{path}: {record.topic}: a message that cannot be decoded") from error
     twist = message.twist if record.msgtype.endswith("Stamped") else message
     return record.ns, float(twist.linear.x), float(twist.angular.z)
@@ -104,8 +103,8 @@ def _limits(record: Record) -> tuple[float, float] | None:
 def _merged(
     user: list[tuple[int, float, float]], final: list[tuple[int, float, float]], end: int
 ) -> tuple[Array, Array, Array, float]:
-    """Times (N,), s from the first; user's and final v and w (N, 2); end, s."""
-    # a dict keeps the last of several commands of one instant
+    """Return times (N,), s from the first; user's and final v and w (N, 2); end, s."""
+    # a dict keeps the last of several commands with the same time
     series = [
         {ns: (v, w) for ns, v, w in sorted(rows, key=lambda r: r[0])} for rows in (user, final)
     ]

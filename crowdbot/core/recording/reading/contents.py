@@ -10,7 +10,7 @@ from typing import Any
 from crowdbot.core.recording.container.records import Record, Records, decode
 from crowdbot.core.recording.topics import Topic
 
-#: Status of a recording that was cut off, once it was recovered.
+#: Status of a recovered recording.
 RECOVERED = "recovered"
 
 
@@ -32,7 +32,7 @@ class TopicContents:
 
     @property
     def rate(self) -> float | None:
-        """Messages a second; None of fewer than two."""
+        """Return messages per second; None for fewer than two."""
         span = self.last - self.first
         return (self.count - 1) / span if self.count > 1 and span > 0.0 else None
 
@@ -62,10 +62,10 @@ class RecordingContents:
 
 
 def contents(path: Path) -> RecordingContents:
-    """Look through a file.
+    """Read the contents of a file.
 
     Raises:
-        InputError: not an MCAP file, damaged, or it unpacks to more than a recording may.
+        InputError: not an MCAP file, damaged, or too large when decompressed.
     """
     topics: dict[tuple[str, str], TopicContents] = {}
     end: Any = None

@@ -13,13 +13,13 @@ from crowdbot.core.recording.container.records import Record, decode
 from crowdbot.core.recording.reading.scans import Thinning
 from crowdbot.errors import InputError
 
-#: As many images per second as the replay page holds, Hz, and as wide, in pixels.
+#: Largest rate of images on the replay page, Hz, and largest width, pixels.
 REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH = 2.0, 96
 
 _LEAVES: dict[str, tuple[Literal["depth", "colour"], str]] = {
     "/depth/image_raw": ("depth", "16UC1"),
     "/color/image_raw": ("colour", "rgb8"),
-    "/colour/image_raw": ("colour", "rgb8"),  # of older recordings
+    "/colour/image_raw": ("colour", "rgb8"),  # in older recordings
 }
 
 
@@ -28,8 +28,8 @@ class ReplayImages:
     """Images of one camera, all of one size.
 
     Attributes:
-        kind: ``depth``: pixels are (K, H, W) uint16, mm, 0 where nothing was measured;
-            ``colour``: (K, H, W, 3) uint8.
+        kind: ``depth``: pixels are (K, H, W) uint16, mm, 0 if nothing was measured; ``colour``: (K,
+            H, W, 3) uint8.
         t: (K,) stamps, increasing, s.
     """
 
@@ -40,7 +40,7 @@ class ReplayImages:
 
 
 class Grid(NamedTuple):
-    """Which pixels remain: one of ``every`` in either direction, the first at row and column."""
+    """Remaining pixels: one of ``every`` in both directions, starting at row and column."""
 
     every: int
     row: int
@@ -55,7 +55,7 @@ def grid_of(shape: tuple[int, ...], width: int) -> Grid:
 
 
 def thinned(pixels: NDArray[Any], width: int) -> NDArray[Any]:
-    """A view of an image (H, W, ...) of which rows and columns are left out."""
+    """Return a view of an image (H, W, ...) without some rows and columns."""
     every, row, column = grid_of(pixels.shape, width)
     return pixels[row::every, column::every]
 
@@ -65,8 +65,8 @@ class ImageCollector:
 
     Args:
         path: the recording.
-        max_rate: leave out images so that at most this many per second remain, Hz.
-        width: leave out rows and columns of larger images, so that at most this many remain.
+        max_rate: largest rate of kept images, Hz.
+        width: largest width of kept images, pixels.
     """
 
     def __init__(self, path: Path, max_rate: float, width: int) -> None:
@@ -75,7 +75,7 @@ class ImageCollector:
         self._thinning: dict[str, Thinning] = {}
 
     def add(self, record: Record) -> None:
-        """Keep a record if it is an image that the page shows.
+        """Keep a record if it is an image for the page.
 
         Raises:
             InputError: it is damaged.
@@ -88,7 +88,7 @@ class ImageCollector:
             self._found.setdefault(record.topic, []).append((record.ns, pixels))
 
     def images(self) -> list[ReplayImages]:
-        """Those of all cameras so far.
+        """Return the images of all cameras so far.
 
         Raises:
             InputError: those of one differ in size.

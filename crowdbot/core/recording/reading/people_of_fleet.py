@@ -12,15 +12,15 @@ from crowdbot.errors import InputError
 
 
 def among(own: Trajectories, people: Trajectories, until: float) -> Trajectories:
-    """One robot's run, with the people whom all robots met, until it ended.
+    """Return one robot's run with the people whom all robots met, until it ended.
 
     Args:
-        own: of the robot alone.
-        people: of the people alone, sampled at the same times, perhaps for longer.
-        until: when the robot ended, s.
+        own: run of the robot alone.
+        people: run of the people alone, with the same sample times, perhaps longer.
+        until: end of the robot's run, s.
 
     Raises:
-        InputError: the samples are not at the same times.
+        InputError: the sample times differ.
     """
     count, agents, trips = len(own.t), people.agents, people.trips
     if len(people.t) < count or not np.array_equal(own.t, people.t[:count]):

@@ -17,23 +17,23 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """What came of it: messages that were kept, and the time of the last one, s."""
+    """The result: number of kept messages, and time of the last one, s."""
 
     messages: int
     end: float
 
 
 def recover(path: Path, out: Path) -> Recovered:
-    """Copy all whole chunks of a file into one that has its end.
+    """Copy all whole chunks of a file to a complete file.
 
-    A run without an end gets one with the status ``recovered`` that says that it is not complete.
+    A run without an end gets the status ``recovered``, marked as incomplete.
 
     Args:
         path: an interrupted recording.
-        out: the file to write; it appears when it is whole.
+        out: the file to write, atomically.
 
     Raises:
-        InputError: the recording is complete, holds nothing, or is damaged in the middle.
+        InputError: the recording is complete, empty, or damaged in the middle.
     """
     records = Records(path)
     count, last, ended, is_run = 0, 0, False, False

@@ -17,7 +17,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.errors import UnknownNameError
 
-#: Stands for any distance, m.
+#: A placeholder for any distance, m.
 _ANY = 1.0625
 
 
@@ -31,7 +31,7 @@ class ScanCollector:
         self._found: dict[str, list[Record]] = {}
 
     def open(self, header: RecordingHeader) -> None:
-        """Take the header, which says what sensors there are."""
+        """Take the header, which lists the sensors."""
         self._sensors = {**_lidars(header), **_cones(header)}
         self._thinning = {topic: Thinning(self._max_rate) for topic in self._sensors}
 
@@ -92,10 +92,10 @@ def _cones(header: RecordingHeader) -> dict[str, SensorInfo]:
 
 
 def _ranges(path: Path, records: Sequence[Record], field: str) -> Array:
-    """(K, R) distances, m.
+    """Return (K, R) distances, m.
 
-    Messages of one sensor differ in nothing but stamp and distances: where these are is found in
-    the first, and then they are cut out of all at once.
+    Messages of one sensor differ only in stamp and distances: their position is found in the first
+    message, and then all are extracted at once.
     """
     first = decode(path, records[0])
     start, count = _place(first, field)
@@ -110,7 +110,7 @@ def _ranges(path: Path, records: Sequence[Record], field: str) -> Array:
 
 
 def _place(message: Any, field: str) -> tuple[int, int]:
-    """Where the distances of a message begin (0: nowhere), and how many there are."""
+    """Return the position of a message's distances (0: none), and their number."""
     count = np.size(getattr(message, field))
     mark = np.full(count, _ANY, np.float32)
     setattr(message, field, mark if field == "ranges" else _ANY)

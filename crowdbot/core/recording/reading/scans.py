@@ -1,4 +1,4 @@
-"""Scans and other readings of distances as the replay page draws them."""
+"""Scans and other range readings for the replay page."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ import numpy as np
 
 from crowdbot.core.types.arrays import Array
 
-#: As many readings per second as the replay page holds, Hz.
+#: Largest rate of readings on the replay page, Hz.
 REPLAY_RATE = 8.0
-#: As exact as it draws them, m.
+#: Resolution on the replay page, m.
 CENTIMETRE = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplayScan:
-    """Scans of one lidar, or readings of one ultrasound or infrared sensor.
+    """Scans of one lidar, or readings of one ultrasonic or infrared sensor.
 
     Attributes:
         mount: x, y, z, yaw from base_link (m, rad).
-        angles: (R,) beam angles in the sensor frame, rad; of a cone (2,) its edges.
-        range_max: how far it sees, m.
+        angles: (R,) beam angles in the sensor frame, rad; for a cone (2,), its edges.
+        range_max: its range, m.
         t: (K,) stamps, increasing, s.
-        ranges: (K, R), of a cone (K, 1), m; inf or NaN where nothing came back.
+        ranges: (K, R), for a cone (K, 1), m; inf or NaN for no return.
         tilt: roll and pitch of the mount (rad).
         cone: True if a reading is one distance anywhere between two edges.
     """
@@ -39,13 +39,13 @@ class ReplayScan:
 
 
 class Thinning:
-    """Leaves out readings so that at most so many per second remain.
+    """Limits the rate of readings.
 
-    Thinning again with the same rate leaves out nothing more.
+    Repeated thinning with the same rate removes nothing more.
     """
 
     def __init__(self, rate: float | None) -> None:
-        """``rate``: Hz; None leaves out nothing."""
+        """Build a filter. ``rate``: Hz; None keeps everything."""
         self._gap = round(1e9 / rate) if rate else 0
         self._due = 0
 
@@ -62,7 +62,7 @@ class Thinning:
 
 
 def whole_centimetres(ranges: Array) -> Array:
-    """Distances as the replay page draws them, m; what is not finite stays as it is."""
+    """Round distances for the replay page, m; non-finite values are unchanged."""
     metres = ranges.astype(np.float32).astype(np.float64)
     rounded: Array = np.rint(metres / CENTIMETRE) * CENTIMETRE
     return rounded

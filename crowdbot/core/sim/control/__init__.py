@@ -1,4 +1,4 @@
-"""Control modes: how commands become motion. All feed the same ``robot_state``."""
+"""Control modes, which convert commands to motion. All output the same ``robot_state``."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def add_robot(
     control: str,
     tick: float = TICK,
 ) -> ControlledRobot:
-    """Add a robot to a diagram, moved in one of the control modes every ``tick`` seconds."""
+    """Add a robot to a diagram, with one of the control modes, every ``tick`` seconds."""
     return _MODES[control](builder, parts, model, tick)
 
 

@@ -1,4 +1,4 @@
-"""What the three control modes have in common."""
+"""Shared parts of the three control modes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from crowdbot.core.types.motion import Pose
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """How a horizontal force on the robot is written for the block that feels it.
+    """Layout of a horizontal force on the robot, for the block that receives it.
 
     Attributes:
         size: length of the vector.
         at: first of the five entries torque x, y, z, force x, y; None: force x, y alone.
-        lever: height of the force above the frame of the body that floats, m.
+        lever: height of the force above the floating body's frame, m.
     """
 
     size: int
@@ -28,7 +28,7 @@ class Push:
     lever: float
 
     def write(self, values: Array, fx: float, fy: float, torque: float = 0.0) -> None:
-        """Force (N, world frame) and torque about the base's vertical (N m), in place."""
+        """Write a force (N, world frame) and a torque about the base's vertical (N m), in place."""
         if self.at is None:
             values[0], values[1] = fx, fy
         else:
@@ -41,14 +41,14 @@ class ControlledRobot:
     """A robot in a diagram.
 
     Attributes:
-        state: the system with the port ``robot_state``, which everything downstream reads.
-        desired: port for what `desire` makes of a command.
+        state: the system with the port ``robot_state``, read by everything downstream.
+        desired: port for the result of `desire`.
         desire: v (m/s), w (rad/s), vy (m/s), after slew limits -> values for ``desired``.
         desired_size: their number.
-        push: layout of the force that people exert.
-        push_port: takes that force; None: nothing pushes the robot off its way.
-        place: puts the robot, at rest, at a pose; takes the root context.
-        rig: the multibody plant; None where there is none.
+        push: layout of people's force.
+        push_port: port for that force; None: the robot cannot be pushed.
+        place: function that puts the robot at rest at a pose; gets the root context.
+        rig: the multibody plant, or None.
     """
 
     state: LeafSystem
@@ -62,11 +62,11 @@ class ControlledRobot:
 
     @property
     def port(self) -> OutputPort:
-        """The robot's state as everything downstream reads it."""
+        """Return the port of the robot's state, read by everything downstream."""
         return self.state.GetOutputPort(ports.ROBOT_STATE)
 
 
 def push_on(rig: RobotPlant) -> Push:
-    """The push as a generalised force on a plant's velocities."""
+    """Return people's force as a generalised force on a plant's velocities."""
     lever = rig.robot.force_height - rig.robot.base_height + rig.rise
     return Push(rig.plant.num_velocities(), rig.root.floating_velocities_start_in_v(), lever)

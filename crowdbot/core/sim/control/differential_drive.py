@@ -1,4 +1,4 @@
-"""Differential drive: wheel motors turn the wheels, friction with the floor moves the robot."""
+"""Differential drive: motors turn the wheels, friction with the floor moves the robot."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from crowdbot.core.sim.robot_state import add_robot_state
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 
-# Implicit velocity gain of a TurtleBot2's wheels, N m s; stable from 0.1 to 50 there
-# (docs/decisions/0004). To be as quick, heavier robots on larger wheels need more: d ~ m r^2.
+# Implicit velocity gain of a TurtleBot2's wheels, N m s; stable there from 0.1 to 50
+# (docs/decisions/0004). Heavier robots on larger wheels need more to be as fast: d ~ m r^2.
 _GAIN, _MASS, _RADIUS = 1.0, 6.3, 0.0352
 
 
 def wheel_gains(mass: float, radius: float) -> PdControllerGains:
-    """Gains of each wheel's motor, for a robot's mass (kg) and its wheels' radius (m)."""
+    """Return gains of each wheel's motor, from a robot's mass (kg) and wheel radius (m)."""
     return PdControllerGains(p=0.0, d=_GAIN * (mass * radius**2) / (_MASS * _RADIUS**2))
 
 
 def add_differential_drive(
     builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, tick: float
 ) -> ControlledRobot:
-    """Wheels under velocity control, up to their effort limit."""
+    """Add wheels under velocity control, with limited effort."""
     drive = model.drive
-    assert isinstance(drive, DifferentialDrive)  # by build_robot
+    assert isinstance(drive, DifferentialDrive)  # checked by build_robot
     radius = drive.command_radius
     rig = add_plant(builder, parts, model, wheel_gains(model.mass, radius), tick)
     plant = rig.plant

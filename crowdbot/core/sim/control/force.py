@@ -1,8 +1,8 @@
-"""Force control: F = m dv/dt on the base, no more than the drive could give.
+"""Force control: F = m dv/dt on the base, limited by the drive's force.
 
-Source: CrowdBot D7.3, section 1.1 (control modes). Mass and inertia are those that a force at the
-base has to move, driven wheels among them. A holonomic drive is pushed sideways too, at the height
-of its centre of mass; the wheels of a differential one hold it on its track.
+Source: CrowdBot D7.3, section 1.1 (control modes). Mass and inertia include everything that a force
+at the base moves, such as driven wheels. A holonomic drive also gets a sideways force, at the
+height of its centre of mass; the wheels of a differential drive hold it on its track.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
 
-_GRAVITY = 9.81  # m/s^2, the plant's
+_GRAVITY = 9.81  # m/s^2, as in the plant
 
 
 class ForceDrive(LeafSystem):
-    """Inputs: robot state, wanted v, w and vy, push by people. Output: generalised force.
+    """Inputs: robot state, desired v, w and vy, force of people. Output: generalised force.
 
-    The output follows the state directly: one tick late, a gain of one would oscillate.
+    The output depends directly on the state: with a delay of one tick, a gain of one would
+    oscillate.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -71,10 +72,10 @@ class ForceDrive(LeafSystem):
 
 
 def _centre_above_root(rig: RobotPlant) -> float:
-    """Height of the centre of mass above the root's frame, m.
+    """Return the height of the centre of mass above the root's frame, m.
 
-    There the force acts. Below it, it would also tilt the robot, whose base would then seem to
-    weigh less than it does: a tall robot's speed would swing.
+    The force acts there. Lower, it would also tilt the robot, and its base would respond as if it
+    were lighter: the speed of a tall robot would oscillate.
     """
     context = rig.plant.CreateDefaultContext()
     centre = rig.plant.CalcCenterOfMassPositionInWorld(context, [rig.model])
@@ -87,7 +88,10 @@ def _clamp(value: float, most: float) -> float:
 
 
 def moved(rig: RobotPlant) -> tuple[float, float]:
-    """Mass (kg) and yaw inertia (kg m^2) that a push at the base moves, driven wheels rolling."""
+    """Return mass (kg) and yaw inertia (kg m^2) that a force at the base moves.
+
+    The wheels roll along.
+    """
     plant, drive = rig.plant, rig.robot.drive
     matrix = plant.CalcMassMatrix(plant.CreateDefaultContext())
     start = rig.root.floating_velocities_start_in_v()
@@ -100,7 +104,7 @@ def moved(rig: RobotPlant) -> tuple[float, float]:
 
 
 def strongest(rig: RobotPlant) -> tuple[float, float]:
-    """The largest force (N) and torque (N m) that the drive gives: both motors together."""
+    """Return the largest force (N) and torque (N m) of the drive, with both motors."""
     drive = rig.robot.drive
     if isinstance(drive, HolonomicDrive):
         return drive.max_force, drive.max_torque
@@ -110,10 +114,10 @@ def strongest(rig: RobotPlant) -> tuple[float, float]:
 
 
 def on_the_floor(drive: tuple[float, float], mass: float, friction: float) -> tuple[float, float]:
-    """What a slippery floor leaves of the force (N) and torque (N m) of a drive.
+    """Return force (N) and torque (N m) of a drive, limited by a slippery floor.
 
-    No more than the friction of the whole weight; torque shrinks as force does. On a floor of the
-    usual friction, 1, drives are taken to grip.
+    The force is at most the friction of the whole weight; torque is scaled alike. On a floor with
+    the default friction, 1, drives do not slip.
     """
     force, torque = drive
     share = min(1.0, friction * mass * _GRAVITY / force) if friction < 1.0 else 1.0
@@ -123,7 +127,7 @@ def on_the_floor(drive: tuple[float, float], mass: float, friction: float) -> tu
 def add_force(
     builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, tick: float
 ) -> ControlledRobot:
-    """A force on the base; the wheels roll along freely."""
+    """Add a force on the base; the wheels roll freely."""
     rig = add_plant(builder, parts, model, None, tick)
     plant = rig.plant
     state = add_robot_state(builder, rig)

@@ -1,8 +1,8 @@
-"""Kinematic control: the base moves on exact arcs, whatever pushes it; walls stop it.
+"""Kinematic control: the base moves on exact arcs, unaffected by forces; walls stop it.
 
-Between two ticks v, vy and w are constant, so the path is an arc of a circle; that of a robot which
-goes sideways too begins at an angle to where it looks. Wheel angles are those of wheels that roll
-without slipping, so that odometry works as in the other modes.
+Between two ticks v, vy and w are constant, so the path is an arc of a circle; for a robot that also
+moves sideways it starts at an angle to its heading. Wheel angles assume rolling without slip, so
+that odometry works as in the other modes.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel, RobotState
 
-_HALVINGS = 40  # an arc of 5 mm is cut at a wall to less than a picometre
-_TOUCHING = 1e-9  # m; how deep a robot that touches a wall stands in it
-_SKIN = 1e-6  # m; corners keep this far off: a wall inside a polygon is no farther than 0 m
-_ROUNDING = 1e-13  # m; must not hold a robot that drives along a wall
+_HALVINGS = 40  # limits an arc of 5 mm at a wall to less than a picometre
+_TOUCHING = 1e-9  # m; overlap of a robot that touches a wall
+_SKIN = 1e-6  # m; distance kept by corners, since a wall inside a polygon has distance 0
+_ROUNDING = 1e-13  # m; must not stop a robot that drives along a wall
 
 
 class KinematicBase(LeafSystem):
@@ -61,10 +61,10 @@ class KinematicBase(LeafSystem):
         x, y, _ = arc(now.x, now.y, way, speed, w, self._tick)
         yaw = math.remainder(now.yaw + w * self._tick, 2.0 * math.pi)
         share = self._free(now.x, now.y, now.yaw, crab, speed, w)
-        if share < 1.0:  # stopped by a wall; turning on the spot goes on
+        if share < 1.0:  # stopped by a wall; turning on the spot continues
             x, y, _ = arc(now.x, now.y, way, speed * share, w * share, self._tick)
             v, vy, speed = v * share, vy * share, speed * share
-            if len(self._body.corners):  # as far as corners may
+            if len(self._body.corners):  # as far as corners may move
                 turned = now.yaw + w * share * self._tick
                 rest = (1.0 - share) * w
                 w = w * share + rest * self._free(x, y, turned, 0.0, 0.0, rest)
@@ -94,7 +94,7 @@ class KinematicBase(LeafSystem):
         )  # fmt: skip
 
     def place(self, context: object, start: Pose) -> None:
-        """Put the robot, at rest, at a pose."""
+        """Put the robot at rest at a pose."""
         mine = self.GetMyMutableContextFromRoot(context)
         mine.get_mutable_discrete_state_vector().get_mutable_value()[:] = RobotState(
             start.x, start.y, start.yaw, 0.0, 0.0, 0.0, 0.0, self._robot.base_height, 0.0, 0.0
@@ -107,7 +107,7 @@ def _wheel_radius(robot: RobotModel) -> float:
 
 
 def obstacles(parts: EnvironmentParts, height: float) -> tuple[Array, Array]:
-    """Walls (S, 4) and pillars (P, 3) that a robot of some height meets; of solids the sides."""
+    """Return walls (S, 4) and pillars (P, 3) for a robot of some height; solids by their sides."""
     tables = [parts.walls[parts.stops_robot & (parts.wall_heights[:, 0] < height)]]
     for outline, (bottom, _) in zip(parts.solids, parts.solid_heights, strict=True):
         if bottom < height:
@@ -119,7 +119,7 @@ def obstacles(parts: EnvironmentParts, height: float) -> tuple[Array, Array]:
 def arc(
     x: float, y: float, yaw: float, v: float, w: float, dt: float
 ) -> tuple[float, float, float]:
-    """Pose after ``dt`` seconds at constant v and w, exactly; yaw within [-pi, pi]."""
+    """Return the exact pose after ``dt`` seconds at constant v and w; yaw within [-pi, pi]."""
     half = 0.5 * w * dt
     chord = v * dt * (math.sin(half) / half if half != 0.0 else 1.0)
     middle = yaw + half
@@ -142,9 +142,9 @@ def _gap_on_arc(
     way: float,
     turn: float,
 ) -> float:
-    """Gap of the outline after an arc of length ``way`` (m) that turns by ``turn`` (rad).
+    """Return the outline's gap after an arc of length ``way`` (m) that turns by ``turn`` (rad).
 
-    It goes in the direction ``yaw`` + ``crab`` and faces along ``yaw``.
+    The robot moves in the direction ``yaw`` + ``crab`` and faces along ``yaw``.
     """
     half = 0.5 * turn
     chord = way * (math.sin(half) / half if half != 0.0 else 1.0)
@@ -166,10 +166,10 @@ def free_share(
     way: float,
     turn: float,
 ) -> float:
-    """Share of an arc that a robot can go before it touches a wall, 0 to 1.
+    """Return the share of an arc that a robot can drive before it touches a wall, 0 to 1.
 
-    A robot that touches already may go where its gap does not shrink. ``outline`` is as in
-    `outline_gap`, ``radius`` that of its rounding, m.
+    A robot in contact may move if its gap does not shrink. ``outline`` is as in `outline_gap`,
+    ``radius`` its rounding, m.
     """
     gap = outline_gap(walls, pillars, outline, x, y, yaw)
     least = min(radius - _TOUCHING, gap - _ROUNDING)
@@ -189,7 +189,7 @@ def free_share(
 def add_kinematic(
     builder: DiagramBuilder, parts: EnvironmentParts, model: RobotModel, tick: float
 ) -> ControlledRobot:
-    """A base without masses and forces; people who touch it are pushed all the same."""
+    """Add a base without masses and forces; people who touch it are pushed anyway."""
     base = builder.AddNamedSystem("robot_state", KinematicBase(parts, model, tick))
     return ControlledRobot(
         state=base,

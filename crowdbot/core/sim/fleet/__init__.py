@@ -1,1 +1,1 @@
-"""Several robots in one run: each with its own plant, sensors and planner, all in one diagram."""
+"""Several robots in one run, each with its own plant, sensors and planner, in one diagram."""

@@ -1,4 +1,4 @@
-"""build_fleet: one diagram of several robots, wired as `crowdbot.core.sim.diagram` wires one."""
+"""build_fleet: one diagram of several robots, wired like `crowdbot.core.sim.diagram`."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from crowdbot.core.sim.sensor_bank import add_sensors
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FleetRobot:
-    """One robot of a fleet, with what decides about it.
+    """One robot of a fleet, with its planner and ending.
 
     Attributes:
         built: its model, sensors and task.
         host: its planner.
-        log: takes what is recorded of it.
-        fate: what becomes of it.
-        privileged: whether its planner sees the truth.
+        log: log of its recording.
+        fate: its ending.
+        privileged: True if its planner gets ground truth.
     """
 
     built: BuiltRun
@@ -47,7 +47,7 @@ class FleetRobot:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FleetBlocks:
-    """A finished diagram and its named parts, those of robots in their order."""
+    """A finished diagram and its named parts; those of robots in order."""
 
     diagram: Diagram
     robots: tuple[ControlledRobot, ...]
@@ -64,9 +64,9 @@ def build_fleet(
 
     Args:
         fleet: the robots, of one scenario.
-        engine: the people; None where there are none.
-        log: takes what is recorded of the people.
-        seed: of the run: noise of the sensors, of which each robot has streams of its own.
+        engine: the people, or None.
+        log: log of the people's recording.
+        seed: seed of the sensors' noise, with separate streams per robot.
     """
     builder = DiagramBuilder()
     builts, fates = [r.built for r in fleet], [r.fate for r in fleet]
@@ -108,7 +108,7 @@ def _add_mind(
     contacts: FleetContacts,
     seed: int,
 ) -> MetricLogger:
-    """Sensors, planner and watch of robot k, who sees and meets all others."""
+    """Add sensors, planner and monitor of robot k, which sees and meets all others."""
     one, robot = fleet[k], robots[k]
     rest = [i for i in range(len(fleet)) if i != k]
     others = [Companion(fleet[i].built.model, robots[i].port) for i in rest]
@@ -128,7 +128,7 @@ def _add_mind(
 
 @contextmanager
 def _named(builder: DiagramBuilder, robot: str) -> Iterator[None]:
-    """Put the robot's name before those of all systems that are added within this."""
+    """Prefix the names of all systems added in the context with the robot's name."""
     before = len(builder.GetSystems())
     yield
     for system in builder.GetSystems()[before:]:

@@ -1,4 +1,4 @@
-"""What is recorded once for all robots of a fleet, and what ends its run."""
+"""Log the people once for all robots of a fleet, and end its run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 class PeopleLogger(LeafSystem):
     """Input: crowd state. Samples it; ends the run when all robots have ended.
 
-    To be added after what watches the robots: blocks publish in the order in which they came.
+    Add it after the robots' monitors: blocks publish in the order of addition.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -54,7 +54,7 @@ class PeopleLogger(LeafSystem):
             self._log.record_events(self._crowd.Eval(context))
 
     def finish(self, context: Context, t: float) -> None:
-        """Record what is still going on; ``context`` is this system's own."""
+        """Record active trips at the end; ``context`` is this system's own."""
         self._log.finish(t, None if self._crowd is None else self._crowd.Eval(context))
 
 
@@ -65,7 +65,7 @@ def add_people_logger(
     rate: float,
     fates: Sequence[Fate],
 ) -> PeopleLogger:
-    """Add it to a diagram, after everything that watches robots."""
+    """Add it to a diagram, after all monitors of robots."""
     logger = PeopleLogger(log, crowd, rate, fates)
     builder.AddNamedSystem("people_logger", logger)
     if crowd is not None:

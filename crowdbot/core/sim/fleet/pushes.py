@@ -1,4 +1,4 @@
-"""What pushes one robot of a fleet: people, and other robots."""
+"""Forces on one robot of a fleet: from people, and from other robots."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 
 
 class PushSum(LeafSystem):
-    """Inputs: pushes of people and of robots. Output: their sum, as the control mode wants it."""
+    """Inputs: forces of people and of robots. Output: their sum, in the control mode's layout."""
 
     __slots__ = NO_ATTRIBUTES
 
@@ -38,7 +38,7 @@ def connect_pushes(
     crowd: CrowdSystem | None,
     contacts: FleetContacts,
 ) -> None:
-    """Let people and robots push robot k, if anything can."""
+    """Connect forces of people and robots to robot k, if any."""
     if robot.push_port is None:
         return
     total = builder.AddSystem(PushSum(robot, people=crowd is not None))

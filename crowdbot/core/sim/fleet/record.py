@@ -1,4 +1,4 @@
-"""Records one run of several robots into one file: among people, or without."""
+"""Record one run of several robots to one file, with or without people."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ from crowdbot.errors import InputError
 
 
 def record_fleet(setup: RunSetup, builts: Mapping[str, BuiltRun]) -> Outcome:
-    """Simulate the scenario's robots, each with its planner; people too if there are any.
+    """Simulate the scenario's robots, each with its planner, and its people.
 
     Args:
-        setup: what to record, and where.
-        builts: from `build_run`, of all robots of the scenario; used up by this.
+        setup: setup of the recording.
+        builts: from `build_run`, of all robots of the scenario; not reusable.
 
     Raises:
         InputError: a robot would start in a wall, an obstacle, a person or another robot.
-        PlannerHungError: a planner step never returned; the recording is closed all the same.
+        PlannerHungError: a planner step never returned; the recording is closed anyway.
     """
     first = next(iter(builts.values()))
     engine = build_crowd(first.scenario, setup.agents, first.parts, setup.registry)
@@ -94,7 +94,7 @@ def _member(
     number: int,
     stack: contextlib.ExitStack,
 ) -> FleetRobot:
-    """One robot with its part of the recording and its planner."""
+    """Build one robot with its part of the recording and its planner."""
     choice = setup.choice.of(built.name)
     header = replace(header_of(built, None), hashes=setup.hashes, namespace=built.name)
     writer = RecordingWriter(
@@ -104,7 +104,7 @@ def _member(
         beside=root,
         description=description_of(setup, built),
     )
-    # Before the root is closed, which is registered earlier.
+    # Before the root is closed, which was registered earlier.
     stack.callback(_close_member, writer, fate)
     sideways = isinstance(built.model.drive, HolonomicDrive)
     own = replace(setup, choice=choice)
@@ -130,7 +130,7 @@ def _close(writer: RecordingWriter, fates: Mapping[str, Fate]) -> None:
 
 
 def _run(setup: RunSetup, fleet: Sequence[FleetRobot], blocks: FleetBlocks) -> Outcome:
-    """Simulate; everything is in the logs afterwards, whatever happened."""
+    """Simulate; afterwards everything is in the logs, even after an error."""
     simulator = Simulator(blocks.diagram)
     context = simulator.get_mutable_context()
     for robot, one in zip(blocks.robots, fleet, strict=True):
@@ -171,7 +171,7 @@ def _run(setup: RunSetup, fleet: Sequence[FleetRobot], blocks: FleetBlocks) -> O
 
 
 def _outcome(one: FleetRobot) -> Outcome:
-    """How one robot ended; times of the machine are those of the run."""
+    """Return the outcome of one robot; machine times are those of the run."""
     fate = one.fate
     return Outcome(
         status=fate.status or INTERRUPTED,
@@ -187,7 +187,7 @@ def _outcome(one: FleetRobot) -> Outcome:
 
 
 def _finish(fleet: Sequence[FleetRobot], blocks: FleetBlocks, context: object) -> None:
-    """Write what is still going on."""
+    """Write active trips and contacts at the end."""
     t = float(context.get_time())  # type: ignore[attr-defined]
     blocks.contacts.finish()
     for one, logger in zip(fleet, blocks.loggers, strict=True):
@@ -197,7 +197,7 @@ def _finish(fleet: Sequence[FleetRobot], blocks: FleetBlocks, context: object) -
 
 
 def _farthest(fleet: Sequence[FleetRobot], blocks: FleetBlocks, context: object) -> float:
-    """The largest distance to a goal of the robots that go on, m."""
+    """Return the largest goal distance of active robots, m."""
     found = [0.0]
     for one, robot in zip(fleet, blocks.robots, strict=True):
         if not one.fate.ended:
@@ -208,7 +208,7 @@ def _farthest(fleet: Sequence[FleetRobot], blocks: FleetBlocks, context: object)
 
 
 def _status(fates: Mapping[str, Fate]) -> str:
-    """Of the run: the first of these that one robot has; arrived if all robots did."""
+    """Return the status of the run: the first of these that a robot has; arrived if all did."""
     found = [fate.status or INTERRUPTED for fate in fates.values()]
     for status in (INTERRUPTED, PLANNER_FAILED, TOPPLED, TIMEOUT):
         if status in found:
@@ -221,7 +221,7 @@ def _reason(fates: Mapping[str, Fate]) -> str:
 
 
 def _last_arrival(fates: Mapping[str, Fate]) -> float | None:
-    """When the last robot arrived, s; None where one did not."""
+    """Return the arrival time of the last robot, s; None if one did not arrive."""
     times = [fate.goal_time for fate in fates.values()]
     known = [t for t in times if t is not None]
     return max(known) if len(known) == len(times) else None

@@ -1,4 +1,4 @@
-"""Closes a chunk of a fleet's recording each simulated second, as that of one robot."""
+"""Close a chunk of a fleet's recording each simulated second, as for one robot."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 
 
 class FleetRecorder(Recorder):
-    """No ports. What robots have to write comes before the chunk of all ends."""
+    """No ports. Data of all robots is written before the shared chunk ends."""
 
     __slots__ = NO_ATTRIBUTES
 
@@ -29,5 +29,5 @@ class FleetRecorder(Recorder):
 def add_fleet_recorder(
     builder: DiagramBuilder, robots: Sequence[RecordingWriter], shared: RecordingWriter
 ) -> None:
-    """Add the recorder to a diagram; nothing is connected to it."""
+    """Add the recorder to a diagram; it needs no connections."""
     builder.AddNamedSystem("recorder", FleetRecorder(robots, shared))

@@ -1,9 +1,9 @@
-"""FleetContacts: robots that touch each other push each other, by one number for both.
+"""FleetContacts: contact forces between robots, equal and opposite.
 
 The force is that between people and robots (`crowdbot.core.crowd.contact.robot_contact`): Hunt and
-Crossley's along the normal, without friction, never pulling. Shells are as stiff as a person's
-body by default (30 kN/m, proposed, not published), in series with both skins; what is stiffer
-needs shorter ticks. Robots that are moved kinematically push and are not pushed.
+Crossley's along the normal, without friction, never pulling. The default stiffness of shells is
+that of a person's body (30 kN/m, proposed, not published), in series with both skins; a stiffer
+contact needs shorter ticks. Kinematic robots push but are not pushed.
 """
 
 from __future__ import annotations
@@ -49,15 +49,15 @@ from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
 
-#: Stiffness of two rigid shells against each other, N/m, and their dissipation, s/m.
+#: Stiffness of two rigid shells in contact, N/m, and their dissipation, s/m.
 SHELL, DISSIPATION = 30000.0, 0.3
-#: What stands for robot k in a table of contacts is this less k; -1 is a wall.
+#: Number of robot k in a table of contacts: this minus k; -1 is a wall.
 FIRST_ROBOT = -2
 
 
 @dataclass(slots=True)
 class _Touch:
-    """A contact that is going on; its bearings are those at its start, as each robot sees it."""
+    """An active contact; its bearings are those at its start, for each robot."""
 
     start: float
     end: float
@@ -69,11 +69,11 @@ class _Touch:
 
 @dataclass(frozen=True, slots=True)
 class Touched:
-    """Forces of one tick on one robot.
+    """Contact forces of one tick between two robots.
 
     Attributes:
-        depth: how far the two overlap, m.
-        at: where, world frame, m.
+        depth: overlap, m.
+        at: position, world frame, m.
         normal: away from the first robot.
         force: N.
         speed: relative, m/s.
@@ -89,7 +89,7 @@ class Touched:
 def touch(
     a: Array, outline_a: Array, b: Array, outline_b: Array, stiffness: float
 ) -> Touched | None:
-    """Two robots (rows and outlines as in `robot_contact`) against each other; None: apart."""
+    """Return the contact of two robots (rows and outlines as in `robot_contact`), or None."""
     depth, nx, ny, x, y = overlap_of_robots(a, outline_a, b, outline_b)
     if depth <= 0.0:
         return None
@@ -104,9 +104,9 @@ def _velocity_at(row: Array, x: float, y: float) -> tuple[float, float]:
 
 
 class FleetContacts(LeafSystem):
-    """Inputs: states of all robots. Outputs: of each, force x, y and torque (`ports.ROBOT_PUSH`).
+    """Inputs: states of all robots. Outputs: force x, y and torque per robot (`ports.ROBOT_PUSH`).
 
-    The event is unrestricted, as that of the crowd: both robots of a pair feel one computation.
+    The event is unrestricted, like the crowd's: both robots of a pair use one computation.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -139,7 +139,7 @@ class FleetContacts(LeafSystem):
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, 0.0, self._update)
 
     def on(self, k: int) -> OutputPort:
-        """What pushes robot k."""
+        """Return the port of the force on robot k."""
         return self.GetOutputPort(ports.of_robot(ports.ROBOT_PUSH, k))
 
     def _share(self, k: int, context: Context, output: BasicVector) -> None:
@@ -162,7 +162,7 @@ class FleetContacts(LeafSystem):
                 self._add(forces, i, j, found)
 
     def _candidates(self) -> list[tuple[int, int]]:
-        """Pairs that may touch, or did until now, in the order of all pairs."""
+        """Return pairs that may touch, or were in contact, in the order of all pairs."""
         if mark_within_reach(self._rows, self._reach, self._near) == 0 and not self._going_on:
             return []
         near = zip(*np.nonzero(self._near), strict=True)
@@ -173,7 +173,7 @@ class FleetContacts(LeafSystem):
         return touch(self._rows[i], of[i], self._rows[j], of[j], self._stiffness[i, j])
 
     def _add(self, forces: Array, i: int, j: int, found: Touched) -> None:
-        """Equal and opposite, at one point."""
+        """Add equal and opposite forces at one point."""
         (x, y), (nx, ny) = found.at, found.normal
         fx, fy = found.force * nx, found.force * ny
         for k, sign in ((i, -1.0), (j, 1.0)):
@@ -181,7 +181,7 @@ class FleetContacts(LeafSystem):
             forces[k] += sign * np.array([fx, fy, px * fy - py * fx])
 
     def _keep(self, i: int, j: int, found: Touched | None, t: float) -> None:
-        """Keep the book of this pair's contact."""
+        """Update the state of this pair's contact."""
         going_on = self._going_on.get((i, j))
         if found is None:
             if going_on is not None and self._gap_exceeds(i, j):
@@ -206,7 +206,7 @@ class FleetContacts(LeafSystem):
         return bool(depth <= 0.0)
 
     def finish(self, k: int | None = None) -> None:
-        """End the contacts that are going on: all, or those of one robot."""
+        """End the active contacts of all robots, or of one."""
         for i, j in list(self._going_on):
             if k is None or k in (i, j):
                 self._finish(i, j)
@@ -230,7 +230,7 @@ def add_fleet_contacts(
     fates: Sequence[Fate],
     logs: Sequence[RunLog],
 ) -> FleetContacts:
-    """Add the contacts between robots to a diagram; their pushes are connected elsewhere."""
+    """Add the contacts between robots to a diagram; their forces are connected elsewhere."""
     contacts = FleetContacts(models, fates, logs)
     builder.AddNamedSystem("robot_contacts", contacts)
     for k, robot in enumerate(robots):

@@ -15,7 +15,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, Range
 
 
 class FoeAvoidanceSpec(CostFunctionSpec):
-    """Turns and brakes so that nobody stays in the focus of expansion."""
+    """Turns and brakes so that no one stays in the focus of expansion."""
 
     kind: Literal["foe_avoidance"] = "foe_avoidance"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

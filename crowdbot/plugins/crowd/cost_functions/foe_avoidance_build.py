@@ -29,10 +29,10 @@ from crowdbot.plugin import (
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.force_build import no_base
 
-_AHEAD = 0.1  # m; who is less far ahead is not seen
-_CLOSING = -0.01  # m/s; who closes in slower is not seen
+_AHEAD = 0.1  # m; neighbours less far ahead are not seen
+_CLOSING = -0.01  # m/s; neighbours that close in slower are not seen
 _SHARPEST_TURN = 0.1  # rad
-_SINGLE = 1e-7  # what single precision takes for equal
+_SINGLE = 1e-7  # treated as equal in single precision
 
 
 class _Header:
@@ -75,7 +75,10 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Neighbours as offset, velocity, sum of radii; then walls (none in the original) as ends."""
+    """Write neighbours as offset, velocity, sum of radii.
+
+    Then walls (the original has none) as ends.
+    """
     header, discs, found = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _WALL)
     row = 0
     for j in range(near_count):
@@ -97,7 +100,7 @@ def _prepare(
 
 @array_kernel
 def _obstacle(row: int, ux: float, uy: float, radius: float, work: Pointer) -> tuple[float, ...]:
-    """Offset, relative velocity and reach: of a neighbour, or of the wall point hit first."""
+    """Return offset, relative velocity and reach of a neighbour, or of the wall point hit first."""
     if row <= int(as_record(work, _HEADER).discs):
         disc = as_rows(work, _DISC)[row]
         return disc.x, disc.y, disc.vx - ux, disc.vy - uy, disc.reach
@@ -112,7 +115,7 @@ def _obstacle(row: int, ux: float, uy: float, radius: float, work: Pointer) -> t
 
 @array_kernel
 def _terms(row: int, ux: float, uy: float, agent: AgentRecord, work: Pointer) -> tuple[float, ...]:
-    """Focus, bearing, spread, importance times proximity, closing speed of one obstacle."""
+    """Return focus, bearing, spread, importance times proximity, closing speed of an obstacle."""
     x, y, wx, wy, reach = _obstacle(row, ux, uy, agent.radius, work)
     speed = math.hypot(ux, uy)
     hx, hy = ux / speed, uy / speed
@@ -145,7 +148,7 @@ def _excess(
 def _gradient(
     ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
-    """The model's own rule for turning and braking, which is not the cost's exact gradient."""
+    """Write the model's own rule for turning and braking, not the cost's exact gradient."""
     out[0] = out[1] = 0.0
     speed, header = math.hypot(ux, uy), as_record(work, _HEADER)
     if speed == 0.0:
@@ -168,7 +171,7 @@ def _gradient(
 
 
 def build(spec: FoeAvoidanceSpec) -> CompiledCost:
-    """Compiled functions; there are no parameters."""
+    """Return the compiled functions; there are no parameters."""
     return CompiledCost(
         base=no_base,
         prepare=_prepare,

@@ -1,7 +1,7 @@
 """Forces as costs: C(u) = |u - target|^2 / (2 dt), the target being the force's effect in dt.
 
 ``prepare`` of a force-based function writes its target velocity to row 0 with `aim`; the rest is
-the same for all of them.
+shared.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from crowdbot.plugin import (
     record_type,
 )
 
-#: No force is larger, m/s^2: a target has to stay finite when squared.
+#: Largest force, m/s^2: a target has to stay finite when squared.
 _LARGEST = 1e9
 
 
@@ -37,7 +37,7 @@ _TARGET = record_type(_Target)
 
 @array_kernel
 def aim(fx: float, fy: float, agent: AgentRecord, work: Pointer) -> int:
-    """Write the target velocity of a force per mass (m/s^2)."""
+    """Write the target velocity for a force per mass (m/s^2)."""
     size = math.hypot(fx, fy)
     if size > _LARGEST:
         fx, fy = fx / size * _LARGEST, fy / size * _LARGEST
@@ -49,7 +49,7 @@ def aim(fx: float, fy: float, agent: AgentRecord, work: Pointer) -> int:
 
 @declared_kernel(BASE)
 def no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
-    """Nothing depends on the candidate alone."""
+    """Return 0: no cost depends on the candidate alone."""
     return 0.0
 
 
@@ -57,7 +57,7 @@ def no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Po
 def from_target(
     ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    """The whole cost."""
+    """Return the whole cost."""
     aimed = as_record(work, _TARGET)
     return float(0.5 * ((ux - aimed.vx) ** 2 + (uy - aimed.vy) ** 2) / agent.time_step)
 
@@ -66,7 +66,7 @@ def from_target(
 def to_target(
     ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
-    """Its gradient; at the present velocity minus the force per mass."""
+    """Write the cost's gradient; at the present velocity it is minus the force per mass."""
     aimed = as_record(work, _TARGET)
     out[0], out[1] = (ux - aimed.vx) / agent.time_step, (uy - aimed.vy) / agent.time_step
     return 1
@@ -74,7 +74,7 @@ def to_target(
 
 @declared_kernel(OPTIMUM)
 def target(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -> int:
-    """The velocity of least cost."""
+    """Write the velocity of least cost."""
     aimed = as_record(work, _TARGET)
     out[0], out[1] = aimed.vx, aimed.vy
     return 1

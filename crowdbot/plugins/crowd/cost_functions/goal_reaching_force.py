@@ -15,7 +15,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, Range
 
 
 class GoalReachingForceSpec(CostFunctionSpec):
-    """Pulls to the preferred velocity within the relaxation time of the policy."""
+    """Pulls towards the preferred velocity within the policy's relaxation time."""
 
     kind: Literal["goal_reaching_force"] = "goal_reaching_force"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

@@ -39,7 +39,7 @@ def _prepare(
 
 
 def build(spec: GoalReachingForceSpec) -> CompiledCost:
-    """Compiled functions; there are no parameters."""
+    """Return the compiled functions; there are no parameters."""
     return CompiledCost(
         base=no_base,
         prepare=_prepare,

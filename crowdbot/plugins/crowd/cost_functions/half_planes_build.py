@@ -21,14 +21,14 @@ _PARALLEL = 1e-10
 
 @array_kernel
 def put(work: Pointer, k: int, nx: float, ny: float, c: float) -> None:
-    """Write half-plane k; rows of ``work`` have eight columns, row 0 is kept free."""
+    """Write half-plane k; rows of ``work`` have eight columns, row 0 stays free."""
     at = 8 + 4 * k
     work[at], work[at + 1], work[at + 2] = nx, ny, c
 
 
 @array_kernel
 def violation(work: Pointer, k: int, ux: float, uy: float) -> float:
-    """How far u is outside half-plane k, m/s."""
+    """Return how far u is outside half-plane k, m/s."""
     at = 8 + 4 * k
     return float(work[at + 2] - work[at] * ux - work[at + 1] * uy)
 
@@ -47,7 +47,7 @@ def _constraint(work: Pointer, j: int, pivot: int) -> tuple[float, float, float]
 def _on_border(
     work: Pointer, i: int, pivot: int, speed: float, gx: float, gy: float, furthest: bool
 ) -> tuple[bool, float, float]:
-    """Best point on the border of constraint i under those before it; whether there is one."""
+    """Return the best point on the border of constraint i under the earlier ones, if any."""
     ax, ay, c = _constraint(work, i, pivot)
     length = math.hypot(ax, ay)
     if length <= _PARALLEL:
@@ -81,7 +81,7 @@ def _on_border(
 def _search(
     work: Pointer, count: int, pivot: int, speed: float, gx: float, gy: float, furthest: bool
 ) -> tuple[int, float, float]:
-    """Nearest point to g, or furthest along g; the constraint that cannot be met, or count."""
+    """Find the point nearest to g, or furthest along g; return the unmet constraint, or count."""
     size = math.hypot(gx, gy)
     scale = speed / size if size > 0.0 and (furthest or size > speed) else 1.0
     ux, uy = gx * scale, gy * scale
@@ -100,16 +100,16 @@ def _search(
 def best_velocity(
     work: Pointer, count: int, speed: float, px: float, py: float
 ) -> tuple[float, float]:
-    """Velocity within ``speed`` nearest to (px, py) in all half-planes.
+    """Return the velocity within ``speed`` nearest to (px, py) in all half-planes.
 
-    Where there is none, the one whose largest violation is least.
+    If there is none, return the velocity with the smallest largest violation.
     """
     failed, ux, uy = _search(work, count, -1, speed, px, py, False)
     worst = 0.0
     for i in range(failed, count):
         if violation(work, i, ux, uy) <= worst:
             continue
-        # The new worst plane: go as far as the others are violated no more than it.
+        # The new worst plane: go as far as no other plane is violated more.
         at = 8 + 4 * i
         stopped, x, y = _search(work, i, i, speed, work[at], work[at + 1], True)
         if stopped == i:

@@ -1,4 +1,4 @@
-"""Karamouzas: the predicted collision decides which velocities are thought of.
+"""Karamouzas: the predicted collision limits the velocities considered.
 
 Source: Karamouzas, Overmars, "A velocity-based approach for simulating human collision
 avoidance", IVA 2010, in the form of van Toll et al., I3D 2020.
@@ -15,7 +15,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range
 
 
 class KaramouzasSpec(CostFunctionSpec):
-    """Least effort among velocities whose deviation fits the time that is left."""
+    """Least effort among velocities whose deviation fits the time left before a collision."""
 
     kind: Literal["karamouzas"] = "karamouzas"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

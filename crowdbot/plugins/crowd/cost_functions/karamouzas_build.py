@@ -31,7 +31,7 @@ from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
 _SOON, _MEDIUM, _LATE = 2.5, 6.0, 8.0  # s, fixed by the model
 _SLACK = 0.05  # rad and m/s
-#: Candidates lie exactly on the limits; rounding must not decide there.
+#: Candidates lie exactly on the limits; rounding must not decide.
 _TOLERANCE = 1e-9
 
 
@@ -67,7 +67,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
 
 @array_kernel
 def _allowed(t: float, preferred: float, max_speed: float, parity: bool) -> tuple[float, ...]:
-    """Largest deviation in heading, slowest and fastest speed when a collision is t away."""
+    """Return the largest change of heading, and slowest and fastest speed, for a collision in t."""
     sixth = math.pi / 6.0
     if t >= _LATE:
         return _SLACK, preferred - _SLACK, preferred + _SLACK
@@ -94,7 +94,7 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Row 0: allowed deviation and speeds. Then the obstacles."""
+    """Write row 0: allowed deviation and speeds; then the obstacles."""
     fastest = max(agent.fastest, agent.preferred)
     list_obstacles(agent, near, near_count, walls, wall_count, params, work, fastest)
     t = first_collision(agent.pvx, agent.pvy, 0.0, agent, work)
@@ -128,14 +128,14 @@ def _excess(
     cost = own.beta * abs(speed - math.hypot(agent.vx, agent.vy)) / agent.max_speed
     if cost > budget or own.delta == 0.0:
         return float(cost)
-    # Earlier than this is too expensive.
+    # Earlier collisions are too expensive.
     until = own.t_max * (1.0 - (budget - cost) / own.delta)
     t = first_collision(ux, uy, until, agent, work)
     return float(cost + own.delta * max(0.0, 1.0 - t / own.t_max))
 
 
 def build(spec: KaramouzasSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

@@ -1,4 +1,4 @@
-"""Moussaid: the free way in each direction.
+"""Moussaid: the free distance in each direction.
 
 Source: Moussaïd, Helbing, Theraulaz, "How simple rules determine pedestrian behavior and
 crowd disasters", PNAS 108 (2011), in the form of van Toll et al., I3D 2020.
@@ -15,7 +15,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, Range
 
 
 class MoussaidSpec(CostFunctionSpec):
-    """Heads for the point nearest to the goal that can be seen free, at a safe speed."""
+    """Heads for the visible free point nearest to the goal, at a safe speed."""
 
     kind: Literal["moussaid"] = "moussaid"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

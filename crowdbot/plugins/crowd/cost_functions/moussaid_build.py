@@ -1,8 +1,8 @@
 """Moussaid as a compiled cost.
 
-With the free way c in direction e (at most d_max) and the safe speed S = min(s, c / tau):
-cost K (1 + ((S - |u|) / S)^2), K = d_max^2 + c^2 - 2 d_max c cos(e, v_preferred) + 1. The base is
-the least K of any c.
+With the free distance c in direction e (at most d_max) and the safe speed S = min(s, c / tau): cost
+K (1 + ((S - |u|) / S)^2), K = d_max^2 + c^2 - 2 d_max c cos(e, v_preferred) + 1. The base is the
+least K of any c.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def _prepare(
     work: Pointer,
 ) -> int:
     own = as_record(params, _PARAMS)
-    # All are asked for at the preferred speed; what comes after d_max costs nothing.
+    # All are computed at the preferred speed; beyond d_max there is no cost.
     speed = agent.preferred
     horizon = (1.0 + 1e-9) * own.d_max / speed if speed > 0.0 else math.inf
     list_approaching(
@@ -96,7 +96,7 @@ def _excess(
 
 
 def build(spec: MoussaidSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

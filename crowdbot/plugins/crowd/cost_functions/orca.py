@@ -14,7 +14,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range
 
 
 class OrcaSpec(CostFunctionSpec):
-    """The velocity nearest to the preferred one that is safe for a while."""
+    """The velocity nearest to the preferred one that stays safe for a time horizon."""
 
     kind: Literal["orca"] = "orca"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
@@ -26,7 +26,7 @@ class OrcaSpec(CostFunctionSpec):
         default="max_speed",
         exclude_if=lambda value: value == "max_speed",
         description="Largest speed of the optimum: the agent's, as in the original, or the "
-        "preferred one, so that nobody hurries out of others' way.",
+        "preferred one, so that people do not hurry out of others' way.",
     )
 
 

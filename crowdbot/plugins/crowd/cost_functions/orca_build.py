@@ -26,7 +26,7 @@ from crowdbot.plugin import (
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 
-_BRAKING = 0.5  # s in which the gap to a wall may be used up
+_BRAKING = 0.5  # s within which the gap to a wall may be used up
 
 
 class _Params(CostParams):
@@ -60,12 +60,13 @@ def _change(
     dt: float,
     parity: bool,
 ) -> tuple[float, float, float]:
-    """Unit vector out of the velocity obstacle, and the way to its border along it.
+    """Return the unit vector out of the velocity obstacle, and the distance to its border along it.
 
     Args:
         rx, ry: centre of the other disc minus own centre.
         wx, wy: own velocity minus the other's.
-        horizon, dt: time for which discs apart are kept apart, and in which others separate.
+        horizon, dt: time for which separate discs stay apart, and in which overlapping ones
+            separate.
     """  # fmt: skip
     d2 = rx * rx + ry * ry
     gap2 = d2 - reach * reach
@@ -77,7 +78,7 @@ def _change(
         if out == 0.0:
             distance = math.sqrt(d2)
             return (-rx / distance, -ry / distance, reach / time) if d2 > 0.0 else (0.0, 0.0, 0.0)
-        if parity and gap2 <= 0.0:  # divided by the square: a vector that is not a unit vector
+        if parity and gap2 <= 0.0:  # divided by the square, so not a unit vector
             return ox / out2, oy / out2, reach / time - out2
         return ox / out, oy / out, reach / time - out
     leg, side = math.sqrt(gap2), 1.0 if rx * oy - ry * ox > 0.0 else -1.0
@@ -95,7 +96,7 @@ def _put_walls(
     work: Pointer,
     count: int,
 ) -> int:
-    """Two half-planes for each wall: braking, and going round its nearest point."""
+    """Write two half-planes per wall: for braking, and for passing its nearest point."""
     own = as_record(params, _PARAMS)
     vx, vy, radius = agent.vx, agent.vy, agent.radius
     for s in range(wall_count):
@@ -122,7 +123,7 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Row 0: number of half-planes; these follow."""
+    """Write row 0: the number of half-planes; then the half-planes."""
     own = as_record(params, _PARAMS)
     count = 0
     vx, vy, horizon, dt = agent.vx, agent.vy, own.horizon, agent.time_step
@@ -136,14 +137,14 @@ def _prepare(
         )  # fmt: skip
         if nx == 0.0 and ny == 0.0:
             continue
-        share = 1.0 if near[j].static != 0.0 else 0.5  # people do half of it each
+        share = 1.0 if near[j].static != 0.0 else 0.5  # people share the avoidance equally
         c = nx * (vx + share * way * nx) + ny * (vy + share * way * ny)
         put(work, count, nx, ny, c)
         count += 1
     if not parity:
         count = _put_walls(agent, walls, wall_count, params, work, count)
     work[0] = count
-    return max(count, 1)  # base alone may be less than the cost of a candidate that is too fast
+    return max(count, 1)  # the base alone may be below the cost of a candidate that is too fast
 
 
 @declared_kernel(EXCESS)
@@ -171,7 +172,7 @@ def _optimum(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -
 
 
 def build(spec: OrcaSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

@@ -31,8 +31,8 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
 
-_BRAKING = 0.5  # s of way that has to be free before a wall or a pillar
-#: The original's infinity: one blocking neighbour still is finite, and less than none to choose.
+_BRAKING = 0.5  # s of free distance required before a wall or a pillar
+#: The original's infinity: one blocking neighbour has a finite cost, lower than having no choice.
 _LARGEST = 3.4028234663852886e38
 _OFFSET = 1e-3  # keeps the excess positive under parity
 _PARALLEL = 1e-5  # m/s; lines whose cross product is below this do not cross
@@ -97,7 +97,10 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """People, then pillars: offset, velocity, reach. Then walls (none in the original): ends."""
+    """Write people, then pillars: offset, velocity, reach.
+
+    Then walls (the original has none): ends.
+    """
     header, discs, found = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _WALL)
     row = 0
     for fixed in range(2):
@@ -124,16 +127,16 @@ def _prepare(
 
 @array_kernel
 def _time(rx: float, ry: float, vx: float, vy: float, reach: float, parity: bool) -> float:
-    """Until a point with velocity v is within reach of (rx, ry)."""
+    """Return the time until a point with velocity v is within reach of (rx, ry)."""
     gap2 = rx * rx + ry * ry - reach * reach
     if gap2 <= 0.0 or (parity and vx == 0.0 and vy == 0.0):
-        return 0.0  # the original takes two who keep their distance for touching
+        return 0.0  # the original treats a pair with constant distance as touching
     return float(time_to_disc(rx, ry, vx, vy, gap2))
 
 
 @array_kernel
 def _ratio(a: float, b: float) -> float:
-    """Quotient; 0 / 0 is 0, which the original leaves undefined."""
+    """Return the quotient; 0 / 0 is 0, which the original leaves undefined."""
     if b != 0.0:
         return a / b
     return 0.0 if a == 0.0 else math.copysign(math.inf, a)
@@ -143,7 +146,7 @@ def _ratio(a: float, b: float) -> float:
 def _window(
     row: int, ex: float, ey: float, agent: AgentRecord, work: Pointer, t_max: float
 ) -> tuple[float, float, float]:
-    """When neighbour `row` reaches the crossing, and the speeds between which it is met there."""
+    """Return when neighbour `row` reaches the crossing, and the speeds that meet it there."""
     disc, parity = as_rows(work, _DISC)[row], agent.parity != 0.0
     rx, ry, vx, vy = disc.x, disc.y, disc.vx, disc.vy
     reach, cross = disc.reach, ex * vy - ey * vx
@@ -163,7 +166,7 @@ def _window(
 
 @array_kernel
 def _free_way(row: int, ex: float, ey: float, agent: AgentRecord, work: Pointer) -> float:
-    """Way in direction e before pillar or wall `row` is touched, m."""
+    """Return the distance in direction e until pillar or wall `row` is touched, m."""
     header, radius = as_record(work, _HEADER), agent.radius
     if row <= int(header.people + header.pillars):
         disc = as_rows(work, _DISC)[row]
@@ -176,7 +179,7 @@ def _free_way(row: int, ex: float, ey: float, agent: AgentRecord, work: Pointer)
 
 @array_kernel
 def _single_unit(x: Any, y: Any) -> tuple[float, float]:
-    """Unit vector in single precision; zero where that knows no length."""
+    """Return a unit vector in single precision; zero if its length underflows."""
     a, b = float32(x), float32(y)
     size = float32(math.sqrt(float32(a * a) + float32(b * b)))
     if size == float32(0.0):
@@ -186,7 +189,7 @@ def _single_unit(x: Any, y: Any) -> tuple[float, float]:
 
 @array_kernel
 def _rounding(ux: float, uy: float, agent: AgentRecord) -> float:
-    """Error of 1 - cos(u, v_preferred) in the original's single precision.
+    """Return the error of 1 - cos(u, v_preferred) in the original's single precision.
 
     It decides between candidates that differ by less than a few millionths of the cost.
     """
@@ -238,7 +241,7 @@ def _excess(
 
 
 def build(spec: ParisSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

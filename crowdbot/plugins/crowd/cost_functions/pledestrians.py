@@ -21,7 +21,7 @@ from crowdbot.plugin import (
 
 
 class PledestriansSpec(CostFunctionSpec):
-    """Least metabolic energy to the goal, without a collision soon."""
+    """Least metabolic energy to the goal without an early collision."""
 
     kind: Literal["pledestrians"] = "pledestrians"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

@@ -80,7 +80,7 @@ def _excess(
 
 
 def build(spec: PledestriansSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

@@ -15,7 +15,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range
 
 
 class PowerLawSpec(CostFunctionSpec):
-    """Pushes away from collisions, by a power law of the time that is left."""
+    """Pushes away from collisions with a power law of the time left."""
 
     kind: Literal["power_law"] = "power_law"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

@@ -47,7 +47,7 @@ _PARAMS = record_type(_Params)
 def _repulsion(
     rx: float, ry: float, wx: float, wy: float, reach: float, params: Pointer
 ) -> tuple[float, float]:
-    """Force per mass by a disc at (rx, ry) that is approached with velocity w."""
+    """Return the force per mass from a disc at (rx, ry) approached with velocity w."""
     own = as_record(params, _PARAMS)
     speed2, approach = wx * wx + wy * wy, rx * wx + ry * wy
     gap2 = rx * rx + ry * ry - reach * reach
@@ -75,7 +75,7 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Sum of forces; a wall is its nearest point, which the original has none of."""
+    """Write the sum of forces; a wall is its nearest point (the original has no walls)."""
     vx, vy, fx, fy = agent.vx, agent.vy, 0.0, 0.0
     for j in range(near_count):
         if in_range(near[j].d2, near[j].reach, params):
@@ -90,7 +90,7 @@ def _prepare(
 
 
 def build(spec: PowerLawSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=no_base,

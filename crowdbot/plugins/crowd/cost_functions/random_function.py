@@ -1,4 +1,4 @@
-"""RandomFunction: noise, for tests and for breaking ties.
+"""RandomFunction: noise, for tests and to break ties.
 
 Source: van Toll et al., "Generalized Microscopic Crowd Simulation using Costs in Velocity
 Space", I3D 2020.
@@ -15,7 +15,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, Range
 
 
 class RandomFunctionSpec(CostFunctionSpec):
-    """A random cost between 0 and 2; from a generator that each agent has of its own."""
+    """A random cost between 0 and 2, from each agent's own generator."""
 
     kind: Literal["random_function"] = "random_function"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
@@ -26,5 +26,5 @@ RANDOM_FUNCTION = Component(
     spec=RandomFunctionSpec,
     build="crowdbot.plugins.crowd.cost_functions.random_function_build:build",
     summary="random cost between 0 and 2",
-    exceptions={"check_gradient": "what is drawn anew for each candidate has no slope"},
+    exceptions={"check_gradient": "random costs per candidate have no slope"},
 )

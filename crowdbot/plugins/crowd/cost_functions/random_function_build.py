@@ -1,6 +1,6 @@
 """RandomFunction as a compiled cost: uniform between 0 and 2, from the agent's own generator.
 
-The original draws between -1 and 1; adding 1 to every candidate changes no choice.
+The original draws between -1 and 1; adding 1 to every candidate does not change the choice.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def _gradient(
 
 
 def build(spec: RandomFunctionSpec) -> CompiledCost:
-    """Compiled functions; there are no parameters."""
+    """Return the compiled functions; there are no parameters."""
     return CompiledCost(
         base=_base,
         prepare=_prepare,

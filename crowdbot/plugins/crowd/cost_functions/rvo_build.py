@@ -29,7 +29,7 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
-#: Later than any collision but one that never comes, s.
+#: Later than any finite collision time, s.
 _EVER = 1e300
 _ROUNDING = 1.0 + 1e-6
 
@@ -45,7 +45,7 @@ _PARAMS = record_type(_Params)
 
 @array_kernel
 def _too_fast(ux: float, uy: float, max_speed: float) -> bool:
-    """In single precision, which decides about candidates at exactly the largest speed."""
+    """Return True if the speed is above the maximum in single precision."""
     x, y = np.float32(ux), np.float32(uy)
     speed = np.float32(np.sqrt(np.float32(np.float32(x * x) + np.float32(y * y))))
     return bool(speed > np.float32(max_speed))
@@ -69,9 +69,9 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    # Of 2u - v.
+    # The velocity is 2u - v.
     ux, uy = 2.0 * agent.asked_x - agent.vx, 2.0 * agent.asked_y - agent.vy
-    # The second term is for rounding, where the sum of two sides does as well as the length.
+    # The second term covers rounding, where the sum of two sides replaces the length.
     spread = 2.0 * agent.asked_radius + 1e-9 * (agent.fastest + abs(ux) + abs(uy))
     items = list_approaching(
         agent, near, near_count, walls, wall_count, params, work, ux, uy, spread, _EVER
@@ -101,7 +101,7 @@ def _lower_bound(
     params: Pointer,
     out: Pointer,
 ) -> int:
-    """Without walls."""
+    """Return a lower bound of the cost, without walls."""
     own = as_record(params, _PARAMS)
     soonest_disc(count, ux, uy, 2.0, agent.vx, agent.vy, work, out)
     for c in range(count):
@@ -110,7 +110,7 @@ def _lower_bound(
 
 
 def build(spec: RvoSpec) -> CompiledCost:
-    """Compile-time functions with this spec's parameters."""
+    """Return the compile-time functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

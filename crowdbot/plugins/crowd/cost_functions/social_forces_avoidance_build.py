@@ -56,7 +56,7 @@ _PARAMS = record_type(_Params)
 def _people(
     agent: AgentRecord, near: Rows[NeighbourRecord], j: int, params: Pointer
 ) -> tuple[float, float]:
-    """Force per mass by neighbour j: along the line of centres, by the ellipse of its stride."""
+    """Return the force per mass from neighbour j, by the ellipse of its stride."""
     own = as_record(params, _PARAMS)
     parity = agent.parity != 0.0
     xx, xy = -near[j].rx, -near[j].ry
@@ -94,7 +94,7 @@ def _people(
 def _wall(
     yx: float, yy: float, distance: float, parity: bool, params: Pointer
 ) -> tuple[float, ...]:
-    """Force per mass by a wall point; y leads from it to the agent."""
+    """Return the force per mass from a wall point; y points from it to the agent."""
     own = as_record(params, _PARAMS)
     if distance < _CLOSEST:
         return 0.0, 0.0
@@ -113,7 +113,7 @@ def _faces(s: int, agent: AgentRecord, walls: Rows[WallRecord], params: Pointer)
     wall = walls[s]
     ax, ay, bx, by = wall.ax, wall.ay, wall.bx, wall.by
     outside = ax * (by - ay) - ay * (bx - ax) <= 0.0
-    # The nearest point was worked out along the segment, so that its end is met but for rounding.
+    # The nearest point was computed along the segment, so its end is reached up to rounding.
     second = abs(wall.nx - bx) <= SAME and abs(wall.ny - by) <= SAME
     return bool(outside and not second and in_range(wall.d2, agent.radius, params))
 
@@ -128,7 +128,7 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Sum of forces; pillars push like walls."""
+    """Write the sum of forces; pillars push like walls."""
     parity, fx, fy = agent.parity != 0.0, 0.0, 0.0
     for j in range(near_count):
         if not in_range(near[j].d2, near[j].reach, params):
@@ -150,7 +150,7 @@ def _prepare(
 
 
 def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=no_base,

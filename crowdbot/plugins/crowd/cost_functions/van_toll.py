@@ -1,4 +1,4 @@
-"""VanToll: free way, deviation and inertia in one sum.
+"""VanToll: free distance, deviation and inertia in one sum.
 
 Source: van Toll, Pettré, the synthesis used in van Toll et al., "Generalized Microscopic
 Crowd Simulation using Costs in Velocity Space", I3D 2020.
@@ -15,7 +15,7 @@ from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, Range
 
 
 class VanTollSpec(CostFunctionSpec):
-    """Weighs the free way against turning from the goal and from the present velocity."""
+    """Weighs the free distance against turning away from the goal and from the present velocity."""
 
     kind: Literal["van_toll"] = "van_toll"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

@@ -1,4 +1,4 @@
-"""VanToll as a compiled cost: the way that is not free, deviation from the goal, inertia.
+"""VanToll as a compiled cost: blocked distance, deviation from the goal, inertia.
 
 Base: angle to the preferred velocity + ||u| - s| / s. Excess: d - min(d, T |u|) + angle to the
 present velocity, with d the max_distance and T the time to the first collision.
@@ -80,7 +80,7 @@ def _excess(
 
 
 def build(spec: VanTollSpec) -> CompiledCost:
-    """Compiled functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

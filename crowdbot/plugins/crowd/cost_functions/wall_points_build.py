@@ -1,4 +1,4 @@
-"""Walls as points: the nearest one of each segment, corners once."""
+"""Walls as points: the nearest point of each segment, with shared corners counted once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.plugin import (
     in_range,
 )
 
-#: Points that are nearer to each other are one, m.
+#: Points nearer to each other than this are one, m.
 SAME = 1e-9
 
 

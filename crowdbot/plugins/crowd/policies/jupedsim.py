@@ -1,4 +1,4 @@
-"""JuPedSim: two models of the library of that name, as a crowd policy.
+"""JuPedSim: two models of this library as a crowd policy.
 
 Sources: Tordeux, Chraibi, Seyfried, "Collision-free speed model for pedestrian dynamics", Traffic
 and Granular Flow 2015; Xu, Chraibi, Seyfried, "Anticipation in a velocity-based model for
@@ -23,7 +23,7 @@ from crowdbot.plugin import (
 class JuPedSimSpec(CrowdPolicySpec):
     """People decide as in JuPedSim; needs ``crowdbot[jupedsim]``. Takes no cost functions.
 
-    What is not a field here has the library's default.
+    Parameters without a field here have the library's defaults.
     """
 
     kind: Literal["jupedsim"] = "jupedsim"

@@ -1,4 +1,4 @@
-"""Walkable areas as JuPedSim wants them: connected polygons between the walls."""
+"""Walkable areas for JuPedSim: connected polygons between the walls."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from crowdbot.plugin import Array
 
-#: Walls are slits this wide, m.
+#: Walls become slits of this width, m.
 SLIT = 0.002
-#: The floor ends at multiples of this, so that the same area serves many decisions, m.
+#: The floor ends at multiples of this, so that many decisions can share the same area, m.
 _GRID = 100.0
 
 
@@ -25,13 +25,13 @@ class WalkableArea:
     shapely: Any
 
     def contains(self, points: Array) -> NDArray[np.bool_]:
-        """Which of (M, 2) points lie inside."""
+        """Return a mask of the (M, 2) points inside."""
         return np.asarray(
             self.shapely.contains_xy(self.shape, points[:, 0], points[:, 1]), np.bool_
         )
 
     def nearest(self, point: Array) -> tuple[float, float]:
-        """The point itself, or the nearest one of the area."""
+        """Return the point itself, or the nearest one of the area."""
         wanted = self.shapely.Point(*point)
         if not self.shape.contains(wanted):
             inner = self.shape.buffer(-SLIT)
@@ -40,7 +40,7 @@ class WalkableArea:
 
 
 class WalkableAreas:
-    """Cuts the floor along the walls; remembers the latest cut."""
+    """Cuts the floor along the walls and caches the last cut."""
 
     def __init__(self, shapely: Any) -> None:
         self._shapely = shapely
@@ -48,7 +48,7 @@ class WalkableAreas:
         self._areas: list[WalkableArea] = []
 
     def of(self, points: Array, walls: Array) -> Iterator[tuple[WalkableArea, NDArray[np.bool_]]]:
-        """Each part of the floor in which some of the points (M, 2) lie, and which do."""
+        """Yield each part of the floor that contains points (M, 2), and a mask of these."""
         ends = np.concatenate([points, walls[:, :2], walls[:, 2:]])
         if not len(ends):
             return

@@ -1,9 +1,9 @@
-"""JuPedSim as a policy: each decision is a short simulation of its own, begun from what is.
+"""JuPedSim as a policy: each decision is a short simulation from the current state.
 
-The library keeps people in its own state and takes no corrections from outside, while here
-contacts and robots move people, too. So nothing is kept: people are put where they are, the
-library walks them through one decision, and their mean velocity is the answer. Equal situations
-get equal answers, in any order of agents.
+The library keeps its own state and accepts no corrections, while here contacts and robots also move
+people. So nothing is kept: people are placed at their current positions, the library simulates one
+decision, and their mean velocity is the result. Equal situations give equal results, in any order
+of agents.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ from crowdbot.plugin import Agents, Array, CrowdView, InputError, PluginError
 from crowdbot.plugins.crowd.policies.jupedsim import JuPedSimSpec
 from crowdbot.plugins.crowd.policies.jupedsim_area_build import SLIT, WalkableAreas
 
-#: The library refuses bodies that overlap: they are taken as smaller, but not smaller than this, m.
+#: Smallest radius, m: the library refuses overlapping bodies, so overlapping ones are shrunk, but
+#: not below this.
 _SMALLEST = 0.01
-#: What is left of a gap between bodies, so that rounding does not make them overlap.
+#: Share of a gap between bodies that remains, so that rounding does not make them overlap.
 _ROOM = 1.0 - 1e-6
-#: The library aims at points of the floor; goals farther than this are replaced by nearer ones, m.
+#: The library needs targets on the floor; goals farther than this are replaced by nearer ones, m.
 _FAR = 50.0
-#: Seeds the library's own random numbers; each decision draws the same ones.
+#: Seed of the library's own random numbers; each decision draws the same ones.
 _SEED = 1
 
 
 def library(name: str) -> Any:
-    """A module of the optional extra.
+    """Import a module of the optional extra.
 
     Raises:
         PluginError: it is not installed.
@@ -44,14 +45,16 @@ def library(name: str) -> Any:
 
 
 class JuPedSim:
-    """One of the library's models for one set of agents."""
+    """One of the library's models for a set of agents."""
 
     def __init__(self, spec: JuPedSimSpec, jps: Any, areas: WalkableAreas) -> None:
         self._spec, self._jps, self._areas = spec, jps, areas
         self.contact_stiffness = spec.contact_stiffness
 
     def velocities(self, view: CrowdView, dt: float) -> Array:
-        """Mean velocities over the next ``dt``; straight ahead for who cannot be simulated.
+        """Return mean velocities over the next ``dt``.
+
+        Straight ahead for agents it cannot simulate.
 
         Raises:
             PluginError: the library refuses the situation.
@@ -60,7 +63,7 @@ class JuPedSim:
         others = view.others(self._spec.sight)
         people = np.flatnonzero(view.present)
         people = people[np.argsort(view.agents.id[people])]
-        # Others walk on as they do: robots, pillars, people across the border.
+        # Others keep their velocity: robots, pillars, people across the border.
         ahead = others[:, :2] + others[:, 2:4] * max(dt, 1.0)
         at = np.concatenate([view.position[people], others[:, :2]])
         aim = np.concatenate([goal[people], ahead])
@@ -68,7 +71,7 @@ class JuPedSim:
         radius = np.concatenate([view.agents.avoided_radius[people], others[:, 4]])
         try:
             moved = self._walk(at, aim, speed, radius, view.walls, dt)[: len(people)]
-        except RuntimeError as error:  # what the library raises for all it does not like
+        except RuntimeError as error:  # the library raises this for any invalid input
             raise PluginError(f"jupedsim at t = {view.t:g} s: {error}") from error
         answer = wanted.copy()
         done = np.isfinite(moved[:, 0])
@@ -78,7 +81,10 @@ class JuPedSim:
     def _walk(
         self, at: Array, aim: Array, speed: Array, radius: Array, walls: Array, dt: float
     ) -> Array:
-        """Displacements (M, 2) within ``dt``, m; NaN for who stands on a wall or on another."""
+        """Return displacements (M, 2) within ``dt``, m.
+
+        NaN for agents on a wall or on another agent.
+        """
         moved = np.full(at.shape, np.nan)
         size = np.minimum(_shrunk(at, radius), _ROOM * (_to_walls(at, walls) - SLIT))
         steps = max(1, round(dt / self._spec.time_step))
@@ -124,7 +130,7 @@ class JuPedSim:
 
 
 def _preferred(view: CrowdView) -> tuple[Array, Array]:
-    """Preferred velocities (N, 2), zero for who has arrived; goals (N, 2) that are not too far."""
+    """Return preferred velocities (N, 2), zero after arrival; and goals (N, 2) within reach."""
     offset = view.goal - view.position
     distance = np.hypot(offset[:, 0], offset[:, 1])
     on_the_way = distance > view.agents.radius
@@ -134,7 +140,7 @@ def _preferred(view: CrowdView) -> tuple[Array, Array]:
 
 
 def _shrunk(at: Array, radius: Array) -> Array:
-    """Radii (M,) with which no two bodies overlap: both of a pair shrink by the same factor."""
+    """Return radii (M,) without overlap: both of a pair shrink by the same factor."""
     factor = np.ones(len(at))
     for i in range(len(at) - 1):
         away = np.hypot(*(at[i + 1 :] - at[i]).T) / (radius[i + 1 :] + radius[i])
@@ -144,7 +150,7 @@ def _shrunk(at: Array, radius: Array) -> Array:
 
 
 def _to_walls(at: Array, walls: Array) -> Array:
-    """Distance (M,) of points to the nearest wall, m."""
+    """Return the distance (M,) of points to the nearest wall, m."""
     nearest = np.full(len(at), np.inf)
     for x0, y0, x1, y1 in walls:
         start, along = np.array([x0, y0]), np.array([x1 - x0, y1 - y0])
@@ -156,10 +162,10 @@ def _to_walls(at: Array, walls: Array) -> Array:
 
 
 def build(spec: JuPedSimSpec, costs: Sequence[object], agents: Agents) -> JuPedSim:
-    """The policy for one set of agents.
+    """Build the policy for a set of agents.
 
     Raises:
-        InputError: cost functions are given, which it does not take.
+        InputError: cost functions are given, which it does not support.
         PluginError: the library is not installed.
     """
     del agents

@@ -1,4 +1,4 @@
-"""Replay: people walk as they were recorded, or are drawn along by the record."""
+"""Replay: people walk as recorded, or follow the record while avoiding others."""
 
 from __future__ import annotations
 
@@ -16,12 +16,11 @@ from crowdbot.plugin import (
 
 
 class ReplaySpec(CrowdPolicySpec):
-    """Agents follow the recorded person with their id.
+    """Agents follow the recorded person with the same id.
 
-    A crowd without flow, spawns and agents is everybody in the record, from where and when each
-    begins to where it ends. Without cost functions they do so whatever is in their way; with cost
-    functions they are walkers of velocity_space, on the way to where the person was ``ahead``
-    later.
+    A crowd without flow, spawns and agents contains everyone in the record, each from its recorded
+    start to its end. Without cost functions they ignore all obstacles; with cost functions they
+    walk as in velocity_space, towards the person's recorded position ``ahead`` seconds later.
     """
 
     kind: Literal["replay"] = "replay"
@@ -35,7 +34,7 @@ class ReplaySpec(CrowdPolicySpec):
 
     @property
     def record(self) -> Asset:
-        """The people in the file walk where the crowd names nobody."""
+        """Return the record, used if the crowd names no people."""
         return self.file
 
 

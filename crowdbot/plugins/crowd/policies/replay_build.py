@@ -23,14 +23,14 @@ from crowdbot.plugins.crowd.policies.velocity_space_build import build as veloci
 
 
 class Replay:
-    """As fast as the recorded person, and back to the record after a push."""
+    """Keeps the recorded speed, and returns to the record after a push."""
 
     def __init__(self, record: RecordedCrowd, contact_stiffness: float = 0.0) -> None:
         self._record = record
         self.contact_stiffness = contact_stiffness
 
     def velocities(self, view: CrowdView, dt: float) -> Array:
-        """The recorded step, plus what makes good an error: never faster than one can brake."""
+        """Return the recorded step plus a correction of the position error, limited by braking."""
         now = places(self._record, view, view.t)
         error = now - view.position
         away = np.hypot(error[:, 0], error[:, 1])
@@ -41,7 +41,7 @@ class Replay:
 
 
 class ReactiveReplay:
-    """Another policy, whose goals are where the recorded people were a little later."""
+    """Follows another policy towards where the recorded people were a little later."""
 
     def __init__(self, record: RecordedCrowd, inner: CrowdPolicy, ahead: float) -> None:
         self._record, self._inner, self._ahead = record, inner, ahead
@@ -51,14 +51,17 @@ class ReactiveReplay:
         self.relaxation_time: float = getattr(inner, "relaxation_time", 0.0)
 
     def accelerations(self, view: CrowdView) -> Array:
-        """What the other policy does with these goals."""
+        """Return the other policy's accelerations towards these goals."""
         return desired_acceleration(
             self._inner, replace(view, goal=places(self._record, view, view.t + self._ahead))
         )
 
 
 def places(record: RecordedCrowd, view: CrowdView, t: float) -> Array:
-    """Recorded positions (N, 2) at a time, m; own position for who is not in the world."""
+    """Return recorded positions (N, 2) at a time, m.
+
+    The agent's own position if not in the world.
+    """
     found = view.position.copy()
     for i in np.flatnonzero(view.present):
         found[i] = record.at(int(view.agents.id[i]), t)
@@ -66,15 +69,15 @@ def places(record: RecordedCrowd, view: CrowdView, t: float) -> Array:
 
 
 def build(spec: ReplaySpec, costs: Sequence[object], agents: Agents) -> CrowdPolicy:
-    """The policy for one set of agents.
+    """Build the policy for a set of agents.
 
     Raises:
-        InputError: the file is not a record, or an agent is not in it.
+        InputError: the file is not a record, or does not contain an agent.
     """
     record = read_record(spec.file.file)
     missing = sorted(set(agents.id.tolist()) - set(record.time))
     if missing:
-        raise InputError(f"{spec.file.path}: nobody with id {missing[0]} is recorded")
+        raise InputError(f"{spec.file.path}: no person with id {missing[0]} is recorded")
     if not costs:
         return Replay(record, spec.contact_stiffness)
     walking = VelocitySpaceSpec(contact_stiffness=spec.contact_stiffness)

@@ -1,4 +1,4 @@
-"""Velocity-space policy: each person takes the velocity of least cost.
+"""Velocity-space policy: each person takes the velocity with the lowest cost.
 
 Source: van Toll et al., "Generalized Microscopic Crowd Simulation using Costs in Velocity
 Space", I3D 2020.
@@ -21,7 +21,7 @@ from crowdbot.plugin import (
 
 
 class VelocitySpaceSpec(CrowdPolicySpec):
-    """Costs in velocity space, by default over a fan around the preferred velocity."""
+    """Costs in velocity space, by default sampled in a fan around the preferred velocity."""
 
     needs_costs: ClassVar[bool] = True
     kind: Literal["velocity_space"] = "velocity_space"
@@ -32,7 +32,7 @@ class VelocitySpaceSpec(CrowdPolicySpec):
         default=0.5, description="Time in which the chosen velocity is reached, s."
     )
     samples: Literal["regular", "random"] = Field(
-        default="regular", description="Candidates on a fan, or drawn anew for each decision."
+        default="regular", description="Candidates on a fan, or random ones for each decision."
     )
     base: Literal["zero", "current_velocity"] = Field(default="zero", description="Tip of the fan.")
     direction: Literal["unit", "current_velocity", "preferred_velocity"] = Field(

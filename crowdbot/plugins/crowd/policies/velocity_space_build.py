@@ -1,4 +1,4 @@
-"""Velocity-space policy: minimise weighted costs by the method that its spec names."""
+"""Velocity-space policy: minimise weighted costs with the method that its spec names."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _RADII = ("preferred_speed", "maximum_speed", "maximum_acceleration")
 
 
 def sampling_of(spec: VelocitySpaceSpec) -> Sampling:
-    """Which candidates a spec asks for."""
+    """Return the candidates that a spec asks for."""
     return Sampling(
         speeds=spec.speeds,
         angles=spec.angles,
@@ -41,7 +41,7 @@ def sampling_of(spec: VelocitySpaceSpec) -> Sampling:
 
 
 def candidates_of(spec: VelocitySpaceSpec) -> VelocityCandidates | None:
-    """Where these are the same at each decision, as seen along the way to the goal."""
+    """Return candidates relative to the goal direction, if the same at each decision."""
     s = sampling_of(spec)
     fixed = spec.method == "sampling" and not s.random and spec.relaxation_time > 0.0
     if not fixed or (s.base, s.direction, s.radius) != (ZERO, ALONG_PREFERRED, PREFERRED_SPEED):
@@ -50,7 +50,7 @@ def candidates_of(spec: VelocitySpaceSpec) -> VelocityCandidates | None:
 
 
 class VelocitySpace:
-    """Weighted cost functions for one set of agents.
+    """Weighted cost functions for a set of agents.
 
     Args:
         parity, weight: see `crowdbot.core.crowd.velocity_search.weighted_costs.WeightedCosts`.
@@ -80,13 +80,13 @@ class VelocitySpace:
             self.minimiser = Sampler(sampling_of(spec), self.costs)
 
     def accelerations(self, view: CrowdView) -> Array:
-        """Towards the chosen velocity or down the gradient, within each agent's limit, m/s^2."""
+        """Return accelerations to the chosen velocity or down the gradient, limited, m/s^2."""
         if isinstance(self.minimiser, Descent):
             return self._limited(self.minimiser.accelerations(view), view, descend=True)
         return self._limited(self.minimiser.choose(view), view, descend=False)
 
     def towards(self, velocities: Array, view: CrowdView) -> Array:
-        """Accelerations (N, 2) towards given velocities, m/s^2."""
+        """Return accelerations (N, 2) towards given velocities, m/s^2."""
         return self._limited(velocities.copy(), view, descend=False)
 
     def _limited(self, found: Array, view: CrowdView, *, descend: bool) -> Array:
@@ -112,7 +112,7 @@ def _accelerate(
     relaxation: float,
     dt: float,
 ) -> None:
-    """Turn what was found into accelerations, in place; who has arrived stops at once."""
+    """Convert results to accelerations, in place; agents that have arrived stop at once."""
     for i in range(found.shape[0]):
         gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]
         arrived = not is_clearly_longer(gx, gy, radius[i]) and math.hypot(gx, gy) <= radius[i]
@@ -121,7 +121,7 @@ def _accelerate(
             ax, ay = -velocity[i, 0] / dt, -velocity[i, 1] / dt
         elif not descend:
             ax, ay = (ax - velocity[i, 0]) / relaxation, (ay - velocity[i, 1]) / relaxation
-        elif math.isinf(ax) or math.isinf(ay):  # away from what is forbidden, as fast as possible
+        elif math.isinf(ax) or math.isinf(ay):  # away from forbidden velocities at once
             ax = math.copysign(limit[i], ax) if math.isinf(ax) else 0.0
             ay = math.copysign(limit[i], ay) if math.isinf(ay) else 0.0
         scale = 1.0
@@ -134,7 +134,7 @@ def _accelerate(
 def build(
     spec: VelocitySpaceSpec, costs: Sequence[CompiledCost | NumpyCost], agents: Agents
 ) -> VelocitySpace:
-    """The policy for one set of agents."""
+    """Build the policy for a set of agents."""
     return VelocitySpace(spec, costs, agents)
 
 

@@ -1,7 +1,7 @@
-"""The best of the dynamic window's candidates; compiled.
+"""Choose the best of the dynamic window's candidates; compiled.
 
-Most candidates cannot win, whatever is in their way: what each costs at least is computed first,
-and rollouts among points begin with the candidate that promises most.
+Most candidates cannot win, whatever the obstacles: lower bounds of the costs are computed first,
+and rollouts start with the most promising candidate.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ def evaluate(
     facing: float,
     last: tuple[float, float, float],
 ) -> tuple[int, float]:
-    """The best admissible candidate; of equal ones the first.
+    """Return the best admissible candidate; of equal ones, the first.
 
     A candidate is admissible if the robot, after following it, can still stop before the first
-    predicted hit. Standing still is always a candidate's right, and turning on the spot is that
-    of a round robot, which moves no point by it.
+    predicted hit. Standing still is always admissible, and so is turning on the spot for a round
+    robot.
 
     Args:
         points: (K, 2) base frame, m.
@@ -61,8 +61,8 @@ def evaluate(
         p: (17,) parameters, in the order of the constants of `parameters_build`.
         core: of the robot's outline, as `robot_outline_build.core_of`.
         now: present v, w, vy: m/s forward, rad/s, m/s to the left.
-        candidates: (C, 3) targets v, w, vy; or (C, 2), which go straight ahead.
-        direction: bearing in which progress counts, rad.
+        candidates: (C, 3) targets v, w, vy; or (C, 2) without vy.
+        direction: bearing along which progress is measured, rad.
         facing: bearing to which the robot should turn, rad.
         last: last command, v, w, vy.
 
@@ -103,7 +103,7 @@ def _target(candidates: Array, k: int) -> tuple[float, float, float]:
 
 @kernel
 def _least_of(values: Array) -> int:
-    """Index of the first of the least of (N,) numbers, N > 0."""
+    """Return the index of the first minimum of (N,) numbers, N > 0."""
     at = 0
     for k in range(1, values.shape[0]):
         if values[k] < values[at]:
@@ -117,7 +117,10 @@ def _cost(
     target: tuple[float, float, float], toward: tuple[float, float], facing: float,
     last: tuple[float, float, float],
 ) -> float:  # fmt: skip
-    """Of a rollout to a target that ended as `roll` says; `toward` is a unit vector."""
+    """Return the cost of a rollout to a target with the result of `roll`.
+
+    `toward` is a unit vector.
+    """
     made = (x * toward[0] + y * toward[1]) / (p[V_MAX] * p[HORIZON])
     off = unsigned(angle - facing) / math.pi
     change = abs(target[0] - last[0]) / p[V_MAX] + abs(target[1] - last[1]) / p[W_MAX]
@@ -140,17 +143,17 @@ def _least_costs(
     last: tuple[float, float, float],
     turns: Array,
 ) -> Array:
-    """What each candidate costs at least, (C,): as much as if nothing were in its way.
+    """Return a lower bound of each candidate's cost (C,), as if without obstacles.
 
-    A hit ends a rollout, perhaps where more way was made or the heading was better, which may be
-    worth more than the hit costs. So three things are taken off: what better heading may be worth
-    beyond clearance, what impact gives back for steps beyond the horizon, and what progress at
-    full speed may be worth beyond impact.
+    A hit ends a rollout, perhaps with more progress or a better heading, which may outweigh the
+    cost of the hit. So three terms are subtracted: the possible gain of a better heading over
+    clearance, the impact's refund for steps beyond the horizon, and the possible gain of full-speed
+    progress over impact.
 
     Args:
         toward: unit vector of the direction.
-        turns: of `rollouts`.
-        p, now, candidates, facing, last: as of `evaluate`.
+        turns: from `rollouts`.
+        p, now, candidates, facing, last: as in `evaluate`.
     """
     out, pace = np.empty(candidates.shape[0]), np.empty((turns.shape[1], 2))
     over = (turns.shape[1] - 1) * STEP / p[HORIZON] - 1.0  # steps go beyond the horizon
@@ -174,7 +177,7 @@ def _least_costs(
 def _fill_pace(
     pace: Array, now: tuple[float, float, float], target: tuple[float, float, float], p: Array
 ) -> None:
-    """Write the way ahead and to the left, m, of each step of a rollout, (S + 1, 2)."""
+    """Write the distance ahead and to the left, m, of each step of a rollout, (S + 1, 2)."""
     v, vy = now[0], now[2]
     for n in range(1, pace.shape[0]):
         v_next, vy_next = slewed_planar(v, vy, target[0], target[2], p[A_MAX] * STEP)
@@ -184,7 +187,7 @@ def _fill_pace(
 
 @kernel
 def _free_end(pace: Array, turn: Array) -> tuple[float, float]:
-    """Where a rollout ends if nothing is in its way, x, y, m."""
+    """Return the end of a rollout without obstacles, x, y, m."""
     x = y = 0.0
     for n in range(1, turn.shape[0]):
         x += pace[n, 0] * turn[n, 1] - pace[n, 1] * turn[n, 2]

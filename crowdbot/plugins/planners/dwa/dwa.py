@@ -1,9 +1,9 @@
 """DWA: the dynamic window approach.
 
-Source: Fox, Burgard, Thrun, "The dynamic window approach to collision avoidance", IEEE Robotics
-and Automation Magazine 4(1), 1997. Four things are added: rollouts obey the slew limits, a local
-direction is chosen before the velocities, lidar points are carried on with the motion they showed,
-and a robot that has come no nearer to the goal for long finds its way in a small map of its own.
+Source: Fox, Burgard, Thrun, "The dynamic window approach to collision avoidance", IEEE Robotics and
+Automation Magazine 4(1), 1997. Four things are added: rollouts obey the slew limits, a local
+direction is chosen before the velocities, lidar points are extrapolated with their observed motion,
+and a robot without progress for a while plans a path on a small local map.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Weight = Annotated[float, Ge(0)]
 
 
 class DwaSpec(PlannerSpec):
-    """Sees lidar points and odometry, nothing else."""
+    """The dynamic window approach, using lidar points and odometry only."""
 
     role: ClassVar[PlannerRole] = "baseline"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)

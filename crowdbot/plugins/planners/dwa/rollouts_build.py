@@ -22,12 +22,12 @@ from crowdbot.plugins.planners.dwa.parameters_build import (
 from crowdbot.plugins.planners.shared.points_build import minimum
 from crowdbot.plugins.planners.shared.robot_outline_build import nearest_to_core
 
-#: Steps of a rollout, s.
+#: Time step of a rollout, s.
 STEP = 0.125
 
 #: A rollout may come this much closer to a point that is within the margin already, m.
 _SLACK = 1e-3
-#: More than what distances may be off by rounding, m.
+#: Upper bound of rounding errors of distances, m.
 ROUNDING = 1e-9
 
 
@@ -38,7 +38,7 @@ def _slewed(value: float, target: float, change: float) -> float:
 
 @kernel
 def slewed_planar(v: float, vy: float, vt: float, vyt: float, change: float) -> tuple[float, float]:
-    """A velocity whose change is limited as a vector, as the robot's is."""
+    """Return a velocity whose change is limited as a vector, as the robot's is."""
     if vy == vyt:
         return _slewed(v, vt, change), vy
     ahead, aside = vt - v, vyt - vy
@@ -49,7 +49,7 @@ def slewed_planar(v: float, vy: float, vt: float, vyt: float, change: float) -> 
 
 @array_kernel
 def foreseen(points: Array, velocities: Array, p: Array) -> Array:
-    """Where points are at each step of a rollout, the first of which is now; (S + 1, 2, K), m."""
+    """Return predicted points at each step of a rollout, starting now; (S + 1, 2, K), m."""
     steps = math.ceil(p[HORIZON] / STEP)
     out = np.empty((steps + 1, 2, points.shape[0]))
     for k in range(steps + 1):
@@ -63,14 +63,14 @@ def foreseen(points: Array, velocities: Array, p: Array) -> Array:
 def _nearest(
     points: Array, core: Array, x: float, y: float, angle: float, spin: float, square: Array
 ) -> float:
-    """Distance from the core of the robot's outline, at a pose, to the nearest of K points.
+    """Return the distance from the core of the outline, at a pose, to the nearest of K points.
 
     inf if there is none; negative inside a polygon.
 
     Args:
         points: (2, K) m.
-        core: as `robot_outline_build.core_of`; that of a disc is its middle.
-        spin: how far the core reaches from the middle, m.
+        core: see `robot_outline_build.core_of`; the core of a disc is its centre.
+        spin: largest distance of the core from the centre, m.
         square: (K,) scratch.
     """
     if core.shape[0]:
@@ -84,7 +84,7 @@ def _nearest(
 
 @array_kernel
 def reachable(points: Array, velocities: Array, p: Array) -> tuple[Array, Array]:
-    """Points and velocities (K', 2) of those that can come near the robot within the horizon."""
+    """Return the points and velocities (K', 2) that can come near the robot within the horizon."""
     near, moving, count = np.empty(points.shape), np.empty(points.shape), 0
     for i in range(points.shape[0]):
         x, y, vx, vy = points[i, 0], points[i, 1], velocities[i, 0], velocities[i, 1]
@@ -98,10 +98,10 @@ def reachable(points: Array, velocities: Array, p: Array) -> tuple[Array, Array]
 
 @array_kernel
 def rollouts(ahead: Array) -> tuple[Array, Array, Array]:
-    """What rollouts among points as `foreseen` may share: known distances, turns, and scratch.
+    """Return data that rollouts share: known distances, turns, and scratch space.
 
-    Known is, for each step, a pose x, y (m), angle (rad) and its distance to the nearest point, m.
-    Turns are as `turn_of`; candidates have seldom more than 24.
+    ``known`` holds, per step, a pose x, y (m), angle (rad) and its distance to the nearest point,
+    m. For the turns see `turn_of`; candidates seldom have more than 24.
     """
     known = np.zeros((ahead.shape[0], 4))
     known[:, 3] = -math.inf
@@ -110,13 +110,14 @@ def rollouts(ahead: Array) -> tuple[Array, Array, Array]:
 
 @kernel
 def turn_of(turns: Array, w: float, target: float, p: Array) -> int:
-    """Among turns (N, S + 1, 3), that of a robot whose yaw rate (rad/s) goes to a target.
+    """Return the index of the turn (N, S + 1, 3) whose yaw rate (rad/s) goes to a target.
 
-    Of each: for every step the angle after it (rad), cosine and sine of that in its middle; first
-    the two rates, and 1 to say that the others are there. Many candidates turn alike.
+    Each turn holds, for every step, the angle after it (rad), and the cosine and sine of the angle
+    in its middle. Its first row holds the two rates, and 1 if the others are filled. Many
+    candidates share a turn.
     """
     at = 0
-    for at in range(turns.shape[0]):  # where there is no place left, the last is taken
+    for at in range(turns.shape[0]):  # without a free place, the last is overwritten
         if turns[at, 0, 2] == 0.0:
             break
         if turns[at, 0, 0] == w and turns[at, 0, 1] == target:
@@ -128,7 +129,7 @@ def turn_of(turns: Array, w: float, target: float, p: Array) -> int:
         w_next = _slewed(w, goal, p[ALPHA_MAX] * STEP)
         middle = angle + (w + w_next) / 4.0 * STEP
         angle += (w + w_next) / 2.0 * STEP
-        if middle != before:  # after the turn it stays as it is
+        if middle != before:  # constant after the turn
             c, s, before = math.cos(middle), math.sin(middle), middle
         turns[at, k, 0], turns[at, k, 1], turns[at, k, 2] = angle, c, s
         w = w_next
@@ -146,17 +147,17 @@ def roll(
     turns: Array,
     scratch: Array,
 ) -> tuple[float, float, float, float, float]:
-    """One candidate: slew to the target, keep the arc for the turning time, then go straight.
+    """Roll out one candidate: slew to the target, keep the arc for the turning time, go straight.
 
-    The nearest point is looked for only where it may matter: it is no nearer than it was to the
-    pose that another rollout had at the same time, less the way between the two poses, and less
-    what the ends of the outline swing.
+    The nearest point is computed only where it may matter. Its distance is at least that of another
+    rollout's pose at the same time, minus the distance between the poses and the swing of the
+    outline's ends.
 
     Args:
-        ahead: points as `foreseen`.
-        core: of the robot's outline, as `robot_outline_build.core_of`.
+        ahead: points from `foreseen`.
+        core: core of the robot's outline, see `robot_outline_build.core_of`.
         now, target: velocities v, w, vy: m/s forward, rad/s, m/s to the left.
-        known, turns, scratch: of `rollouts`.
+        known, turns, scratch: from `rollouts`.
 
     Returns:
         x, y (m) at the end or at the hit; heading after the turn (rad); time of the hit
@@ -192,6 +193,6 @@ def roll(
 
 @kernel
 def _closeness(gap: float, t: float, p: Array) -> float:
-    """How much a gap (m) at a time (s) counts; falls as the gap grows."""
+    """Return the weight of a gap (m) at a time (s); it falls as the gap grows."""
     doubt = 1.0 - (gap - p[GROWTH] * t) / p[COMFORT]
     return float(min(1.0, doubt) * (1.0 - 0.5 * t / p[HORIZON]))

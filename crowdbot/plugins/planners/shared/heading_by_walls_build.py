@@ -1,10 +1,10 @@
-"""Where the robot heads, by the walls that its lidars see.
+"""Estimate the heading from the walls that the lidars see.
 
-A person who bumps into a robot turns it while its wheels slip, and wheel odometry does not notice.
-The directions of straight runs of lidar points, as a histogram, turn with the robot; the shift that
-fits those seen before best is by how much (Weiss, Wetzler, von Puttkamer, "Keeping track of
-position and orientation of moving indoor systems by correlation of range-finder scans", IROS 1994).
-Where no wall is seen the heading is that of odometry.
+When a person bumps into a robot, it turns with slipping wheels, which wheel odometry misses. The
+histogram of directions of straight runs of lidar points turns with the robot; the shift that best
+fits earlier histograms is the turn (Weiss, Wetzler, von Puttkamer, "Keeping track of position and
+orientation of moving indoor systems by correlation of range-finder scans", IROS 1994). Without
+walls in view, the heading is that of odometry.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from crowdbot.plugin import Array, Indices, Pose, kernel
 
 #: Bins of a histogram of directions of lines, over half a turn.
 BINS = 360
-#: Points of a straight run, how far it may be bent, and how long it is, m.
+#: Number of points of a straight run, its largest bend and its smallest length, m.
 _RUN, _BEND, _SHORT, _LONG = 6, 0.01, 0.12, 1.2
-#: A line also counts in so many bins on either side, less and less.
+#: Number of neighbouring bins on either side in which a line counts, with falling weight.
 _BLUR = 4
-#: Straight runs without which nothing is said, and how far a turn may have gone unnoticed, rad.
+#: Number of straight runs needed for an estimate, and largest unnoticed turn, rad.
 _FEW, _WINDOW = 12.0, 0.75
-#: A difference up to this is left to odometry, rad: a robot that nobody touches drives straight.
+#: Differences up to this are left to odometry, rad, so that an untouched robot drives straight.
 _NOISE = 0.02
-#: How much of what is seen in a step the memory takes in.
+#: Weight of one step's histogram in the memory.
 _LEARN = 0.02
 
 
 @kernel
 def directions(points: Array, out: Array) -> float:
-    """Histogram of the directions of straight runs; returns how many there are.
+    """Write a histogram of the directions of straight runs; return their number.
 
     Args:
         points: (P, 2) base frame, m, those of one lidar in the order of its beams.
-        out: (BINS,) written; bin k stands for lines at an angle of k / BINS * pi.
+        out: (BINS,) output; bin k holds lines at an angle of k / BINS * pi.
     """
     out[:] = 0.0
     count = 0.0
@@ -61,17 +61,17 @@ def directions(points: Array, out: Array) -> float:
 
 @kernel
 def turned(memory: Array, seen: Array, guess: float, filled: Indices) -> float:
-    """By how much to turn what is seen so that it fits the memory best, near a guess; rad.
+    """Return the turn that best fits the seen histogram to the memory, near a guess; rad.
 
     Args:
         memory, seen: (BINS,) histograms.
-        guess: rad; the guess itself where nothing fits.
+        guess: rad; returned if nothing fits.
         filled: (BINS,) scratch.
     """
     middle, wide = round(guess / math.pi * BINS), int(_WINDOW / math.pi * BINS)
     best, shift = 0.0, float("nan")
     before, after, last = 0.0, 0.0, 0.0
-    count = 0  # few bins have lines: the others are passed over once, not for each turn
+    count = 0  # few bins have lines: skip the others once, not for each turn
     for k in range(BINS):
         if seen[k] > 0.0:
             filled[count] = k
@@ -98,7 +98,7 @@ def turned(memory: Array, seen: Array, guess: float, filled: Indices) -> float:
 
 @kernel
 def learn(memory: Array, seen: Array, yaw: float, share: float) -> None:
-    """Mix what is seen, turned by the yaw (rad) and blurred, into the memory, in place."""
+    """Mix the seen histogram, turned by the yaw (rad) and blurred, into the memory, in place."""
     shift = round(yaw / math.pi * BINS)
     for k in range(BINS):
         memory[k] *= 1.0 - share
@@ -113,12 +113,14 @@ def learn(memory: Array, seen: Array, yaw: float, share: float) -> None:
 def heading(
     points: Array, guess: float, knows: bool, memory: Array, seen: Array, filled: Indices
 ) -> float:
-    """The yaw at which what is seen fits the memory, rad, which takes it in; NaN without walls.
+    """Return the yaw at which the walls fit the memory, rad, and update the memory.
+
+    NaN without walls.
 
     Args:
         points: as for `directions`.
         guess: rad.
-        knows: whether the memory holds anything.
+        knows: True if the memory is not empty.
         memory: (BINS,) changed in place.
         seen, filled: (BINS,) scratch.
     """
@@ -130,7 +132,7 @@ def heading(
 
 
 class HeadingByWalls:
-    """Follows odometry, but turns as the walls say."""
+    """Follows odometry, but takes the heading from the walls."""
 
     def __init__(self) -> None:
         self._memory, self._seen = np.zeros(BINS), np.zeros(BINS)
@@ -140,11 +142,11 @@ class HeadingByWalls:
         self._pose = Pose(0.0, 0.0, 0.0)
 
     def pose(self, odometry: Pose, points: Array) -> Pose:
-        """Where the robot is, as far as wheels and walls tell.
+        """Return the robot's pose, estimated from wheels and walls.
 
         Args:
-            odometry: pose by odometry, in whose frame the answer is.
-            points: (P, 2) what the lidars show now, base frame, m.
+            odometry: pose by odometry; the result is in its frame.
+            points: (P, 2) current lidar points, base frame, m.
         """
         moved = odometry if self._odometry is None else self._after(self._odometry, odometry)
         yaw = moved.yaw
@@ -156,7 +158,7 @@ class HeadingByWalls:
         return self._pose
 
     def _after(self, before: Pose, now: Pose) -> Pose:
-        """The last pose and what odometry has moved since, as seen from the robot."""
+        """Return the last pose moved by the change in odometry, as seen from the robot."""
         off = self._pose.yaw - before.yaw
         c, s = math.cos(off), math.sin(off)
         dx, dy = now.x - before.x, now.y - before.y
@@ -167,7 +169,7 @@ class HeadingByWalls:
 
 
 def compile_heading() -> None:
-    """Compile what is not compiled yet: a made-up wall, seen twice."""
+    """Compile what is not compiled yet, with a made-up wall seen twice."""
     wall = np.column_stack([np.linspace(0.0, 2.0, 40), np.ones(40)])
     heading = HeadingByWalls()
     for _ in range(2):

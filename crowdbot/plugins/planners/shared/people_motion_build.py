@@ -1,4 +1,4 @@
-"""How people walk whom a lidar shows: from where they were a moment ago."""
+"""Velocities of people in a lidar's view, from their earlier positions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.plugin import Array, Pose
 from crowdbot.plugins.planners.shared.points_build import apparent_velocity
 
-#: Apparent motion below this is that of legs, above that a person who was hidden, m/s.
+#: Slower apparent motion is that of legs, faster that of a newly visible person, m/s.
 _STILL, _FASTEST = 0.3, 2.5
 
 
@@ -18,7 +18,7 @@ class PeopleMotion:
     """Remembers where people were.
 
     Args:
-        look_back: age of the scan that is compared with, s; 0 takes all as standing.
+        look_back: age of the scan to compare with, s; 0: everyone counts as standing.
     """
 
     def __init__(self, look_back: float) -> None:
@@ -26,12 +26,12 @@ class PeopleMotion:
         self._seen: deque[tuple[float, Array]] = deque(maxlen=64)
 
     def velocities(self, t: float, pose: Pose, people: Array) -> Array:
-        """Velocities of people, base frame, m/s; 0 of those who stand, or were not seen before.
+        """Return velocities of people, base frame, m/s; 0 if standing or newly seen.
 
         Args:
-            t: now, s.
-            pose: of the robot, in a frame that stays.
-            people: (K, 2) where they are, base frame, m.
+            t: current time, s.
+            pose: the robot's pose, in a fixed frame.
+            people: (K, 2) their positions, base frame, m.
         """
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         to_world = np.array([[c, s], [-s, c]])  # for row vectors

@@ -14,21 +14,21 @@ _DOUBT = 5e-6
 
 @kernel
 def wrapped(angle: float) -> float:
-    """The same angle in [-pi, pi], rad."""
+    """Return the same angle in [-pi, pi], rad."""
     return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
 
 
 @kernel
 def unsigned(angle: float) -> float:
-    """The size of an angle, in [0, pi] rad."""
+    """Return the size of an angle, in [0, pi] rad."""
     return abs(wrapped(angle))
 
 
 @kernel
 def minimum(values: Array) -> float:
-    """The least of (N,) numbers, none of them NaN; inf for none. Overwrites them.
+    """Return the minimum of (N,) numbers without NaN, inf if empty. Overwrites them.
 
-    Halves them again and again: that way several are compared at once.
+    It halves the array repeatedly, so that several numbers are compared at once.
     """
     count = values.shape[0]
     while count > 1:
@@ -43,7 +43,7 @@ def minimum(values: Array) -> float:
 
 @kernel
 def _sector(x: float, y: float, sectors: int) -> int:
-    """In which of the equal sectors of the full turn a point lies."""
+    """Return the index of the sector of the full turn that contains a point."""
     if x != 0.0 or y != 0.0:
         at = (rough_angle(x, y) / (2.0 * math.pi) + 0.5) * sectors
         within = at - math.floor(at)
@@ -54,9 +54,9 @@ def _sector(x: float, y: float, sectors: int) -> int:
 
 @array_kernel
 def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
-    """Thin points out to the nearest one of each sector around the origin.
+    """Thin points to the nearest one of each sector around the origin.
 
-    What lies behind the nearest point of a narrow sector is hidden from the robot's path by it.
+    In a narrow sector, the nearest point blocks the robot's path to those behind it.
 
     Args:
         points: (P, 2) base frame, m.
@@ -89,11 +89,11 @@ def nearest_per_sector(points: Array, sectors: int, reach: float) -> Array:
 def apparent_velocity(
     now: Array, before: Array, dt: float, slowest: float, fastest: float
 ) -> Array:
-    """How each point moved since an earlier scan: from its nearest neighbour there.
+    """Return each point's motion since an earlier scan, from its nearest neighbour there.
 
-    On the front of a body that comes closer this is the speed of approach; where a surface slides
-    along itself it is zero. Motion below ``slowest`` is sampling noise, motion above ``fastest``
-    a point that was hidden before: both count as standing.
+    On the front of an approaching body this is the approach speed; where a surface slides along
+    itself it is zero. Motion below ``slowest`` is sampling noise, motion above ``fastest`` a point
+    that was hidden before: both count as standing.
 
     Args:
         now: (K, 2) points in a frame at rest, m.
@@ -113,13 +113,13 @@ def apparent_velocity(
     across = np.empty((before.shape[0], 2))  # in that order
     for k in range(before.shape[0]):
         across[k, 0], across[k, 1] = before[order[k], 0], before[order[k], 1]
-    # Whoever is farther away than anything moves does not count.
+    # Ignore points farther away than anything can move.
     far, first = fastest * dt + 1e-9 * (1.0 + fastest * dt), 0
     for i in range(now.shape[0]):
         x, y = now[i, 0], now[i, 1]
         first = _first_from(across, x, first)
         best, nearest = far * far, -1
-        for way in (1, -1):  # along x away from the point, until none can be nearer
+        for way in (1, -1):  # along x away from the point, until no point can be nearer
             k = first if way > 0 else first - 1
             while 0 <= k < across.shape[0]:
                 dx, dy = x - across[k, 0], y - across[k, 1]
@@ -145,7 +145,7 @@ def apparent_velocities(
     slowest: float,
     fastest: float,
 ) -> tuple[Array, Array]:
-    """`apparent_velocity` of points, and of people among those before."""
+    """Apply `apparent_velocity` to points, and to people and the other points of before."""
     return (
         apparent_velocity(now, before, dt, slowest, fastest),
         apparent_velocity(people, others, dt, slowest, fastest),
@@ -154,7 +154,7 @@ def apparent_velocities(
 
 @kernel
 def _first_from(points: Array, least: float, guess: int) -> int:
-    """The first place among points in the order of x whose x is not below ``least``."""
+    """Return the first index of points sorted by x whose x is at least ``least``."""
     while guess < points.shape[0] and points[guess, 0] < least:
         guess += 1
     while guess > 0 and not points[guess - 1, 0] < least:
@@ -164,10 +164,10 @@ def _first_from(points: Array, least: float, guess: int) -> int:
 
 @array_kernel
 def apart(points: Array, others: Array, distance: float) -> Mask:
-    """Which points are farther than a distance from all others.
+    """Return a mask of points farther than a distance from all others.
 
     Args:
-        points: (K, 2); one that is not a number is not apart.
+        points: (K, 2); NaN points are not apart.
         others: (L, 2), same frame.
         distance: m.
 
@@ -179,7 +179,7 @@ def apart(points: Array, others: Array, distance: float) -> Mask:
     for i in range(points.shape[0]):
         for j in range(others.shape[0]):
             dx, dy = points[i, 0] - others[j, 0], points[i, 1] - others[j, 1]
-            # Cheaper than the length, and the same but for what rounding may decide.
+            # Cheaper than the length, and the same except for rounding.
             if not dx * dx + dy * dy > clearly and not math.hypot(dx, dy) > distance:
                 out[i] = False
                 break
@@ -188,7 +188,10 @@ def apart(points: Array, others: Array, distance: float) -> Mask:
 
 @kernel
 def walkers(people: Array, velocities: Array, near: float, speed: float) -> tuple[int, int]:
-    """How many people (K, 2) are nearer than that (m), and of those faster than that (m/s)."""
+    """Count people (K, 2) nearer than ``near`` (m).
+
+    And those of them faster than ``speed`` (m/s).
+    """
     count = walk = 0
     for i in range(people.shape[0]):
         if math.hypot(people[i, 0], people[i, 1]) < near:

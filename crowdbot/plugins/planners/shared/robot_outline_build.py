@@ -1,4 +1,4 @@
-"""How large the robot is, for planners: what their spec says, else what the robot says."""
+"""The robot's size for planners: from their spec if given, else from the robot."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ import numpy as np
 
 from crowdbot.plugin import Array, RobotBody, kernel
 
-#: Of a TurtleBot2, m: for who tells a planner nothing of the robot.
+#: TurtleBot2 in m, used if the planner gets no information about the robot.
 ROBOT_RADIUS = 0.178
 
 
 def disc_radius(told: float | None, body: RobotBody | None) -> float:
-    """Radius of the smallest disc around the drive axis that holds the robot, m.
+    """Return the radius of the smallest disc around the drive axis that contains the robot, m.
 
     Args:
-        told: what the planner's spec says, m; None: nothing.
-        body: what the robot says.
+        told: radius from the planner's spec, m, or None.
+        body: the robot's outline.
     """
     if told is not None:
         return told
@@ -25,7 +25,7 @@ def disc_radius(told: float | None, body: RobotBody | None) -> float:
 
 
 def half_width_and_front(told: float | None, body: RobotBody | None) -> tuple[float, float]:
-    """How far the robot reaches to either side, and ahead, m; arguments as for `disc_radius`."""
+    """Return the robot's extent to either side and ahead, m; arguments as for `disc_radius`."""
     if told is not None or body is None:
         radius = disc_radius(told, body)
         return radius, radius
@@ -33,7 +33,9 @@ def half_width_and_front(told: float | None, body: RobotBody | None) -> tuple[fl
 
 
 def swept_half_width(told: float | None, body: RobotBody | None) -> float:
-    """Half of the width that the robot sweeps, m: one that only goes ahead turns where it goes.
+    """Return half of the width that the robot sweeps, m.
+
+    A robot that cannot go sideways turns first.
 
     Arguments as for `disc_radius`.
     """
@@ -45,12 +47,12 @@ def swept_half_width(told: float | None, body: RobotBody | None) -> float:
 
 
 def core_of(told: float | None, body: RobotBody | None) -> tuple[Array, float]:
-    """What the outline is, but for its rounding, and the radius of that, m.
+    """Return the outline without its rounding, and the rounding radius, m.
 
     Arguments as for `disc_radius`.
 
     Returns:
-        (K, 2) in the robot's frame: none for a disc, the segment of a capsule, or the corners of a
+        (K, 2) in the robot's frame: empty for a disc, the segment of a capsule, or the corners of a
         convex polygon, counter-clockwise; radius, which is 0 for a polygon.
     """
     if told is not None or body is None or body.footprint is None:
@@ -65,7 +67,10 @@ def core_of(told: float | None, body: RobotBody | None) -> tuple[Array, float]:
 
 @kernel
 def core_gap(core: Array, x: float, y: float) -> float:
-    """Distance of a point of the robot's frame from a core with corners, m; negative inside."""
+    """Return the distance of a point in the robot's frame to a core with corners, m.
+
+    Negative inside.
+    """
     square, inside = math.inf, core.shape[0] > 2
     for i in range(core.shape[0] if inside else 1):
         j = (i + 1) % core.shape[0]
@@ -84,18 +89,20 @@ def core_gap(core: Array, x: float, y: float) -> float:
 def nearest_to_core(
     points: Array, core: Array, x: float, y: float, angle: float, reach: float
 ) -> float:
-    """Distance of the nearest of K points from a core with corners at a pose, m; inf for none.
+    """Return the distance of the nearest of K points to a core with corners at a pose, m.
+
+    Inf if none.
 
     Args:
         points: (2, K) m.
-        core: as `core_of`, K > 0.
-        x, y, angle: of the robot in the frame of the points: m, rad.
-        reach: of the core's farthest corner from its origin, m.
+        core: from `core_of`, K > 0.
+        x, y, angle: the robot's pose in the frame of the points: m, rad.
+        reach: distance of the core's farthest corner from its origin, m.
     """
     best, c, s = math.inf, math.cos(angle), math.sin(angle)
     for i in range(points.shape[1]):
         dx, dy = points[0, i] - x, points[1, i] - y
         far = best + reach
-        if dx * dx + dy * dy < far * far:  # any other is no nearer
+        if dx * dx + dy * dy < far * far:  # no other point is nearer
             best = min(best, core_gap(core, c * dx + s * dy, c * dy - s * dx))
     return best

@@ -1,4 +1,7 @@
-"""Stop and go: towards the goal, waiting while somebody is in the way and beside it no room."""
+"""Stop and go: drive towards the goal.
+
+Wait if a person is in the way and there is no room beside.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ from crowdbot.plugin import (
 
 
 class StopAndGoSpec(PlannerSpec):
-    """A stop box before the robot: as wide as the robot and a margin on either side."""
+    """Uses a stop box in front of the robot, as wide as the robot plus a margin on either side."""
 
     role: ClassVar[PlannerRole] = "floor"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
@@ -59,7 +62,7 @@ class StopAndGoSpec(PlannerSpec):
     )
     look_ahead: NonNegativeDuration = Field(
         default=3.0,
-        description="Drives towards where nobody will be met for so long, if all go on as they "
+        description="Drives where no one will be met for this long, if everyone continues as they "
         "do; 0: only towards where it may drive fastest now, s.",
     )
     aside_reach: NonNegativeLength = Field(

@@ -1,13 +1,14 @@
 """Stop and go: goal seek with a speed limit that the stop box sets.
 
-The box is as long as the robot's stopping distance, and what somebody who comes towards it walks
-until it stands; it shrinks while the robot brakes. The limit below is that rule at every speed at
-once: the largest speed whose box is still empty.
+The box is as long as the robot's stopping distance plus the distance that an approaching person
+walks until it stands; it shrinks while the robot brakes. The limit below applies that rule to all
+speeds at once: the largest speed whose box is still empty.
 
-Boxes turned to either side are looked into as well. The robot turns towards the one that lets it
-come nearer to the goal faster; how fast it drives is up to the box before it all the while.
+Boxes turned to either side are checked too. The robot turns towards the one with the fastest
+progress to the goal; its speed always depends on the box in front of it.
 
-People who bump into the robot turn it, which its wheels do not notice: it heads by the walls.
+When people bump into the robot, it turns without its wheels noticing: its heading comes from the
+walls.
 """
 
 from __future__ import annotations
@@ -38,27 +39,27 @@ from crowdbot.plugins.planners.shared.people_motion_build import PeopleMotion
 from crowdbot.plugins.planners.shared.robot_outline_build import half_width_and_front
 from crowdbot.plugins.planners.stop_and_go.stop_and_go import StopAndGoSpec
 
-#: People farther away do not matter yet, m.
+#: People farther away are ignored, m.
 _REACH = 6.0
-#: What it costs to turn a box away from the goal, and away from that chosen last, m/s per rad:
-#: without the second it would waver between two gaps.
+#: Cost of turning a box away from the goal, and away from the last choice, m/s per rad; the second
+#: prevents wavering between two gaps.
 _ASIDE, _CHANGE = 0.05, 0.1
-#: Of ``most_aside``: the directions that are looked into, straight ahead first.
+#: Shares of ``most_aside``: the directions that are checked, straight ahead first.
 _SHARES = (0.0, 1 / 4, -1 / 4, 1 / 2, -1 / 2, 3 / 4, -3 / 4, 1.0, -1.0)
-#: With the goal farther off than this it turns towards it first, rad.
+#: If the goal's bearing is larger than this, the robot first turns towards it, rad.
 _AHEAD = 1.2
 
 
 @dataclass(frozen=True, slots=True)
 class _Scene:
-    """What the lidars hit, base frame; legs stand for whole people."""
+    """Lidar points in the base frame, with discs of people in place of legs."""
 
     points: Array  # (P, 2), m
     velocities: Array  # (P, 2), m/s
 
 
 class StopAndGo:
-    """Drives as fast as the box before it allows, towards where there is room."""
+    """Drives as fast as its box allows, towards free space."""
 
     def __init__(self, spec: StopAndGoSpec) -> None:
         self._spec = spec
@@ -79,7 +80,7 @@ class StopAndGo:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Remember what the robot can do and where its lidars are; compile what is not yet."""
+        """Store the robot's limits and lidar mounts; compile kernels that are not compiled yet."""
         self._seek.reset(task, limits, sensors, seed)
         self._limits = limits
         self._points = LidarPoints(sensors)
@@ -88,19 +89,19 @@ class StopAndGo:
         self._chosen = None
         compile_heading()
         self._motion = PeopleMotion(self._spec.look_back)
-        for t in (0.0, self._spec.look_back):  # so that no step of the run waits for the compiler
+        for t in (0.0, self._spec.look_back):  # so that no step of the run waits for compilation
             scene = self._scene(t, Pose(0.0, 0.0, 0.0), np.full((1, 2), 2.0 + t))
             time_to_contact(scene.points, scene.velocities, 1.0, 0.0, self._half_width)
         self._motion = PeopleMotion(self._spec.look_back)
 
     def step(self, obs: Observation) -> Command:
-        """Goal seek's command towards where there is room, slowed down or stopped."""
+        """Return goal seek's command towards free space, slowed down or stopped."""
         points = self._points(obs.readings, obs.t, obs.twist, obs.vy)
         pose = self._heading_by_walls.pose(obs.pose, points)
         scene = self._scene(obs.t, pose, points)
         seen = replace(obs, pose=pose)
         turn = self._turn(scene, *bearing(pose, obs.goal), pose.yaw)
-        if turn:  # towards a goal that far off, turned
+        if turn:  # towards a goal at a large angle, turned
             x, y = obs.goal[0] - pose.x, obs.goal[1] - pose.y
             c, s = math.cos(turn), math.sin(turn)
             seen = replace(seen, goal=(pose.x + c * x - s * y, pose.y + s * x + c * y))
@@ -111,12 +112,12 @@ class StopAndGo:
         return Command(min(v, most), w)
 
     def _scene(self, t: float, pose: Pose, points: Array) -> _Scene:
-        """Discs around legs, and how they move.
+        """Return discs around legs, and their motion.
 
         Args:
-            t: now, s.
-            pose: of the robot.
-            points: (P, 2) what the lidars hit, base frame, m.
+            t: current time, s.
+            pose: the robot's pose.
+            points: (P, 2) lidar points, base frame, m.
         """
         radius = self._spec.person_radius
         people, rest = people_in(points, _REACH if radius else 0.0)
@@ -127,13 +128,13 @@ class StopAndGo:
         return _Scene(points, velocities)
 
     def _turn(self, scene: _Scene, distance: float, error: float, yaw: float) -> float:
-        """How far from the goal's direction to head, rad.
+        """Return the angle from the goal's direction to head for, rad.
 
         Args:
-            scene: what is around.
-            distance: to the goal, m; nearer than ``aside_reach`` it goes straight.
-            error: from the heading to the goal's direction, rad.
-            yaw: of the robot, rad.
+            scene: the surroundings.
+            distance: distance to the goal, m; below ``aside_reach`` it goes straight.
+            error: angle from the heading to the goal's direction, rad.
+            yaw: the robot's yaw, rad.
         """
         assert self._limits is not None
         spec = self._spec
@@ -159,13 +160,13 @@ class StopAndGo:
         return turn
 
     def _safe_speed(self, scene: _Scene, heading: float) -> tuple[float, float]:
-        """The largest speed whose box is empty (m/s), and the room ahead (m).
+        """Return the largest speed whose box is empty (m/s), and the room ahead (m).
 
         That is how far the robot may go before something is ``front_margin`` before it.
 
         Args:
-            scene: what is around.
-            heading: of the box, base frame, rad.
+            scene: the surroundings.
+            heading: heading of the box, base frame, rad.
         """
         assert self._limits is not None
         spec = self._spec
@@ -180,10 +181,10 @@ class StopAndGo:
 
 
 def safe_speed(room: Array, approach: Array, deceleration: float, reaction_time: float) -> Array:
-    """The largest v at which the robot comes to rest before things that approach; 0 without room.
+    """Return the largest v at which the robot stops before approaching things; 0 without room.
 
-    With the time T = reaction_time + v / deceleration until it stands, that is the v with
-    v * reaction_time + v^2 / (2 * deceleration) + approach * T <= room.
+    With the time T = reaction_time + v / deceleration until it stands, this is the largest v with v
+    * reaction_time + v^2 / (2 * deceleration) + approach * T <= room.
 
     Args:
         room: (K,) m.
@@ -199,16 +200,16 @@ def safe_speed(room: Array, approach: Array, deceleration: float, reaction_time:
 def time_to_contact(
     points: Array, velocities: Array, speed: float, heading: float, radius: float
 ) -> float:
-    """When a robot that drives on and things that go on first touch, s; infinite: never.
+    """Return when a moving robot and moving points first touch, s; infinite if never.
 
-    What is behind it does not count: who comes from there sees the robot.
+    Points behind it are ignored: people coming from there see the robot.
 
     Args:
         points: (P, 2) base frame, m.
         velocities: (P, 2) m/s.
-        speed: of the robot, m/s.
-        heading: of the robot, base frame, rad.
-        radius: of the disc that is to stay clear, m.
+        speed: the robot's speed, m/s.
+        heading: the robot's heading, base frame, rad.
+        radius: radius of the disc that must stay clear, m.
     """
     ahead = np.array([math.cos(heading), math.sin(heading)])
     going = velocities - speed * ahead
@@ -217,7 +218,10 @@ def time_to_contact(
 
 @kernel
 def _first_contact(points: Array, going: Array, before: Mask, radius: float) -> float:
-    """Of `time_to_contact`; ``going`` is relative to the robot, ``before`` says what counts."""
+    """Compute `time_to_contact`.
+
+    ``going`` is relative to the robot, ``before`` selects the points.
+    """
     first = math.inf
     for k in range(points.shape[0]):
         if not before[k]:
@@ -231,5 +235,5 @@ def _first_contact(points: Array, going: Array, before: Mask, radius: float) -> 
 
 
 def build(spec: StopAndGoSpec) -> StopAndGo:
-    """A planner from its spec."""
+    """Build a planner from its spec."""
     return StopAndGo(spec)

@@ -178,7 +178,7 @@ def test_each_policy_decides_for_its_own() -> None:
 
 
 def test_walls_as_neighbours() -> None:
-    """With ``walls`` the nearest point of a wall counts like somebody of no size who stands."""
+    """With ``walls`` the nearest point of a wall is treated as a stationary point pedestrian."""
     view = replace(scene(10, 1, 0), present=np.ones(1, np.bool_))
     view = replace(view, position=np.array([[8.0, 4.2]]), velocity=np.array([[1.0, 0.5]]))
     wall = np.array([[-1.0, 5.0, 51.0, 5.0]])

@@ -1,4 +1,4 @@
-"""The gradient that goes with TtcaDca: turning and speeding up, as in Dutra et al.
+"""The gradient for TtcaDca: turning and changing speed, as in Dutra et al.
 
 It is not the derivative of the cost: the paper follows the derivatives along heading and speed of
 the velocity relative to each neighbour, and this does the same, as the original engine does.
@@ -24,7 +24,7 @@ from crowdbot.plugins.crowd.cost_functions.ttca_dca.records_build import (
     PARAMS,
 )
 
-_STILL = 1e-3  # relative speeds squared (m^2/s^2), times (s), distances (m) that count as zero
+_STILL = 1e-3  # treated as zero: relative speeds squared (m^2/s^2), times (s), distances (m)
 
 
 @array_kernel
@@ -55,7 +55,7 @@ def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tupl
             fx, fy = qx + 2.0 * t * wx, qy + 2.0 * t * wy
             t_turn = -(fx * wy - fy * wx) / speed2
             t_speed = (fx * ex + fy * ey) / speed2
-        if distance2 > _STILL * _STILL:  # times the distance, which cancels
+        if distance2 > _STILL * _STILL:  # times the distance, which cancels out
             d_turn = cx * (t_turn * wx + t * wy) + cy * (t_turn * wy - t * wx)
             d_speed = cx * (t_speed * wx - t * ex) + cy * (t_speed * wy - t * ey)
         factor = near.weight * math.exp(-0.5 * exponent)

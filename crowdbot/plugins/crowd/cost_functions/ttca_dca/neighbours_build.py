@@ -1,7 +1,7 @@
 """The neighbours of TtcaDca that change the cost of some candidate, heaviest first.
 
-They are found in passes over columns: square roots and divisions are those of several neighbours
-at once, and no pass has to wait for one of them to know what comes next.
+They are found in passes over columns: square roots and divisions are computed for several
+neighbours at once, and no pass waits for one of them.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from crowdbot.plugins.crowd.cost_functions.ttca_dca.records_build import (
     PARAMS,
 )
 
-# Columns after the table: distance, later what makes q of d; gap; how fast it closes at most, later
-# whether that changes a sum; row in ``near``, or after these in ``walls``; weight.
+# Columns after the table: distance, later the factor from d to q; gap; largest closing speed, later
+# if it changes a sum; row in ``near`` or, after these, in ``walls``; weight.
 _DISTANCE, _GAP, _CLOSING, _ROW, _WEIGHT = range(5)
-#: Columns are computed in steps of so many entries: no processor has wider registers.
+#: Columns are computed in blocks of this many entries: no processor has wider registers.
 _STEP = 8
 
 
@@ -44,7 +44,7 @@ def _whole_steps(count: int) -> int:
 
 @array_kernel
 def _columns(room: int) -> tuple[int, int, int, int, int]:
-    """Where the columns begin in ``work``."""
+    """Return where the columns begin in ``work``."""
     first, length = WORK_COLUMNS * (1 + room), _whole_steps(room)
     return (
         first + _DISTANCE * length, first + _GAP * length, first + _CLOSING * length,
@@ -69,10 +69,10 @@ def _list(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Write who is within range and not behind; return how many.
+    """Write the neighbours within range and not behind; return their number.
 
-    Everybody is written, and overwritten by the next who is not one of these: a branch would
-    often be guessed wrong.
+    Every neighbour is written and, if not one of these, overwritten by the next: a branch would
+    often be mispredicted.
     """
     own = as_record(params, PARAMS)
     distance, gap, closing, row, _ = _columns(near_count + wall_count)
@@ -100,7 +100,7 @@ def _list(
 def _weigh(
     count: int, room: int, fastest: float, everybody: bool, params: Pointer, work: Pointer
 ) -> None:
-    """All that columns say of those who are listed."""
+    """Compute all columns of the listed neighbours."""
     distance, gap, closing, _, weight = _columns(room)
     own, whole = as_record(params, PARAMS), _whole_steps(count)
     a, b = own.inv_ttca2, own.inv_dca2
@@ -123,7 +123,7 @@ def _weigh(
 
 @array_kernel
 def _select(count: int, room: int, work: Pointer) -> int:
-    """Note in row 0 what all weigh together; leave out who changes no sum; return how many stay."""
+    """Write the total weight in row 0, drop those without effect on a sum; return how many stay."""
     shrink, _, counts, row, weight = _columns(room)
     total, kept = 0.0, 0
     for i in range(count):
@@ -138,7 +138,7 @@ def _select(count: int, room: int, work: Pointer) -> int:
 
 @array_kernel
 def _place(i: int, kept: int, weight: int, work: Pointer) -> int:
-    """How many of those kept are heavier than number i, or as heavy and before it."""
+    """Return how many of those kept are heavier than number i, or equally heavy and before it."""
     own, place = work[weight + i], 0
     for j in range(_whole_steps(kept)):
         place += int((work[weight + j] > own) | ((work[weight + j] == own) & (j < i)))
@@ -159,7 +159,7 @@ def _write(
     shrink, _, _, number, weight = _columns(room)
     rows = as_rows(work, NEIGHBOUR)
     for i in range(_STEP):
-        work[weight + kept + i] = -1.0  # heavier than nobody
+        work[weight + kept + i] = -1.0  # heavier than none
     for i in range(kept):
         j = int(work[number + i])
         if j < near_count:

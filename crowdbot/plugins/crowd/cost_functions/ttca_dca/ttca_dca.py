@@ -23,7 +23,7 @@ from crowdbot.plugin import (
 
 
 class TtcaDcaSpec(CostFunctionSpec):
-    """Mid-term avoidance and goal seeking."""
+    """Mid-term collision avoidance and goal seeking."""
 
     kind: Literal["ttca_dca"] = "ttca_dca"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

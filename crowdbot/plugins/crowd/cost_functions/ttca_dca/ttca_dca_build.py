@@ -33,7 +33,7 @@ from crowdbot.plugins.crowd.cost_functions.ttca_dca.records_build import (
 )
 from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 
-_HEAVIEST = 2  # neighbours in lower bounds
+_HEAVIEST = 2  # neighbours used in lower bounds
 _TINY = 1e-300
 
 
@@ -80,7 +80,7 @@ def _lower_bound(
     params: Pointer,
     out: Pointer,
 ) -> int:
-    """The terms of the heaviest neighbours, with an eighth power in place of exp.
+    """Return a lower bound: terms of the heaviest neighbours, with an eighth power instead of exp.
 
     exp(-y) >= 1 - y + y^2 / 2 - y^3 / 6 for y >= 0.
     """

@@ -1,4 +1,4 @@
-"""Drives the legs of a manoeuvre: each to its end, at a walk, before the next begins."""
+"""Drive the legs of a manoeuvre one after the other, at walking speed."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import numpy as np
 
 from crowdbot.plugin import Array, Pose, RobotLimits
 
-#: Fastest, m/s; share of full braking that it counts on.
+#: Top speed, m/s; share of full braking that it uses.
 _SPEED, _BRAKING = 0.4, 0.6
-#: A leg is done within this of its end: m, rad.
+#: A leg ends within this distance and angle of its end: m, rad.
 _NEAR, _ALIGNED = 0.03, 0.03
-#: Yaw rate per heading error, 1/s; heading per distance from the line, rad/m, and at most, rad.
+#: Yaw rate per heading error, 1/s; heading per distance from the line, rad/m; its limit, rad.
 _GAIN, _PULL, _LEAN = 2.0, 1.5, 0.25
-#: A way is old after this, s.
+#: A path is old after this, s.
 _LASTS = 5.0
 
 
 class Legs:
-    """Where a manoeuvre has got to; without legs there is none."""
+    """The remaining legs of a manoeuvre; empty without one."""
 
     def __init__(self) -> None:
         self._legs: Array = np.empty((0, 4))
@@ -27,19 +27,19 @@ class Legs:
         self._since = -math.inf
 
     def __bool__(self) -> bool:
-        """Whether there are legs left."""
+        """Return True if there are legs left."""
         return self._next < len(self._legs)
 
     def begin(self, legs: Array, t: float) -> None:
-        """Take the legs of `manoeuvre_build.manoeuvre`, found at a time (s)."""
+        """Start the legs from `manoeuvre_build.manoeuvre`, found at a time (s)."""
         self._legs, self._next, self._since = legs, 0, t
 
     def old(self, t: float) -> bool:
-        """Whether the way was found long ago: another may be better by now."""
+        """Return True if the path was found long ago, so that another may be better."""
         return t - self._since > _LASTS
 
     def velocity(self, pose: Pose, limits: RobotLimits) -> tuple[float, float]:
-        """The next v (m/s) and w (rad/s); zero when all legs are done."""
+        """Return the next v (m/s) and w (rad/s); zero when all legs are done."""
         while self:
             kind, x, y, yaw = self._legs[self._next].tolist()
             found = _turn(yaw, pose, limits) if kind == 0.0 else None
@@ -52,7 +52,7 @@ class Legs:
 
 
 def _turn(yaw: float, pose: Pose, limits: RobotLimits) -> tuple[float, float] | None:
-    """On the spot; None when it is done."""
+    """Turn on the spot; return None when done."""
     off = math.remainder(yaw - pose.yaw, 2.0 * math.pi)
     if abs(off) < _ALIGNED:
         return None
@@ -63,7 +63,7 @@ def _turn(yaw: float, pose: Pose, limits: RobotLimits) -> tuple[float, float] | 
 def _drive(
     end: tuple[float, float, float], kind: float, pose: Pose, limits: RobotLimits
 ) -> tuple[float, float] | None:
-    """Along the line to the end, ahead (1) or back (-1); None when it is done."""
+    """Drive along the line to the end, ahead (1) or back (-1); return None when done."""
     x, y, yaw = end
     c, s = math.cos(yaw), math.sin(yaw)
     left = kind * ((x - pose.x) * c + (y - pose.y) * s)

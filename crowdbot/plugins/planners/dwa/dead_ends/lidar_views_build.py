@@ -1,7 +1,7 @@
-"""What each lidar sees past: whether something that is remembered may still be there.
+"""Decide from each lidar's position if a remembered point may still be there.
 
-A robot's lidars sit at its corners, and one of them may look through a door while the wall beside
-it is seen by none: what hides what is decided from where the lidar is, not from the middle.
+A robot's lidars sit at its corners, and one may look through a door while no lidar sees the wall
+beside it. So occlusion is computed from each lidar, not from the robot's centre.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import numpy as np
 
 from crowdbot.plugin import Array, Mask, Pose, Reading, SensorInfo
 
-#: A point is gone if a lidar sees this far behind it, m, and so it does on both sides of it, rad:
-#: past the outline of a body some beams always go.
+#: A point is gone if a lidar sees this far behind it, m, also on both sides of it, rad, since some
+#: beams always pass a body's outline.
 _BEHIND, _BESIDE = 0.4, math.radians(6.0)
 
 
 class LidarViews:
-    """The planar lidars of a robot and what lies within their views.
+    """The planar lidars of a robot and the points in their views.
 
     Args:
         sensors: description of every sensor; other than level planar lidars are not used.
@@ -33,12 +33,12 @@ class LidarViews:
         }
 
     def past(self, readings: Mapping[str, Reading], pose: Pose, points: Array) -> Mask:
-        """(N,) which points (N, 2) of the world some lidar sees far past.
+        """Return a mask of the world points (N, 2) that some lidar sees far past.
 
         Args:
-            readings: by sensor name; a lidar that has not read yet is left out.
-            pose: of the robot.
-            points: m.
+            readings: by sensor name; lidars without a reading are ignored.
+            pose: the robot's pose.
+            points: (N, 2) world frame, m.
         """
         out = np.zeros(len(points), dtype=np.bool_)
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
@@ -57,7 +57,10 @@ class LidarViews:
 
 
 def _shortest_around(ranges: Array, step: float) -> Array:
-    """(R,) the shortest range within `_BESIDE` of each beam, m; beams are a step (rad) apart."""
+    """Return the shortest range within `_BESIDE` of each beam (R,), m.
+
+    Beams are a step (rad) apart.
+    """
     wide = math.ceil(_BESIDE / step)
     padded = np.pad(ranges, wide, mode="edge")
     shortest: Array = np.lib.stride_tricks.sliding_window_view(padded, 2 * wide + 1).min(axis=1)

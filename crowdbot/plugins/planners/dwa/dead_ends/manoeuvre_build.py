@@ -1,9 +1,9 @@
-"""How a long robot gets through where it cannot just drive on: turn, go ahead, back off.
+"""Plan manoeuvres of a long robot in narrow places: turn, go ahead, back off.
 
-A disc may take any way that is wide enough. A wheelchair before a door has to stand in front of
-it first, and straight. So places and headings are searched together, with the robot's outline at
-each (A*; Hart, Nilsson, Raphael, IEEE Transactions on Systems Science and Cybernetics 4(2), 1968):
-16 headings on a small map, and from each pose a step ahead, a step back, or a turn on the spot.
+A disc can take any path that is wide enough. A wheelchair must first stand straight in front of a
+door. So positions and headings are searched together, with the robot's outline at each (A*; Hart,
+Nilsson, Raphael, IEEE Transactions on Systems Science and Cybernetics 4(2), 1968): 16 headings on a
+small map, and from each pose a step ahead, a step back, or a turn on the spot.
 """
 
 from __future__ import annotations
@@ -22,16 +22,17 @@ CELL, HALF = 0.1, 45
 _SIDE = 2 * HALF + 1
 #: Quarters of a turn, as cosine and sine.
 _TURNS = [(1, 0), (0, 1), (-1, 0), (0, -1)]
-#: Cells that a step ahead goes, for each heading.
+#: Cells of a step ahead, for each heading.
 _QUARTER = [(1, 0), (2, 1), (1, 1), (1, 2)]
 _STEPS = np.array([(a * x - b * y, b * x + a * y) for a, b in _TURNS for x, y in _QUARTER])
 _HEADINGS = np.arctan2(_STEPS[:, 1], _STEPS[:, 0]).astype(np.float64)
 _COUNT = 16
-#: The headings, and after each the middle of the turn to the next, which sweeps more than its ends.
+#: The headings, each followed by the middle of the turn to the next, which sweeps more space than
+#: its ends.
 _LOOKS = np.column_stack(
     [_HEADINGS, _HEADINGS + 0.5 * ((np.roll(_HEADINGS, -1) - _HEADINGS) % (2.0 * math.pi))]
 ).ravel()
-#: What a metre back costs, in metres ahead; and a turn on the spot to the next heading, m.
+#: Cost of a metre back, in metres ahead; and of a turn on the spot to the next heading, m.
 _BACK, _TURN = 2.0, 0.25
 
 
@@ -39,9 +40,9 @@ _BACK, _TURN = 2.0, 0.25
 def blocked_poses(
     points: Array, core: Array, rounding: float, reach: float, margin: float
 ) -> NDArray[np.bool_]:
-    """(32, S, S) at which headings and cells a point is nearer to the outline than the margin.
+    """Return (32, S, S): headings and cells at which a point is closer than the margin.
 
-    Headings are the 16, and after each the middle of the turn to the next.
+    The 16 headings are each followed by the middle of the turn to the next.
 
     Args:
         points: (N, 2) relative to the middle of the map, m.
@@ -67,7 +68,7 @@ def blocked_poses(
 
 @array_kernel
 def _after(at: int, move: int) -> tuple[int, int, int, float]:
-    """Heading, cell and cost after a move from a pose: 0 ahead, 1 back, 2 left, 3 right."""
+    """Return heading, cell and cost after a move from a pose: 0 ahead, 1 back, 2 left, 3 right."""
     h, i, j = at // (_SIDE * _SIDE), at // _SIDE % _SIDE, at % _SIDE
     if move > 1:
         return (h + (1 if move == 2 else _COUNT - 1)) % _COUNT, i, j, _TURN
@@ -79,15 +80,15 @@ def _after(at: int, move: int) -> tuple[int, int, int, float]:
 
 @array_kernel
 def search(blocked: NDArray[np.bool_], yaw: float, gx: float, gy: float) -> NDArray[np.int64]:
-    """Poses from the middle of the map to the goal, or to the border on the way there.
+    """Return poses from the middle of the map to the goal, or to the border on the path there.
 
     Args:
-        blocked: of `blocked_poses`; where the robot is, it can be.
-        yaw: of the robot, rad; it begins at the nearest of the 16.
+        blocked: from `blocked_poses`; the robot's own pose is free.
+        yaw: the robot's yaw, rad; the search begins at the nearest heading.
         gx, gy: the goal, relative to the middle of the map, m.
 
     Returns:
-        (L, 3) heading, row and column of each; none if there is no way.
+        (L, 3) heading, row and column of each; empty if there is no path.
     """
     first = 0
     for h in range(_COUNT):
@@ -104,7 +105,7 @@ def search(blocked: NDArray[np.bool_], yaw: float, gx: float, gy: float) -> NDAr
         i, j = at // _SIDE % _SIDE, at % _SIDE
         away = math.hypot(gx - (i - HALF) * CELL, gy - (j - HALF) * CELL)
         if least > cost[at] + away + 1e-9:
-            continue  # a shorter way was found since
+            continue  # a shorter path was found since
         if away < 2.0 * CELL or min(i, j) <= 1 or max(i, j) >= _SIDE - 2:
             end = at
         for move in range(4):
@@ -138,17 +139,17 @@ def manoeuvre(
     reach: float,
     margin: float,
 ) -> Array:
-    """The legs of a way to the goal.
+    """Return the legs of a path to the goal.
 
     Args:
-        points: (N, 2) what stands around, world frame, m.
-        pose: of the robot, world frame.
+        points: (N, 2) obstacles, world frame, m.
+        pose: the robot's pose, world frame.
         goal: world frame, m.
         core, rounding, reach, margin: as `blocked_poses`.
 
     Returns:
-        (L, 4) of each leg 1 (ahead), -1 (back) or 0 (a turn on the spot), and the pose at its end,
-        world frame; none if there is no way.
+        (L, 4) per leg: 1 (ahead), -1 (back) or 0 (turn on the spot), and the pose at its end, world
+        frame; empty if there is no path.
     """
     x, y, yaw = pose
     around = points - (x, y)

@@ -1,4 +1,4 @@
-"""A long robot that has come no farther: it plans a manoeuvre on a map of its own and drives it."""
+"""Manoeuvres of a long robot without progress, planned on its own map."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ from crowdbot.plugins.planners.dwa.dead_ends.map_build import islands
 from crowdbot.plugins.planners.shared.people_build import carry, with_discs
 from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
 
-#: The map is renewed so often, s; its cells, and how far beside the robot what it remembers is in
-#: the way, m: that may be where no lidar looks.
+#: Period of map updates, s; cell size, m; and distance beside the robot within which remembered
+#: points are obstacles although no lidar may see them, m.
 _PERIOD, _CELL, _BESIDE = 0.5, 0.03, 0.4
-#: Points of the map that are no farther apart are one thing; it is small up to this size, m.
+#: Map points closer than this are one object, m; it is small up to this size, m.
 _LINK, _SMALL = 0.25, 0.6
-#: Clearance of a manoeuvre when it is planned, if there is such a way, and when it is driven, m.
+#: Preferred clearance when a manoeuvre is planned, and clearance when it is driven, m.
 _TIGHT, _TIGHTEST = 0.04, 0.02
-#: Shares of the wanted speed that are tried, if somebody is in the way.
+#: Shares of the desired speed that are tried if a person is in the way.
 _SLOWER = (1.0, 0.5, 0.2)
-#: Who can do none of that for so long looks for another way if this one is old, and backs off at
-#: this speed: s, m/s.
+#: After this long without any of them, the robot replans if the path is old, and backs off at this
+#: speed: s, m/s.
 _HELD, _BACK_OFF = 1.0, -0.1
 _SECTORS = 240
 _NONE = np.empty((0, 2))
 
 
 class Manoeuvring:
-    """Remembers what stands around, and the legs of the manoeuvre.
+    """Remembers standing obstacles and the legs of the manoeuvre.
 
-    Pieces of walls are as narrow as legs when they are seen askew, and in a door, somebody who is
-    not there would close the way: who stands is what stands alone in the map.
+    Pieces of walls seen at an angle are as narrow as legs, and a false person would block a door:
+    only isolated points in the map count as standing people.
 
     Args:
         core: of the robot's outline, as `robot_outline_build.core_of`.
@@ -65,28 +65,28 @@ class Manoeuvring:
         islands(np.ones((1, 2)), _LINK, _SMALL)
 
     def forget(self) -> None:
-        """The robot is on its way again."""
+        """Drop the manoeuvre, since the robot makes progress again."""
         self._map, self._alone = _NONE, _NONE
         self._legs, self._held = Legs(), 0.0
         self._mapped_at = -math.inf
 
     def __bool__(self) -> bool:
-        """Whether it is in a manoeuvre."""
+        """Return True during a manoeuvre."""
         return bool(self._legs)
 
     def command(
         self, obs: Observation, stands: Array, walkers: Array
     ) -> tuple[float, float, float] | None:
-        """The next v (m/s), w (rad/s) and vy, which is 0; None if there is no way.
+        """Return the next v (m/s), w (rad/s) and vy, which is 0; None if there is no path.
 
         Args:
-            stands: (P, 2) what the lidars show but for those who walk, base frame, m.
-            walkers: (K, 4) x, y, vx, vy of those, base frame.
+            stands: (P, 2) lidar points except those of walking people, base frame, m.
+            walkers: (K, 4) x, y, vx, vy of walking people, base frame.
         """
         if obs.t - self._mapped_at >= _PERIOD:
             self._mapped_at = obs.t
             self._remember(obs.pose, stands, obs.readings)
-            # A way that can be driven is kept: in a door, a new one may begin with going back.
+            # A path that can be driven is kept: in a door, a new one may begin by backing off.
             if not self._legs or (self._held > _HELD and self._legs.old(obs.t)):
                 discs = with_discs(_NONE, _into(self._alone, obs.pose), self._person)
                 around = np.concatenate([self._map, _out_of(discs, obs.pose)])
@@ -96,16 +96,16 @@ class Manoeuvring:
         return self._drive(obs, stands, walkers) if self._legs else None
 
     def beside(self, pose: Pose) -> Array:
-        """(K, 2) what is remembered so near that no lidar may see it, base frame, m."""
+        """Return remembered points (K, 2) so near that no lidar may see them, base frame, m."""
         points = _into(self._map, pose)
         return points[np.hypot(points[:, 0], points[:, 1]) < self._beside]
 
     def _remember(self, pose: Pose, stands: Array, readings: Mapping[str, Reading]) -> None:
-        """Take what is seen now, keep what is hidden or where no lidar looks."""
+        """Add the points seen now, and keep those hidden or outside the lidars' views."""
         seen = _out_of(nearest_per_sector(stands, _SECTORS, self._reach), pose)
         near = np.hypot(self._map[:, 0] - pose.x, self._map[:, 1] - pose.y) < self._reach
         kept = self._map[near & ~self._lidars.past(readings, pose, self._map)]
-        points = np.concatenate([seen, kept])  # where both are, the new one is kept
+        points = np.concatenate([seen, kept])  # a new point replaces an old one
         _, first = np.unique(np.round(points / _CELL), axis=0, return_index=True)
         self._map = points[first]
         self._alone = islands(self._map, _LINK, _SMALL)
@@ -114,12 +114,12 @@ class Manoeuvring:
         """Legs of a manoeuvre among points (N, 2), world frame; none if there is no way."""
         rounding, reach = float(self._p[parameters.RADIUS]), float(self._p[parameters.REACH])
         found = manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHT)
-        if len(found) == 0:  # what is remembered has become blurred, as odometry drifts
+        if len(found) == 0:  # the memory is blurred, as odometry drifts
             found = manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHTEST)
         return found
 
     def _drive(self, obs: Observation, stands: Array, walkers: Array) -> tuple[float, float, float]:
-        """On along the legs, slower or not at all where somebody is in the way."""
+        """Continue along the legs, slower or not at all if a person is in the way."""
         v, w = self._legs.velocity(obs.pose, self._limits)
         wishes = [(share * v, share * w) for share in _SLOWER]
         wishes += [(_BACK_OFF, 0.0)] if self._held > _HELD else []
@@ -137,7 +137,7 @@ class Manoeuvring:
         return 0.0, 0.0, 0.0
 
     def _around(self, pose: Pose, stands: Array, walkers: Array) -> tuple[Array, Array]:
-        """Points and velocities (K, 2) of all that is there or is remembered, base frame."""
+        """Return points and velocities (K, 2) of everything seen or remembered, base frame."""
         alone = _into(self._alone, pose)
         people = np.concatenate([alone, walkers[:, :2]])
         going = np.concatenate([np.zeros_like(alone), walkers[:, 2:]])
@@ -149,14 +149,14 @@ class Manoeuvring:
 
 
 def _into(points: Array, pose: Pose) -> Array:
-    """Points (N, 2) of the world in the frame of the robot, m."""
+    """Transform points (N, 2) from the world to the robot's frame, m."""
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     turned: Array = (points - (pose.x, pose.y)) @ np.array([[c, -s], [s, c]])
     return turned
 
 
 def _out_of(points: Array, pose: Pose) -> Array:
-    """Points (N, 2) of the robot's frame in the world, m."""
+    """Transform points (N, 2) from the robot's frame to the world, m."""
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     turned: Array = points @ np.array([[c, s], [-s, c]]) + (pose.x, pose.y)
     return turned

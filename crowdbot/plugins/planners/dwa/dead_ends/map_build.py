@@ -1,4 +1,4 @@
-"""A small map for getting out of dead ends: what stands around the robot, and the way past it."""
+"""A small local map for getting out of dead ends: obstacles, and the path past them."""
 
 from __future__ import annotations
 
@@ -9,50 +9,49 @@ from numpy.typing import NDArray
 
 from crowdbot.plugin import Array, array_kernel
 
-#: Side of a cell (m) and cells from the centre of the map to its border.
+#: Side of a cell (m), and cells from the centre of the map to its border.
 CELL, HALF = 0.1, 60
 _SIDE = 2 * HALF + 1
 _SECTORS = 180
-#: A remembered point is gone if its sector is seen to be free this far behind it, m.
+#: A remembered point is removed if its sector is seen to be free this far behind it, m.
 _BEHIND = 0.4
-#: Metres along the way at which the robot aims.
+#: Distance along the path of the point that the robot heads for, m.
 AIM = 0.7
 
 
 def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
-    """The memory after another look.
+    """Return the remembered points, updated with a new scan.
 
     Args:
         memory: (N, 2) points seen before, world frame, m.
         seen: (K, 2) points seen now, world frame, m.
-        x: of the robot, m.
-        y: of the robot, m.
-        reach: how far the robot sees, m.
+        x: the robot's position, m.
+        y: the robot's position, m.
+        reach: the sensors' range, m.
 
     Returns:
-        (N', 2) what was seen now and what is hidden, out of reach, or still there; one point in
-        each cell.
+        (N', 2) points seen now, and those hidden, out of range or still there; one point per cell.
     """
     view = np.full(_SECTORS, reach)
     at, gap = _polar(seen, x, y)
     np.minimum.at(view, at, gap)
-    # Past the outline of a body some rays always go: only a wide gap shows that it is gone.
+    # Some rays always pass a body's outline: only a wide gap shows that the body is gone.
     view = np.min([np.roll(view, k) for k in range(-3, 4)], axis=0)
     at, gap = _polar(memory, x, y)
     kept = memory[(gap + _BEHIND > view[at]) | (gap > reach)]
-    points: Array = np.concatenate([seen, kept])  # where both are, the new one is kept
+    points: Array = np.concatenate([seen, kept])  # a new point replaces an old one
     _, first = np.unique(np.round(points / CELL), axis=0, return_index=True)
     return points[first]
 
 
 @array_kernel
 def islands(points: Array, link: float, size: float) -> Array:
-    """Middles of what stands alone and is small: pillars, and people who stand; (K, 2).
+    """Return the centres (K, 2) of small isolated obstacles: pillars and standing people.
 
     Args:
         points: (N, 2) m.
-        link: points that are no farther apart belong to one thing, m.
-        size: of the largest that is small, along x and y, m.
+        link: largest distance between points of one obstacle, m.
+        size: largest size that counts as small, along x and y, m.
     """
     count = points.shape[0]
     left, queue = np.ones(count, dtype=np.bool_), np.empty(count, dtype=np.int64)
@@ -87,7 +86,7 @@ def _polar(points: Array, x: float, y: float) -> tuple[NDArray[np.int64], Array]
 
 @array_kernel
 def _blocked(points: Array, x: float, y: float, radius: float) -> NDArray[np.bool_]:
-    """Cells of the map around (x, y) in which the centre of a disc would touch a point."""
+    """Return the cells around (x, y) in which the centre of a disc would touch a point."""
     out = np.zeros((_SIDE, _SIDE), dtype=np.bool_)
     wide = math.ceil(radius / CELL)
     for k in range(points.shape[0]):
@@ -102,7 +101,7 @@ def _blocked(points: Array, x: float, y: float, radius: float) -> NDArray[np.boo
 
 @array_kernel
 def _relax(cost: Array, blocked: NDArray[np.bool_], i: int, j: int) -> bool:
-    """Take the best neighbour's cost plus the step; whether that is less than before."""
+    """Update a cell from its best neighbour's cost plus the step; return True if it decreased."""
     if blocked[i, j]:
         return False
     best = cost[i, j]
@@ -117,9 +116,9 @@ def _relax(cost: Array, blocked: NDArray[np.bool_], i: int, j: int) -> bool:
 
 @array_kernel
 def _cost_to_go(blocked: NDArray[np.bool_], gx: float, gy: float) -> Array:
-    """Length of the way from each free cell to the goal, by sweeps in four orders; m.
+    """Return the path length from each free cell to the goal, by sweeps in four orders, m.
 
-    Beyond the border of the map the way is taken to be straight. Blocked cells stay at infinity.
+    Beyond the border of the map the path is assumed straight. Blocked cells stay at infinity.
     """
     cost = np.full((_SIDE, _SIDE), np.inf)
     for i in range(_SIDE):
@@ -144,21 +143,21 @@ def _cost_to_go(blocked: NDArray[np.bool_], gx: float, gy: float) -> Array:
 def way_out(
     points: Array, x: float, y: float, gx: float, gy: float, radius: float
 ) -> tuple[bool, float]:
-    """Where the shortest way to the goal begins.
+    """Return where the shortest path to the goal begins.
 
     Args:
-        points: (N, 2) what stands around, world frame, m.
+        points: (N, 2) obstacles, world frame, m.
         x: of the robot, m.
         y: of the robot, m.
         gx: of the goal, m.
         gy: of the goal, m.
-        radius: of the disc that needs room, m.
+        radius: radius of the disc that must stay free, m.
 
     Returns:
-        whether there is a way; its bearing in the world frame, rad.
+        True if there is a path; its first bearing in the world frame, rad.
     """
     blocked = _blocked(points, x, y, radius)
-    for i in range(HALF - 1, HALF + 2):  # wherever the robot is, it can be
+    for i in range(HALF - 1, HALF + 2):  # the robot's own cells are free
         for j in range(HALF - 1, HALF + 2):
             blocked[i, j] = False
     cost = _cost_to_go(blocked, gx - x, gy - y)
