@@ -153,7 +153,7 @@ def portal_world(seed: int, *, through: bool) -> World:
 # ------------------------------------------------------------------------ bodies
 @dataclass(frozen=True, slots=True)
 class _People:
-    """Constants of people: (M,)."""
+    """Constant properties of M random people, (M,) each."""
 
     start: Array
     heading: Array

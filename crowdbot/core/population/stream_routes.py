@@ -39,7 +39,7 @@ class Route:
     origin: Area | None = None
 
     def columns(self) -> dict[str, Any]:
-        """Return its part of a row of the table."""
+        """Return the route's columns for one person's row of the agents' table."""
         area = self.origin
         some = any(size != _POINT for size in self.sizes)
         return {

@@ -161,7 +161,7 @@ def _talking(
 def _circle(
     draw: StreamDraw, area: Area, members: range, unit: int, gap: float, occupancy: Occupancy
 ) -> tuple[Point, list[Point]]:
-    """The middle of a circle on free floor, and the places around it."""
+    """Return the centre of a circle on free floor, and the places around it."""
     rng, size = draw.rng("place", unit), len(members)
     gap = max(gap, 2.0 * float(draw.radius[members].max()))
     reach = 0.5 * gap / math.sin(math.pi / size) if size > 1 else 0.0

@@ -60,7 +60,7 @@ class Realism:
         )
 
     def as_json(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data for JSON."""
         b = self.beside
         return {
             "crowd": self.name,

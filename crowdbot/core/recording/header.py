@@ -115,7 +115,7 @@ class RecordingHeader:
 
 
 def format_problem(version: int) -> str:
-    """Why a format is not read, and what to do; empty for one that is."""
+    """Return why a format cannot be read, and what to do; empty if it can."""
     read = f"the recording has format {version}; the {{}} that this crowdbot reads is {{}}: "
     if version > VERSION:
         return read.format("newest", VERSION) + "update crowdbot"

@@ -23,11 +23,11 @@ from crowdbot.errors import InputError, UnknownNameError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingInfo:
-    """What is in a recording.
+    """The contents of a recording.
 
     Attributes:
-        complete: the run came to its end and the file has its footer.
-        status: why the run ended; empty where the recording does not say.
+        complete: True if the run is complete and the file has its footer.
+        status: why the run ended; empty if unknown.
         goal_time: arrival, s, or None.
         duration: time of the last sample, s.
         topics: topic -> (message type, number of messages), sorted.

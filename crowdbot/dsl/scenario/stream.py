@@ -37,9 +37,9 @@ StreamEnd = Literal["return", "leave", "stop"]
 
 
 class Arrivals(Spec):
-    """When people enter: at random (`rate`), in a steady beat (`every`), or at given `times`.
+    """Times at which people enter: random (`rate`), regular (`every`), or given (`times`).
 
-    Groups arrive together: what arrives is a group, or one who is alone.
+    Groups arrive together: an arrival is a group or a single person.
     """
 
     rate: PositiveFrequency | None = Field(
@@ -71,7 +71,7 @@ class Arrivals(Spec):
 
 
 class StreamBody(Spec):
-    """What the people of a stream have in common; what is left out is as in `crowd.body`."""
+    """Properties shared by people of a stream; missing ones are as in `crowd.body`."""
 
     radius: PositiveLength | None = Field(default=None, description="Radius of the disc, m.")
     mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
@@ -83,7 +83,7 @@ class StreamBody(Spec):
 
 
 class Stream(Spec):
-    """A stream of people, of the pattern that its `kind` names."""
+    """A stream of people, with the pattern named by `kind`."""
 
     #: No kind is usual: each stream names its own.
     usual: ClassVar[str] = ""

@@ -90,7 +90,7 @@ class FloorPlanFields(EnvironmentSpec):
 
     @property
     def read_as(self) -> Format:
-        """The format, found."""
+        """Return the file's format, from the spec or the file name."""
         if self.format != "auto" or self.file is None:
             return "wkt" if self.format == "auto" else self.format
         return _SUFFIXES[self._suffix]

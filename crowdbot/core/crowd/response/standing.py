@@ -1,4 +1,4 @@
-"""Stops short of a robot that stands, whether people have looked at it or not.
+"""Stopping in front of a standing robot, noticed or not.
 
 A person who would have to brake harder than people do by choice is braked as hard as it takes, no
 harder: a last step. One who is pushed against the robot by others leans back, the harder the

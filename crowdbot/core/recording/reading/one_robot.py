@@ -89,10 +89,10 @@ class RobotRecords:
 
     @property
     def header(self) -> RecordingHeader:
-        """The constants of the run.
+        """Return the constants of the run.
 
         Raises:
-            InputError: there is no header, or it contradicts itself.
+            InputError: there is no header, or it is inconsistent.
         """
         if not self.names_header:
             raise InputError(f"{self._path}: no recording of crowdbot: {Topic.HEADER} is missing")
@@ -145,10 +145,10 @@ class RobotRecords:
         return None if self.header.agents is None else self.trajectories()
 
     def trajectories(self) -> Trajectories:
-        """All of it as arrays.
+        """Return everything as arrays.
 
         Raises:
-            InputError: header or samples are missing, or do not fit each other.
+            InputError: header or samples are missing or inconsistent.
         """
         header = self.header
         if not self._records[Topic.STATE]:
@@ -233,7 +233,7 @@ class RobotRecords:
 
 
 def _fastest(robot: RobotHeader) -> float | None:
-    """The largest speed in any direction, m/s; None where it is not recorded or not positive."""
+    """Return the top speed in any direction, m/s; None if not recorded or not positive."""
     if robot.limits is None:
         return None
     fastest = math.hypot(robot.limits.v_max, robot.limits.vy_max)

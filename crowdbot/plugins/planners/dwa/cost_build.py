@@ -96,7 +96,7 @@ def evaluate(
 
 @kernel
 def _target(candidates: Array, k: int) -> tuple[float, float, float]:
-    """v, w, vy of a candidate."""
+    """Return v, w and vy of a candidate velocity; vy is 0 if it has none."""
     vy = candidates[k, 2] if candidates.shape[1] > 2 else 0.0
     return candidates[k, 0], candidates[k, 1], vy
 

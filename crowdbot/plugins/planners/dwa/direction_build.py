@@ -15,7 +15,7 @@ _HALF = 24
 def free_time(
     points: Array, velocities: Array, vx: float, vy: float, radius: float, limit: float
 ) -> float:
-    """Time until a disc at the origin with velocity (vx, vy) meets a moving point, s.
+    """Return the time until a disc at the origin with velocity (vx, vy) meets a moving point, s.
 
     At most ``limit``. Points inside the disc count only while they come closer.
     """
@@ -49,19 +49,19 @@ def choose_direction(
     swerve: float,
     hold: float,
 ) -> tuple[float, float]:
-    """The direction in which to go on: towards the goal, free for long, like last time.
+    """Choose a direction towards the goal that stays free for long and is close to the last one.
 
     Args:
         points: (K, 2) base frame, m.
         velocities: (K, 2) base frame, m/s.
         goal: bearing of the goal, rad.
-        previous: bearing of the last choice, rad.
-        speed: at which the robot would go, m/s.
-        radius: of the disc that must stay free, m.
-        limit: s; a direction that is free this long is as good as any.
+        previous: bearing chosen last, rad.
+        speed: the robot's speed, m/s.
+        radius: radius of the disc that must stay free, m.
+        limit: time beyond which a direction counts as free, s.
         detour: cost of the opposite direction; 1 is the cost of being blocked at once.
         swerve: largest angle from the goal's bearing, rad.
-        hold: cost of turning round from the last choice.
+        hold: cost of a full reversal of the last choice.
 
     Returns:
         bearing (rad, not wrapped) and the time for which it is free (s).

@@ -78,7 +78,7 @@ class Dwa:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Take the limits and mounts; compile what is not compiled yet."""
+        """Store the limits and mounts; compile kernels that are not compiled yet."""
         del seed
         spec = self._spec
         self._limits = limits
@@ -97,7 +97,7 @@ class Dwa:
         self._forget()
 
     def _warm_up(self, task: Task, sensors: Mapping[str, SensorInfo]) -> None:
-        """Two steps in a made-up world, so that no step of the run waits for a compiler."""
+        """Run two steps in a made-up world, so that no step of the run waits for compilation."""
         compile_map()
         compile_heading()
         for t in (0.0, self._spec.look_back):

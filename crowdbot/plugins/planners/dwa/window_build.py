@@ -15,7 +15,7 @@ _ASIDE = tuple(math.radians(a) for a in (0.0, 20.0, -20.0, 45.0, -45.0, 90.0, -9
 
 @kernel
 def _evenly(first: float, last: float, values: Array) -> None:
-    """Fill (N,) with even steps from the first to the last, N > 1."""
+    """Fill (N,) with even steps from the first to the last value, N > 1."""
     steps = values.shape[0] - 1
     for k in range(steps):
         values[k] = k * ((last - first) / steps) + first
@@ -26,12 +26,12 @@ def _evenly(first: float, last: float, values: Array) -> None:
 def candidates(
     low: float, high: float, speeds: int, left: float, right: float, rates: int, wish: float
 ) -> Array:
-    """Target velocities (C, 2): every speed with every yaw rate, slow to fast.
+    """Return target velocities (C, 2): every speed with every yaw rate, slow to fast.
 
     Args:
-        low, high: borders of the speeds, m/s; 0, or what is next to it, is one of them.
-        speeds, rates: how many are tried of each, > 1.
-        left, right: borders of the yaw rates, rad/s; 0, or what is next to it, is tried too.
+        low, high: limits of the speeds, m/s; 0 or the value closest to it is included.
+        speeds, rates: how many of each, > 1.
+        left, right: limits of the yaw rates, rad/s; 0 or the value closest to it is included.
         wish: one more yaw rate, rad/s.
     """
     v, w = np.empty(speeds + 1), np.empty(rates + 2)
@@ -58,17 +58,17 @@ def candidates(
 def candidates_aside(
     now: tuple[float, float], change: float, top: float, speeds: int, direction: float, rates: Array
 ) -> Array:
-    """Target velocities (C, 3), v, w and vy, of a robot that goes in every direction.
+    """Return target velocities (C, 3), v, w and vy, of an omnidirectional robot.
 
-    Every speed in the wanted direction, aside from it and away from it, with every yaw rate, each
-    as far as the change allows.
+    Every speed in the desired direction, beside it and away from it, with every yaw rate, limited
+    by the possible change.
 
     Args:
         now: present v and vy, m/s.
         change: largest change of that vector, m/s.
         top: highest speed, m/s.
-        speeds: how many are tried, > 1; the lowest is 0.
-        direction: that is wanted, rad.
+        speeds: how many, > 1; the lowest is 0.
+        direction: desired direction, rad.
         rates: (R,) yaw rates, rad/s.
     """
     out = np.empty((((speeds - 1) * len(_ASIDE) + 1) * rates.shape[0], 3))

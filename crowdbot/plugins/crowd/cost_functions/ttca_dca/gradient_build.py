@@ -70,7 +70,7 @@ def _by_neighbours(ux: float, uy: float, work: Pointer, params: Pointer) -> tupl
 def gradient(
     ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
-    """Derivatives along heading and speed, then along x and y."""
+    """Write the derivatives along heading and speed, then along x and y."""
     own = as_record(params, PARAMS)
     turning, speeding = _by_neighbours(ux, uy, work, params)
     preferred, speed = agent.preferred, math.sqrt(ux * ux + uy * uy)

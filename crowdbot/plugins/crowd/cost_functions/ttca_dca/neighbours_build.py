@@ -155,7 +155,7 @@ def _write(
     room: int,
     work: Pointer,
 ) -> None:
-    """Write the table."""
+    """Write the table of neighbours."""
     shrink, _, _, number, weight = _columns(room)
     rows = as_rows(work, NEIGHBOUR)
     for i in range(_STEP):

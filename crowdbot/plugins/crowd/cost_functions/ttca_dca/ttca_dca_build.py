@@ -108,7 +108,7 @@ def _lower_bound(
 
 
 def build(spec: TtcaDcaSpec) -> CompiledCost:
-    """Compile-time functions with this spec's parameters."""
+    """Return the compile-time functions with this spec's parameters."""
     params = record_values(
         PARAMS,
         range=spec.range.value,

@@ -111,7 +111,10 @@ class Manoeuvring:
         self._alone = islands(self._map, _LINK, _SMALL)
 
     def _plan(self, around: Array, pose: Pose, goal: tuple[float, float]) -> Array:
-        """Legs of a manoeuvre among points (N, 2), world frame; none if there is no way."""
+        """Return legs of a manoeuvre among points (N, 2), world frame.
+
+        Empty if there is no path.
+        """
         rounding, reach = float(self._p[parameters.RADIUS]), float(self._p[parameters.REACH])
         found = manoeuvre(around, pose, goal, self._core, rounding, reach, _TIGHT)
         if len(found) == 0:  # the memory is blurred, as odometry drifts
