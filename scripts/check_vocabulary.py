@@ -3,35 +3,47 @@
     python scripts/check_vocabulary.py [FILE...]
 
 Prints ``file:line: text -> what to write`` and ends with exit code 1 if there are any. Only words
-that have no other meaning here are listed: this is a net for what was renamed, not a style guide.
+that have no other meaning here are listed: this finds renamed terms, and prose that is hard to read
+in docstrings, comments and messages of the package (`PLAIN`). It is not a style guide.
 """
 
 from __future__ import annotations
 
+import io
 import re
 import sys
+import tokenize
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
-#: What is read: folders with all that is below them, and files.
+#: Folders, searched recursively, and files.
 PLACES = ("crowdbot", "docs", "tests", "README.md", "CONTRIBUTING.md")
 #: Files that have to name retired words.
-EXEMPT = ("tests/test_check_vocabulary.py",)
+EXEMPT = ("tests/test_check_vocabulary.py", "scripts/check_vocabulary.py")
 CODE, TEXT = (".py", ".js", ".j2", ".tmpl"), (".md", ".txt", ".yaml", ".toml")
 EVERYWHERE = CODE + TEXT
+#: Folders whose Python files are also checked with `PLAIN`.
+PLAIN_PLACES = ("crowdbot",)
+#: Folders below these that are still exempt.
+NOT_YET_PLAIN = (
+    "crowdbot/core/crowd",
+    "crowdbot/core/population",
+    "crowdbot/core/recording",
+    "crowdbot/dsl/scenario",
+)
 _BEFORE = 40  # characters that `Rule.unless` sees
 
 
 class Rule(NamedTuple):
-    """A retired word.
+    """A retired word or phrase.
 
     Attributes:
         pattern: regular expression.
-        instead: what to write.
-        suffixes: files in which it is looked for.
-        unless: regular expression of what may stand before it and makes it right.
+        instead: replacement.
+        suffixes: suffixes of the files to search.
+        unless: regular expression for preceding text that makes it right.
     """
 
     pattern: str
@@ -70,9 +82,23 @@ RULES = (
     Rule(r"\b(?:is|are)\s+none\b(?!\s+of)", "is not one, has none", unless=r"\b[Tt]here\s+"),
 )  # fmt: skip
 
+#: Rules for docstrings, comments and other strings of Python files.
+PLAIN = (
+    Rule(r'(?m)^[ \t]*r?"""(?:What|How|Who|Whom|Whose|Where|When|Whether|Why|Which|Of)\b',
+         "say what it is, or what it does: 'Return True if …'"),
+    Rule(r"#:?\s(?:Of|Whether)\b", "say what it is"),
+    Rule(r"\b(?:[Nn]obody|[Ss]omebody|[Ww]hoever)\b", "no one, a person, it",
+         unless=r"\bavoid[ _]|\""),
+    Rule(r"\banew\b", "again, new"),
+    Rule(r"\b[Ss]o many\b", "this many"),
+    Rule(r"\b[Ff]or ever\b", "forever, without limit"),
+    Rule(r"\bway made good\b", "progress"),
+    Rule(r"\b(?:he|his|him|she|her)\b", "it, the person"),
+)  # fmt: skip
+
 
 def files_to_read() -> Iterator[Path]:
-    """All texts below `PLACES`."""
+    """Yield all texts below `PLACES`."""
     for name in PLACES:
         place = ROOT / name
         for file in sorted(place.rglob("*")) if place.is_dir() else [place]:
@@ -80,14 +106,17 @@ def files_to_read() -> Iterator[Path]:
                 yield file
 
 
-def findings(text: str, suffix: str) -> Iterator[tuple[int, str, str]]:
-    """Line, text and what to write instead, for each retired word.
+def findings(
+    text: str, suffix: str, rules: Sequence[Rule] = RULES
+) -> Iterator[tuple[int, str, str]]:
+    """Yield line, text and replacement of each retired word.
 
     Args:
-        text: of a file.
-        suffix: of its name, which says which rules hold.
+        text: contents of a file.
+        suffix: suffix of its name, which selects the rules.
+        rules: rules to apply.
     """
-    for rule in RULES:
+    for rule in rules:
         if suffix not in rule.suffixes:
             continue
         for found in re.finditer(rule.pattern, text):
@@ -98,13 +127,42 @@ def findings(text: str, suffix: str) -> Iterator[tuple[int, str, str]]:
             yield line, " ".join(found[0].split()), rule.instead
 
 
+def prose(code: str) -> str:
+    """Return Python code with everything but comments and strings blanked."""
+    kept = [" " * len(line.rstrip("\n")) for line in code.splitlines()]
+    lines = code.splitlines()
+    for token in tokenize.generate_tokens(io.StringIO(code).readline):
+        if tokenize.tok_name[token.type] not in ("STRING", "COMMENT", "FSTRING_MIDDLE"):
+            continue
+        (first, begin), (last, end) = token.start, token.end
+        for number in range(first, last + 1):
+            a = begin if number == first else 0
+            b = end if number == last else len(lines[number - 1])
+            line = kept[number - 1]
+            kept[number - 1] = line[:a] + lines[number - 1][a:b] + line[b:]
+    return "\n".join(kept)
+
+
+def is_plain_place(file: Path) -> bool:
+    """Return True if a file is checked with `PLAIN`."""
+    if file.suffix != ".py" or not file.is_relative_to(ROOT):
+        return False
+    name = file.relative_to(ROOT).as_posix()
+    below = [
+        any(name.startswith(f"{p}/") for p in places) for places in (PLAIN_PLACES, NOT_YET_PLAIN)
+    ]
+    return below[0] and not below[1] and name != "scripts/check_vocabulary.py"
+
+
 def main(arguments: Sequence[str]) -> int:
-    """Check the files that are named, or all; the exit code."""
+    """Check the named files, or all; return the exit code."""
     found = 0
     for file in map(Path, arguments) if arguments else files_to_read():
-        for line, text, instead in sorted(
-            findings(file.read_text("utf-8", errors="replace"), file.suffix)
-        ):
+        content = file.read_text("utf-8", errors="replace")
+        all_findings = list(findings(content, file.suffix))
+        if is_plain_place(file.resolve()):
+            all_findings += findings(prose(content), file.suffix, PLAIN)
+        for line, text, instead in sorted(all_findings):
             place = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
             print(f"{place}:{line}: {text} -> {instead}")
             found += 1

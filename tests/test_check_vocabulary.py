@@ -67,3 +67,15 @@ def test_files_are_read_where_they_should_be() -> None:
     names = {f.relative_to(vocabulary.ROOT).as_posix() for f in vocabulary.files_to_read()}
     assert {"README.md", "crowdbot/api.py", "docs/index.md", "tests/paths.py"} <= names
     assert not names & set(vocabulary.EXEMPT)
+
+
+@pytest.mark.parametrize(("code", "words"), [
+    ('def f():\n    """Whether it is."""\n', ['"""Whether']),
+    ("x = 1  # Of a file", ["# Of"]),
+    ("nobody = 1  # nobody", ["nobody"]),
+    ('x = "drawn anew"', ["anew"]),
+    ('def f():\n    """Return True if it is."""\n', []),
+])  # fmt: skip
+def test_prose_of_the_package_is_plain(code: str, words: list[str]) -> None:
+    prose = vocabulary.prose(code)
+    assert [word for _, word, _ in vocabulary.findings(prose, ".py", vocabulary.PLAIN)] == words

@@ -231,7 +231,7 @@ def check_millimetres_are_the_reading(
 
 
 def check_message_has_its_type(component: Component[Any], registry: Registry | None = None) -> None:
-    """Of a sensor that declares its ``message``: readings become messages of ``info().ros_type``.
+    """Readings of a sensor with its own ``message`` become messages of ``info().ros_type``.
 
     If this fails, return every field of the type from ``SensorMessage.fields``, and put the texts
     of types that ROS 2 Humble lacks into ``definitions``.

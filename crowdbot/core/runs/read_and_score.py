@@ -128,7 +128,7 @@ def read_recorded(path: Path) -> RecordedRun:
 
 
 def recorded_run(recording: Recording) -> RecordedRun:
-    """What an open recording says of itself; errors as `read_recorded`."""
+    """Return the contents of an open recording; errors as `read_recorded`."""
     names = recording.robots
     found = {name: recording.robot(name or None) for name in names or ("",)}
     runs = {name: one.run for name, one in found.items()}

@@ -6,7 +6,7 @@ and `as_rows` give names to what a pointer or an array holds, free of charge. Th
 the class, so it finds a wrong name.
 
 A compiled function takes records of one type at each place, always the same: numba numbers types
-anew in every process, and symbols of compiled functions contain these numbers.
+again in every process, and symbols of compiled functions contain these numbers.
 """
 
 from __future__ import annotations

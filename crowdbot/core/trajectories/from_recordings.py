@@ -77,7 +77,7 @@ class FromRecordings:
                 bearing: one row a contact of the robot; or such columns.
             agent_radius, agent_mass: m, kg, where the table does not say them.
             resample: None: rows of people lie on the robot's; ``"robot"``: people are interpolated
-                at the robot's times; a number: everything is, at so many Hz.
+                at the robot's times; a number: everything is, at this rate in Hz.
             clock_offset: s, added to the times of people, whose clock differs by it.
             max_gap: s; across a longer time without a row a person is absent, not interpolated.
             robot_radius, robot_mass: m, kg; needed with a robot.

@@ -24,7 +24,7 @@ class PeopleOptions(TypedDict, total=False):
 
 
 class TimeOptions(TypedDict, total=False):
-    """How rows of people become samples."""
+    """Options for sampling rows of people."""
 
     resample: Samples
     clock_offset: float

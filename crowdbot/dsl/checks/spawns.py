@@ -77,7 +77,7 @@ def _check_goals(facts: Facts, spawn: Spawn, goals: Goals, *path: str) -> Iterat
 
 
 def _check_room(facts: Facts, spawn: Spawn, area: Area, name: str) -> Iterator[Diagnostic]:
-    """Check that so many people can be inside at all."""
+    """Check that this many people fit inside."""
     path, floor = ("crowd", "spawns", name), area.size[0] * area.size[1]
     if spawn.density is not None:
         where = f"spawn '{name}'"

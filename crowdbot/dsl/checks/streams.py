@@ -69,7 +69,7 @@ def area_of(facts: Facts, place: Place) -> Area | None:
 
 
 def _check_number(facts: Facts, stream: Stream, name: str, path: Path) -> Iterator[Diagnostic]:
-    """Check that so many people can be where they start."""
+    """Check that this many people fit where they start."""
     place, density, wanted = stream.starts_in, stream.people_per_area, stream.count
     if stream.entering is not None:
         yield from _check_arrivals(facts, stream.entering, name, (*path, "arrivals"))

@@ -28,7 +28,7 @@ _NOTHING = np.empty((0, 2))
 
 
 class Detour(NamedTuple):
-    """What a dead end changes in one step.
+    """Changes to one step in a dead end.
 
     Attributes:
         goal, room: bearing (rad) and distance (m) of the goal or, on the map, of the next stretch.
@@ -147,7 +147,7 @@ class DeadEnds:
             return
         self._mapped_at = obs.t
         c, s = math.cos(yaw), math.sin(yaw)
-        # Of a person who stands sideways one leg is seen, and the disc is too near: no way would
+        # A person who stands sideways shows one leg, and the disc is too near: no way would
         # be left in a map that remembers discs at their full size.
         rest, people, going = scene.around
         walk = np.hypot(going[:, 0], going[:, 1]) > 0.0
