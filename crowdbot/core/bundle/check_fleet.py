@@ -16,14 +16,14 @@ _ROUNDING = 1e-12
 
 
 def arrivals(record: RunRecord) -> dict[str, bool]:
-    """Which robots arrived: by name; the robot of a run of one has an empty name."""
+    """Return robot's name -> True if it arrived; a single robot has an empty name."""
     if not record.robots:
         return {"": record.goal_time is not None}
     return {name: one.goal_time is not None for name, one in record.robots.items()}
 
 
 def fleet_problems(record: RunRecord, scores: Sequence[Score]) -> Iterator[str]:
-    """Where the scores of a fleet are not those of its robots together."""
+    """Yield fleet scores that do not follow from its robots' scores."""
     robots = record.robots
     fleet: dict[tuple[str, str], Score] = {}
     by_robot: dict[str, dict[tuple[str, str], Score]] = {name: {} for name in robots}

@@ -16,7 +16,7 @@ from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.metric_component import MetricComponent
 
-#: What an honest score may exceed its bounds by.
+#: Rounding tolerance of a score's bounds.
 _ROUNDING = 1e-9
 
 
@@ -40,7 +40,7 @@ class ClaimedRun:
 
 
 def run_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
-    """Where record, manifest and hashes contradict each other."""
+    """Yield contradictions between record, manifest and hashes."""
     yield from _identity_problems(run, manifest)
     yield from _ending_problems(run)
     yield from _score_problems(run, manifest)
@@ -100,7 +100,7 @@ def _directory(run: ClaimedRun, manifest: Manifest) -> str:
 
 
 def _ending_problems(run: ClaimedRun) -> Iterator[str]:
-    """Where status, time of arrival and success contradict each other."""
+    """Yield contradictions between status, time of arrival and success."""
     record = run.record
     if record.status == Ending.ARRIVED and record.goal_time is None:
         yield "its status is 'arrived', but it has no time of arrival"

@@ -60,7 +60,7 @@ class LeaderboardEntry:
 
     @property
     def failed(self) -> int:
-        """Runs in which the planner failed."""
+        """Return the number of runs in which the planner failed."""
         return sum(has_failed(run.record.status) for run in self.runs)
 
 

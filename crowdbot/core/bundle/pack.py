@@ -193,7 +193,7 @@ def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path 
         members |= {f"runs/{run.folder}/{name}": folder / name for name in names}
         if submission.recordings:
             members |= dict(_references(submission.root, folder, run))
-        if run.axes and not run.record.axes:  # a run made from Python knows of no suite
+        if run.axes and not run.record.axes:  # runs made from Python have no suite
             whole = files.json_text({**run.record.document(), "axes": dict(run.axes)})
             members[f"runs/{run.folder}/{files.RECORD}"] = whole.encode()
     for name, place in members.items():
@@ -203,7 +203,7 @@ def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path 
 
 
 def _references(root: Path, folder: Path, run: _Found) -> Iterator[tuple[str, Path]]:
-    """The recordings that the run was compared with."""
+    """Yield the recordings of the run's references."""
     for path in run.record.references.values():
         place = (folder / path).resolve()
         inside = place.is_relative_to(root.resolve())

@@ -51,7 +51,7 @@ class Rerun:
 
     @property
     def trajectory(self) -> str:
-        """Hash of the new trajectory."""
+        """Return the hash of the new trajectory."""
         return self.record.hashes.trajectory
 
     @property
@@ -135,7 +135,7 @@ _OF_SUITE = ("axis_words", "suite_metrics", "crowd")
 
 
 def _other_ending(rerun: Rerun) -> Iterator[str]:
-    """What the record claims of a run, and the same trajectory does not bear out."""
+    """Yield claims of the record that the equal trajectory contradicts."""
     claimed, here = rerun.claimed.record.document(), rerun.record.document()
     for key in _ENDING:
         said, found = claimed.get(key), here.get(key)
@@ -171,7 +171,7 @@ def _not_comparable(reruns: Sequence[Rerun]) -> dict[str, str]:
 
 
 def _versions(said: MetricPart | None, here: MetricPart | None) -> str:
-    """How two entries of a metric differ, in words."""
+    """Describe how two entries of a metric differ."""
     a, b = (None if x is None else x.spec_version for x in (said, here))
     if b is None:
         return f"version {a} was scored; here there is no such metric among those of the suite"
@@ -218,9 +218,9 @@ def _other_role(rerun: Rerun) -> Iterator[str]:
 
 
 def _other_version(a: Any, b: Any) -> bool:
-    """Whether these are two versions of a metric, or one that is there on one side only."""
+    """Return True if the metric has two versions, or exists on one side only."""
     if isinstance(a, MetricPart) != isinstance(b, MetricPart):
-        return True  # told as a score that is not comparable, or that was left out
+        return True  # reported as not comparable, or left out
     both = isinstance(a, MetricPart) and isinstance(b, MetricPart)
     return both and a.spec_version != b.spec_version
 
@@ -264,7 +264,7 @@ def _agree(a: Score, b: Score) -> bool:
 
 
 def _same_metric(rerun: Rerun, metric: str) -> bool:
-    """Whether both were scored by the same version of a metric with the same parameters."""
+    """Return True if both used the same version and parameters of a metric."""
     sides = [r.metrics.get(metric) for r in (rerun.claimed.record, rerun.record)]
     return sides[0] == sides[1]
 

@@ -38,7 +38,7 @@ class CostEstimate:
             self._time[name][1] += cost
 
     def learn_run(self, run: Path, record: RunRecord, people: int, limit: float) -> None:
-        """A run that is complete."""
+        """Learn from a complete run."""
         took = record.wall_time + _START
         self.learn(record.planner.label, expected_seconds("run", people, limit), took)
         try:

@@ -13,10 +13,10 @@ from crowdbot.dsl.spec.component_specs import PlannerRole
 if TYPE_CHECKING:
     from crowdbot.core.planning.planner import Planner
 
-#: Where a planner runs, as records say it.
+#: Where a planner runs, as named in records.
 OWN: Final = "own"
 IN_PROCESS: Final = "in_process"
-#: Address space of a planner's own process, bytes.
+#: Largest address space of a planner's own process, bytes.
 MEMORY = 4 << 30
 
 
@@ -99,7 +99,7 @@ class PlannerChoice:
 
     @property
     def process(self) -> Literal["own", "in_process"]:
-        """Where it runs, as records say it."""
+        """Return where it runs, as named in records."""
         return IN_PROCESS if self.in_process else OWN
 
 

@@ -26,7 +26,7 @@ _AFTER_DOT = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 
 
 class _Probe(ComponentSpec):
-    """A second member for a union; no document means it."""
+    """A second member for a union; it never occurs in documents."""
 
     kind: Literal["-"] = "-"
 

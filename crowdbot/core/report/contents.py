@@ -117,7 +117,7 @@ class Contents:
 
 
 def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
-    """How human the people of some runs are; nothing of runs without people."""
+    """Return the realism of the people in some runs; runs without people are skipped."""
     told = [(r.axes.get(AXIS, ""), r.record.crowd or "") for r in runs]
     return lines_of((name, like) for name, like in told if name or like)
 

@@ -117,7 +117,7 @@ def encode_runs(
 
 
 def _moment(run: RunRow) -> list[Any] | None:
-    """Seconds, and what happens then: where to look at a run first."""
+    """Return the time (s) and description of the run's most interesting moment."""
     found = run.record.worst_moment
     if found is None:
         return None

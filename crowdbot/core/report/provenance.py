@@ -25,7 +25,7 @@ def facts(runs: Sequence[RunRow]) -> dict[str, dict[str, str]]:
 
 
 def hashes(runs: Sequence[RunRow]) -> dict[str, str]:
-    """What identifies the data: how many of each, and one hash of all."""
+    """Return hashes of the data: the number of each, and one hash over all."""
     everything = sorted(f"{run.record.run_id} {run.trajectory_hash}" for run in runs)
     digest = hashlib.sha256("\n".join(everything).encode()).hexdigest()
     return {

@@ -158,12 +158,12 @@ RUN_COLUMNS: Mapping[str, str] = {
 
 
 def named_metrics(runs: Iterable[RunRow]) -> list[str]:
-    """Metrics that the suites of some runs name, in their order; each once."""
+    """Return metrics that the suites of some runs name, in order and without duplicates."""
     return list(dict.fromkeys(name for run in runs for name in run.record.suite_metrics))
 
 
 def processes(records: Iterable[RunRecord]) -> str:
-    """Where the planner of some runs ran, in words."""
+    """Describe where the planners of some runs ran."""
     return " or ".join(sorted({_PLACES[record.planner_process] for record in records}))
 
 

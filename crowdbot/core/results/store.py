@@ -26,7 +26,7 @@ from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
 INDEX, LOCK = "results.sqlite", "results.lock"
-#: Of the tables; an index of another version is rebuilt.
+#: Version of the tables; an index of another version is rebuilt.
 VERSION = 4
 
 #: Of a run, beside `RUN_COLUMNS`; ``axes``, ``conditions`` and ``record`` are JSON.
@@ -335,7 +335,7 @@ def _columns(row: RunRow) -> dict[str, Any]:
 
 
 def _check_rows(file: Path, run: RunRow, rows: Sequence[RunScore]) -> None:
-    """Whether scores are those of a run, each once.
+    """Check that scores belong to a run, without duplicates.
 
     Raises:
         InputError: they are not.

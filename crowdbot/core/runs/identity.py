@@ -188,7 +188,7 @@ def longest(scenario: Scenario) -> float:
 
 
 def _budget(request: Request) -> dict[str, Any]:
-    """What a planner may take, where that is not the usual."""
+    """Return the planner's limits that differ from the defaults."""
     found: dict[str, Any] = {}
     if request.options.step_budget is not None:
         found["step_budget"] = request.options.step_budget

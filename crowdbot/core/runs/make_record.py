@@ -124,13 +124,13 @@ def _ended(outcome: Outcome) -> dict[str, Any]:
 
 
 def write_scenario(folder: Path, scenario: Scenario, registry: Registry) -> None:
-    """Write the scenario with every default."""
+    """Write the scenario with all defaults."""
     text = dump_scenario_yaml(scenario, registry.spec_versions(scenario))
     (folder / files.SCENARIO).write_text(text, encoding="utf-8")
 
 
 def _conditions(scenario: Scenario, runs: Mapping[str, Trajectories]) -> dict[str, str]:
-    """What of a scenario must be equal in runs that are compared, whatever their axes are."""
+    """Return conditions that must be equal in compared runs, regardless of their axes."""
     found = {f"rates.{name}": f"{rate:g} Hz" for name, rate in scenario.rates}
     radii = [run.robot.radius for run in runs.values() if run.robot is not None]
     if scenario.crowd is not None and radii:
@@ -144,7 +144,7 @@ def _conditions(scenario: Scenario, runs: Mapping[str, Trajectories]) -> dict[st
 
 
 def _own_words(response: RobotResponse) -> str:
-    """The kind of a response, and what of it is not as usual."""
+    """Return the kind of a response, and its values that are not default."""
     told = {"kind", "reaction", "ignoring_fraction", "velocity", "margin"}  # elsewhere
     fields = {n: f for n, f in type(response).model_fields.items() if n not in told}
     given = {n: getattr(response, n) for n, f in fields.items()}
@@ -163,14 +163,14 @@ def _worst(runs: Iterable[Trajectories]) -> MomentPart | None:
 
 
 def _named(patterns: Sequence[str] | None, scores: Scores) -> list[str]:
-    """Metrics that the suite names, in its order; none where it leaves that open."""
+    """Return metrics that the suite names, in its order; empty if it names none."""
     known = dict.fromkeys(s.metric for s in scores)
     chosen = [m for p in patterns or () if p != "*" for m in known if fnmatchcase(m, p)]
     return list(dict.fromkeys(chosen))
 
 
 def _metrics(registry: Registry, scores: Scores) -> dict[str, MetricPart]:
-    """Metric -> version of its words, and the parameters it was computed with."""
+    """Return metric -> version, and the parameters of the score."""
     known = registry.components("metric")
     return {
         s.metric: MetricPart(spec_version=known[s.metric].spec_version, **s.parameters)

@@ -87,7 +87,7 @@ class PluginPart(Part):
 
 
 class MetricPart(Part):
-    """Version of a metric; its parameters stand beside it."""
+    """Version of a metric; its parameters are additional keys."""
 
     spec_version: Annotated[int, Ge(0)]
 

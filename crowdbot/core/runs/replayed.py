@@ -108,7 +108,7 @@ def _record(folder: Path) -> RunRecord:
 
 
 def _labels(records: Sequence[RunRecord]) -> list[str]:
-    """By planner; runs of the same planner by seed, too."""
+    """Return labels by planner; with the seed for several runs of a planner."""
     planners = [record.planner.label for record in records]
     return [
         planner if planners.count(planner) == 1 else f"{planner}, seed {record.seed}"

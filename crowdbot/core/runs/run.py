@@ -64,17 +64,17 @@ class Run:
 
     @property
     def scenario(self) -> str:
-        """Id of the scenario."""
+        """Return the scenario's id."""
         return self.record.scenario
 
     @property
     def planner(self) -> str:
-        """Label of the planner, as scores carry it."""
+        """Return the planner's label, as in scores."""
         return self.record.planner.label
 
     @property
     def seed(self) -> int:
-        """Of the run."""
+        """Return the run's seed."""
         return self.record.seed
 
     @property
@@ -109,7 +109,7 @@ class Run:
 
     @cached_property
     def robots(self) -> Mapping[str, Trajectories]:
-        """The run of each of several robots, by name; empty of a run of one."""
+        """Return the run of each of several robots, by name; empty in a run of one."""
         if not self.record.robots:
             return {}
         with Recording(self.directory / files.RECORDING) as recording:
@@ -117,7 +117,7 @@ class Run:
 
     @cached_property
     def references(self) -> References:
-        """The calibration runs, as far as they were computed."""
+        """Return the calibration runs, as far as they exist."""
         paths = self.record.references
         return read_references({n: (self.directory / p).resolve() for n, p in paths.items()})
 

@@ -176,7 +176,7 @@ class ReferenceRecord(_Record, ReferenceIdentity):
 
 
 def record_problems(document: Mapping[str, Any]) -> list[str]:
-    """Everything in a record that has the wrong type or is missing: where, and what is wanted."""
+    """Return all missing or invalid entries of a record: the path, and the expected type."""
     return _problems(RunRecord, document)
 
 

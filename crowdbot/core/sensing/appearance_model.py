@@ -46,13 +46,13 @@ _SEAT = 0.50  # m: bottom of a sitting person's trunk
 
 
 def heights(appearance: Appearance, usual: float) -> Array:
-    """Heights (M,), m; those of whom nothing is said are as usual."""
+    """Return heights (M,), m; default if unknown."""
     found: Array = np.where(appearance.height > 0.0, appearance.height, usual)
     return found
 
 
 def gaits(appearance: Appearance, height: Array) -> Array:
-    """How the legs of people (M,) are and move, columns as above."""
+    """Return the gaits of people (M,), columns as above."""
     found = np.zeros((len(height), 5))
     for i, (look, tall) in enumerate(zip(appearance.look, height.tolist(), strict=True)):
         hip = appearance.leg_length[i] or _USUAL_HIP * tall
@@ -64,7 +64,7 @@ def gaits(appearance: Appearance, height: Array) -> Array:
 
 
 def things(appearance: Appearance) -> Array:
-    """What people have with them (T, 6), columns as above."""
+    """Return people's objects (T, 6), columns as above."""
     rows = [
         (i, *thing) for i, look in enumerate(appearance.look) for thing in _THINGS.get(look, ())
     ]

@@ -107,7 +107,7 @@ def _key(one: RunRow | Failure) -> Key:
 
 
 def _tried(table: Table, results: Results) -> list[RunRow | Failure]:
-    """The runs, and the attempts that left none and that no run has made good."""
+    """Return the runs, and failed attempts that no later run replaced."""
     lost = [f for f in results.failures if (f.planner, _key(f)) in table.failures]
     return [*results.runs, *lost]
 

@@ -182,7 +182,7 @@ def _key(run: RunRow) -> Key:
 
 
 def _draw(run: RunRow) -> str:
-    """Its people; without people, or with none that are known, the scenario itself."""
+    """Return the name of the crowd draw; the scenario itself without known people."""
     nobody = run.density is None and run.record.agents == "none"
     return f"{run.suite}/{run.scenario}" if nobody else run.realisation_hash
 

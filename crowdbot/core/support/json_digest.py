@@ -9,6 +9,6 @@ from typing import Any
 
 
 def digest(document: Mapping[str, Any]) -> str:
-    """``cb1-sha256:`` hash of a JSON document."""
+    """Return the ``cb1-sha256:`` hash of a JSON document."""
     text = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
     return f"cb1-sha256:{hashlib.sha256(text.encode()).hexdigest()}"
