@@ -67,7 +67,9 @@ def state_of(function: types.FunctionType) -> str:
 
 
 def _function(function: types.FunctionType) -> Iterator[str]:
-    yield f"def {function.__qualname__} {function.__defaults__} {function.__kwdefaults__}"
+    defaults = f"{function.__defaults__} {function.__kwdefaults__}"
+    # Numba keeps the name of the module with the code, and imports it where the code is read.
+    yield f"def {function.__module__}.{function.__qualname__} {defaults}"
     compiled: Any = function.__globals__.get(function.__name__)
     if getattr(compiled, "py_func", None) is function:
         yield repr(compiled.targetoptions)

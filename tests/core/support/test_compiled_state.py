@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,6 +62,11 @@ def test_what_a_function_depends_on_changes_its_state(old: str, new: str) -> Non
 
 def test_a_function_of_a_module_changes_it() -> None:
     assert state_of(outer()) != state_of(outer(half=lambda x: x / 3))
+
+
+def test_a_function_that_moves_to_another_module_changes_it() -> None:
+    moved = FunctionType(_half.__code__, {**globals(), "__name__": "moved"})
+    assert state_of(outer(half=moved)) != state_of(outer())
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ import crowdbot.plugins.planners.dwa.parameters_build as entries
 from crowdbot.plugin import Array, Observation, Pose, Reading, RobotLimits, SensorInfo
 from crowdbot.plugins.planners.dwa.dead_ends.lidar_views_build import LidarViews
 from crowdbot.plugins.planners.dwa.dead_ends.manoeuvring_build import Manoeuvring
-from tests.plugins.planners.test_outlines import BOX, REACH, parameters, wall_with_door
+from tests.plugins.planners.dwa.test_outlines import BOX, REACH, parameters, wall_with_door
 
 LIMITS = RobotLimits(v_min=-1.5, v_max=1.5, w_max=1.5, a_max=1.0, alpha_max=2.0)
 ANGLES = np.radians(np.arange(-120.0, 120.5, 0.5))
