@@ -201,8 +201,28 @@ class Recording:
             pass
 
     def _drain(self) -> None:
-        while self._advance():
-            pass
+        """Read all that is left, without a call for each message."""
+        if self._cursor is None or self._first is None:
+            self._advance()
+        if self._cursor is None:
+            return
+        counts, takers = self._counts, self._takers
+        try:
+            for record in self._cursor:
+                topic = record.topic
+                counts[topic, record.msgtype] += 1
+                take = takers[topic] if topic in takers else self._learned(topic)
+                if take is not None:
+                    take(record)
+        except InputError as error:
+            self._failure = error
+            raise
+        self._cursor = None
+
+    def _learned(self, topic: str) -> Callable[[Record], None] | None:
+        """The function that takes the records of a topic, found once."""
+        self._takers[topic] = self._taker(topic)
+        return self._takers[topic]
 
     def _advance(self) -> bool:
         """Read one message; False at the end of the file.
@@ -228,9 +248,7 @@ class Recording:
     def _take(self, record: Record) -> None:
         topic = record.topic
         self._counts[topic, record.msgtype] += 1
-        if topic not in self._takers:
-            self._takers[topic] = self._taker(topic)
-        take = self._takers[topic]
+        take = self._takers[topic] if topic in self._takers else self._learned(topic)
         if take is not None:
             take(record)
         if self._first is None:
