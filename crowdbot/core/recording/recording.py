@@ -88,7 +88,8 @@ class Recording:
         self._max_rate, self._observe = max_rate, observe
         self._by_prefix: dict[str, RobotRecords] = {}  # "/NAME", or "" on the first level
         self._takers: dict[str, Callable[[Record], None] | None] = {}  # by topic
-        self._counts: Counter[tuple[str, str]] = Counter()
+        self._counts: Counter[str] = Counter()
+        self._types: dict[str, str] = {}  # ROS type of each topic
         self._first: str | None = None  # topic of the first message
         self._sampled = False  # a sample was seen, after which no header comes
         self._robots: dict[str | None, RobotRecording] = {}
@@ -152,7 +153,7 @@ class Recording:
             status="" if end is None else end.status,
             goal_time=end.goal_time if end is not None and end.arrived else None,
             duration=shared.last_sample,
-            topics={topic: (kind, n) for (topic, kind), n in sorted(self._counts.items())},
+            topics={topic: (self._types[topic], n) for topic, n in sorted(self._counts.items())},
         )
 
     def robot(self, name: str | None = None) -> RobotRecording:
@@ -210,8 +211,8 @@ class Recording:
         try:
             for record in self._cursor:
                 topic = record.topic
-                counts[topic, record.msgtype] += 1
-                take = takers[topic] if topic in takers else self._learned(topic)
+                counts[topic] += 1
+                take = takers[topic] if topic in takers else self._learned(record)
                 if take is not None:
                     take(record)
         except InputError as error:
@@ -219,8 +220,10 @@ class Recording:
             raise
         self._cursor = None
 
-    def _learned(self, topic: str) -> Callable[[Record], None] | None:
-        """The function that takes the records of a topic, found once."""
+    def _learned(self, record: Record) -> Callable[[Record], None] | None:
+        """The function that takes the records of a topic, found at its first record."""
+        topic = record.topic
+        self._types[topic] = record.msgtype
         self._takers[topic] = self._taker(topic)
         return self._takers[topic]
 
@@ -247,8 +250,8 @@ class Recording:
 
     def _take(self, record: Record) -> None:
         topic = record.topic
-        self._counts[topic, record.msgtype] += 1
-        take = self._takers[topic] if topic in self._takers else self._learned(topic)
+        self._counts[topic] += 1
+        take = self._takers[topic] if topic in self._takers else self._learned(record)
         if take is not None:
             take(record)
         if self._first is None:
