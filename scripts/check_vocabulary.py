@@ -96,7 +96,7 @@ PLAIN = (
     Rule(r'(?m)^[ \t]*r?"""(?:What|How|Who|Whom|Whose|Where|When|Whether|Why|Which|Of)\b',
          "say what it is, or what it does: 'Return True if …'"),
     Rule(r"#:?\s(?:Of|Whether)\b", "say what it is"),
-    Rule(r"\b(?:[Nn]obody|[Ss]omebody|[Ww]hoever)\b", "no one, a person, it",
+    Rule(r"\b(?i:nobody|somebody|whoever)\b", "no one, a person, it",
          unless=r"\bavoid[ _]|\""),
     Rule(r"\banew\b", "again, new"),
     Rule(r"\b[Ss]o many\b", "this many"),
