@@ -203,7 +203,7 @@ class CrowdEngine:
         tick(*self._given(flat, robots, outlines, dt, numbers, stiffnesses))
 
     def _usual_robots(self, count: int) -> tuple[Indices, Array]:
-        """Numbers and stiffnesses of so many robots, where not given."""
+        """Return default indices and stiffnesses for `count` robots."""
         if count not in self._usual:
             self._usual[count] = np.arange(count), np.full(count, self.world.stiffness)
         return self._usual[count]

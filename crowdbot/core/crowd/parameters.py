@@ -153,5 +153,5 @@ class Scratch(NamedTuple):
 
     @classmethod
     def of(cls, people: int) -> Scratch:
-        """For so many people."""
+        """Return scratch arrays for this number of people."""
         return cls(np.zeros((people, 2)), rows_of(people, PLACED), np.arange(people))

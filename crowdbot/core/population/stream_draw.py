@@ -91,7 +91,7 @@ class StreamDraw:
                 yield i, (float(placer.places[i, 0]), float(placer.places[i, 1]))
 
     def entering(self, area: Area, unit: int, occupancy: Occupancy) -> Iterator[tuple[int, Point]]:
-        """Places of a group that enters later: clear of walls and of each other, of nobody else."""
+        """Places of a group that enters later: clear only of walls and each other."""
         yield from self.placed(area, [unit], Occupancy([], occupancy.ground))
 
     def check_entrance(self, area: Area, occupancy: Occupancy) -> None:

@@ -45,7 +45,7 @@ _AT_GOAL: dict[str, AtGoal] = {
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where and when one person begins, and the route from there.
+    """Place, time and route of a person who starts.
 
     Attributes:
         time: s.

@@ -43,7 +43,7 @@ class RecordingInfo:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotRecording:
-    """What a recording says about one robot, or about people without one.
+    """Recorded data of one robot and the people near it, or of people without a robot.
 
     Attributes:
         header: names the scenario, and has the hashes of run and planner.
@@ -143,7 +143,7 @@ class Recording:
 
     @cached_property
     def info(self) -> RecordingInfo:
-        """What is in the file, complete or not."""
+        """Summary of the contents of the file, complete or not."""
         header, shared = self.header, self._by_prefix[""]
         self._drain()
         end = shared.end
@@ -157,7 +157,7 @@ class Recording:
         )
 
     def robot(self, name: str | None = None) -> RobotRecording:
-        """What is recorded of one robot, with the people whom it met.
+        """Return the recorded data of one robot, with the people whom it met.
 
         Args:
             name: which; needed only where there are several.

@@ -26,7 +26,7 @@ _NUMBERS = "std_msgs/msg/Float64MultiArray"
 
 
 class MessageKind(NamedTuple):
-    """How readings become messages of one ROS type.
+    """Conversion of readings into messages of one ROS type.
 
     Attributes:
         leaf: the topic is ``/NAME/leaf``; empty: ``/NAME``.

@@ -84,7 +84,7 @@ def _arrows(count: int) -> Template:
 
 
 class RobotPath:
-    """Where a robot has been: a path for viewers, and where it was at any time so far."""
+    """Past poses of a robot: a path for viewers, and its pose at any time so far."""
 
     def __init__(self, radius: float) -> None:
         """Start a path. ``radius`` of the robot's footprint, m."""

@@ -1,4 +1,4 @@
-"""What must hold for a component before it is registered."""
+"""Checks of a component before it is registered."""
 
 from __future__ import annotations
 

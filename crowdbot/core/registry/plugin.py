@@ -61,7 +61,7 @@ class Plugin:
 
     @property
     def failure(self) -> str:
-        """Why it provides nothing, or not the categories that were asked for in vain."""
+        """Error of the plugin, or of the categories that it could not provide; or empty."""
         late = (f"{category}: {error}" for category, error in self._late_errors.items())
         return self.error or "; ".join(late)
 

@@ -75,7 +75,7 @@ class RunRow:
 
     @property
     def goal_time(self) -> float | None:
-        """When the robot arrived, s."""
+        """Arrival time of the robot, s."""
         return self.record.goal_time
 
     @property
@@ -85,7 +85,7 @@ class RunRow:
 
     @property
     def wall_time(self) -> float:
-        """What the simulation took, s."""
+        """Wall time of the simulation, s."""
         return self.record.wall_time
 
     @property
@@ -100,12 +100,12 @@ class RunRow:
 
     @property
     def planner_process(self) -> str:
-        """Where the planner ran: ``own``, or ``in_process``, inside the simulator."""
+        """Process of the planner: ``own``, or ``in_process``, inside the simulator."""
         return self.record.planner_process
 
     @property
     def role(self) -> str:
-        """What the planner is there for: floor, baseline, ceiling or candidate."""
+        """Role of the planner: floor, baseline, ceiling or candidate."""
         return self.record.role
 
     @property
@@ -130,7 +130,7 @@ class RunRow:
 
     @cached_property
     def conditions(self) -> Mapping[str, str]:
-        """What must be equal in runs that are compared, name -> text."""
+        """Conditions that must be equal in runs that are compared, name -> text."""
         return self.record.compared
 
 

@@ -29,7 +29,7 @@ INDEX, LOCK = "results.sqlite", "results.lock"
 #: Version of the tables; an index of another version is rebuilt.
 VERSION = 4
 
-#: Of a run, beside `RUN_COLUMNS`; ``axes``, ``conditions`` and ``record`` are JSON.
+#: Columns of a run besides `RUN_COLUMNS`; ``axes``, ``conditions`` and ``record`` are JSON.
 _BESIDE = {
     "stamp": "TEXT", "position": "INTEGER", "axes": "TEXT", "conditions": "TEXT", "record": "TEXT",
 }  # fmt: skip

@@ -255,9 +255,9 @@ def _holds(record: RunRecord, request: Request) -> bool:
 
 
 def recorded_otherwise(request: Request, identity: RunIdentity) -> tuple[str, ...]:
-    """How the run that is there now differs from the one that is wanted, as dotted keys.
+    """Return the differences between the existing run and the requested one, as dotted keys.
 
-    Empty if there is none, or the same one.
+    Empty if there is no run, or an equal one.
     """
     before = RunRecord.find(request.directory)
     if before is None:

@@ -85,7 +85,7 @@ def make_record(
 
 
 def _robots(request: Request, outcome: Outcome, runs: Mapping[str, Trajectories]) -> dict[str, Any]:
-    """How each of several robots ended; nothing of one."""
+    """Return the ending of each of several robots; empty for a single robot."""
     if not outcome.robots:
         return {}
     found = {}
@@ -100,7 +100,7 @@ def _robots(request: Request, outcome: Outcome, runs: Mapping[str, Trajectories]
 
 
 def ending(outcome: Outcome) -> dict[str, Any]:
-    """How a run ended, and what it took."""
+    """Return the ending of a run and the computing time it took."""
     return {
         **_ended(outcome),
         "wall_time": round(outcome.wall_time, 3),
@@ -110,7 +110,7 @@ def ending(outcome: Outcome) -> dict[str, Any]:
 
 
 def _ended(outcome: Outcome) -> dict[str, Any]:
-    """How a run or a robot ended; ``toppled_time`` only of a robot that toppled."""
+    """Return the ending of a run or robot; ``toppled_time`` only if the robot toppled."""
     fallen = {} if outcome.toppled_time is None else {"toppled_time": outcome.toppled_time}
     return {
         "status": outcome.status,

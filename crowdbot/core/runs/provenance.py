@@ -27,7 +27,7 @@ _PACKAGES = ("crowdbot", "drake", "mcap", "numba", "numpy", "pydantic", "rosbags
 
 
 def recording_hashes(identity: Part) -> dict[str, str]:
-    """What the header of a recording says about whose it is.
+    """Return the hashes in the header of a recording that identify its run and planner.
 
     Args:
         identity: of the run, or of the calibration run.
@@ -100,7 +100,7 @@ def third_parties(registry: Registry) -> dict[str, Any]:
 
 
 def remarks(record: RunRecord) -> dict[str, str]:
-    """What a reader of scores must know of where they come from, if there is anything."""
+    """Return warnings about the origin of scores that a reader must know, title -> text."""
     found = {}
     if record.privileged:
         found["Privileged"] = "the planner sees the truth"

@@ -93,7 +93,7 @@ class MetricPart(Part):
 
 
 class EndedPart(Part):
-    """How a run, or one of its robots, ended."""
+    """Ending of a run, or of one of its robots."""
 
     status: Status
     reason: str
@@ -128,7 +128,7 @@ class MomentPart(Part):
 
 
 class LivePart(Part):
-    """What only a run by ``crowdbot serve`` has; ``largest_lag`` in s."""
+    """Data that only runs by ``crowdbot serve`` have; ``largest_lag`` in s."""
 
     steps: Count
     missed_steps: Count

@@ -32,7 +32,7 @@ from crowdbot.errors import InputError, UsageError
 
 
 def replay_facts(record: RunRecord) -> dict[str, str]:
-    """What the page tells of a run, name -> text."""
+    """Return the facts about a run that the page shows, name -> text."""
     arrival = record.goal_time
     return {
         "Suite": record.suite,

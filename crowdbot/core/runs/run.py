@@ -79,7 +79,7 @@ class Run:
 
     @property
     def status(self) -> str:
-        """How it ended: ``arrived``, ``timeout``, …, a word of the table of endings."""
+        """Ending of the run: ``arrived``, ``timeout``, …, a word of the table of endings."""
         return str(self.record.status)
 
     @property
@@ -146,8 +146,8 @@ class Request:
         axes: axis of the suite -> label, in the suite's order.
         words: axis -> what it varies and the value here, in words.
         position: of the scenario in its suite.
-        references_finished: whoever asks has seen to the references; those in which the planner
-            failed are not tried again.
+        references_finished: the caller has made the references; those in which the planner failed
+            are not tried again.
         progress: called several times a simulated second.
         stop: asked several times a simulated second; True ends the run as interrupted.
         on_hang: called when a planner cannot be interrupted; should end the process.

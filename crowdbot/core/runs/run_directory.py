@@ -65,7 +65,7 @@ def sizes(folder: Path) -> dict[str, int]:
 
 
 def damage(directory: Path, listed: Mapping[str, int], *, scores: bool = True) -> str:
-    """What is missing or cut in the directory of a run, in words; empty where nothing is.
+    """Describe missing or truncated files in the directory of a run; empty if there are none.
 
     Args:
         directory: of a run, or of a calibration run.

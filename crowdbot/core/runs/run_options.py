@@ -17,7 +17,7 @@ Recorded = Literal["all", "used", "none"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunOptions:
-    """How runs are made.
+    """Options for making runs.
 
     Attributes:
         record: which sensors are simulated and recorded.

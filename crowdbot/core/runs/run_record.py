@@ -137,7 +137,7 @@ class RunRecord(_Record, RunIdentity):
 
     @property
     def compared(self) -> dict[str, str]:
-        """What must be equal in runs that are compared, by name."""
+        """Conditions that must be equal in runs that are compared, name -> text."""
         metrics = {n: json.dumps(m.document(), sort_keys=True) for n, m in self.metrics.items()}
         return {
             **self.conditions,

@@ -65,7 +65,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Style:
-    """What a role looks like: names of `LIGHT` and `DARK`, widths in px."""
+    """Drawing style of a role: colour names of `LIGHT` and `DARK`, widths in px."""
 
     fill: str = ""
     opacity: float = 1.0

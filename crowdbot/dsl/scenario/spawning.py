@@ -176,7 +176,7 @@ class Spawn(Spec):
 
     @property
     def at_goal(self) -> Literal["stop", "remove", "loop", "portal"]:
-        """What people do at the end of their route."""
+        """Behaviour of people at the end of their route."""
         if self.portals:
             return "portal"
         return "stop" if self.goals is None else self.goals.at_goal

@@ -119,12 +119,12 @@ class Stream(Spec):
 
     @property
     def entering(self) -> Arrivals | None:
-        """When people enter, if they are not there from the start."""
+        """Arrival times of people; None if all are there from the start."""
         return None
 
     @property
     def starts_in(self) -> Place | None:
-        """Where the people of `count` or of a density are at the start; None: not in an area."""
+        """Area of the people of `count` or a density at the start; None: not in an area."""
         return None
 
     # --------------------------------------------------------------------- places
@@ -175,7 +175,7 @@ class Stream(Spec):
     def legs(
         self, area_of: AreaOf, goal_areas: Mapping[str, Place]
     ) -> Iterator[tuple[Area, Area, FieldPath]]:
-        """From where to where people walk, and the field that names where to."""
+        """Yield start area and goal area of each leg, and the field that names the goal area."""
         for chain in self.chains(area_of, goal_areas):
             known = [(path, area) for path, area in chain if area is not None]
             for (_, start), (path, goal) in pairwise(known):
@@ -183,7 +183,7 @@ class Stream(Spec):
 
     # --------------------------------------------------------------------- checks
     def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
-        """What cannot be although each field by itself can.
+        """Yield contradictions between fields that are valid one by one.
 
         Args:
             who: names the stream in texts.
@@ -216,7 +216,7 @@ class PopulatedStream(Stream):
 
     @property
     def entering(self) -> Arrivals | None:
-        """When people enter, if they are not there from the start."""
+        """Arrival times of people; None if all are there from the start."""
         return self.arrivals
 
     @model_validator(mode="after")

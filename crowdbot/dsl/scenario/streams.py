@@ -157,7 +157,7 @@ class DirectionsStream(Stream):
 
     @property
     def starts_in(self) -> Place:
-        """Where they are at the start."""
+        """Area of these people at the start."""
         return self.area
 
 
@@ -193,7 +193,7 @@ class QueueStream(Stream):
 
     @property
     def entering(self) -> Arrivals | None:
-        """When people join the end of the line, if they do not stand there from the start."""
+        """Arrival times at the end of the line; None if all stand there from the start."""
         return self.arrivals
 
     def points(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
@@ -201,7 +201,7 @@ class QueueStream(Stream):
         yield ("line",), self.line
 
     def spots(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
-        """Where people stand at first, from the counter backwards, m; all there is room for."""
+        """Yield the places in the line at the start, from the counter backwards, m."""
         yield ("line",), tuple(islice(along(self.line, self.gap), self.count))
 
     def chains(
@@ -253,7 +253,7 @@ class TalkingStream(Stream):
 
     @property
     def starts_in(self) -> Place:
-        """Where they stand."""
+        """Area in which they stand."""
         return self.area
 
 
@@ -278,7 +278,7 @@ class WanderingStream(PopulatedStream):
 
     @property
     def starts_in(self) -> Place:
-        """Where they are at the start."""
+        """Area of these people at the start."""
         return self.area
 
     def goal_area_names(self) -> Iterator[tuple[FieldPath, str]]:

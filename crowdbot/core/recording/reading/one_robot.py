@@ -111,7 +111,7 @@ class RobotRecords:
 
     @property
     def ended(self) -> float | None:
-        """When the run ended, s; None in an interrupted one."""
+        """Time at which the run ended, s; None if it was interrupted."""
         ends = self._records[Topic.END]
         return ends[0].ns / 1e9 if ends else None
 

@@ -45,7 +45,7 @@ class ScanCollector:
             self._found.setdefault(topic, []).append(record)
 
     def scans(self, header: RecordingHeader, sensor: str | None) -> list[ReplayScan]:
-        """What was kept, in the order in which sensors first came; lidars before cones.
+        """Return the collected scans: lidars before cones, sensors in order of their first reading.
 
         Raises:
             UnknownNameError: the header names no such sensor.
