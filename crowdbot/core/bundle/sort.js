@@ -1,6 +1,6 @@
 "use strict";
 
-// Sorts the rows of a table by the column whose button is pressed; again: the other way round.
+// Sorts the rows of a table by the column whose button is pressed; a second press reverses the order.
 // Cells without a value stay last, and equal ones stay in the order of the ranks.
 for (const table of document.querySelectorAll("table.sortable")) {
   const body = table.tBodies[0];

@@ -1,4 +1,4 @@
-// Puts the page together and keeps it up to date.
+// Builds the page and keeps it up to date.
 
 function start() {
   buildFilters(changed);
@@ -72,7 +72,7 @@ function draw() {
   writeAddress();
 }
 
-/** Who has no pointer scrolls with the keys what is wider than the page. */
+/** Lets keyboard users scroll content that is wider than the page. */
 function reachWideTables() {
   for (const box of document.querySelectorAll(".wide")) {
     const wide = box.scrollWidth > box.clientWidth + 1;
@@ -131,7 +131,7 @@ function applyTheme() {
   else delete document.documentElement.dataset.theme;
 }
 
-/** Paper cannot unfold anything. */
+/** Opens folded parts for printing. */
 function openDetails(open) {
   for (const details of document.querySelectorAll("details:not([data-screen])")) {
     if (open && !details.open) details.dataset.closed = "";

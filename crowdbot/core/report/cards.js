@@ -54,12 +54,12 @@ function cardOf(s) {
   ].filter(Boolean);
 }
 
-/** Text with `code`. */
+/** Splits text into plain parts and `code`. */
 function marked(text) {
   return text.split("`").map((part, i) => (i % 2 ? el("code", { text: part }) : part));
 }
 
-/** Beside the name: below it where there is room, else above. */
+/** Places the card below the name if there is room, else above. */
 function placeCard(card, button) {
   const box = button.getBoundingClientRect();
   const { offsetWidth: width, offsetHeight: height } = card;

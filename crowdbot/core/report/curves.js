@@ -1,4 +1,4 @@
-// The share of all runs, those without a value among them, up to each value.
+// Cumulative curves: share of all runs (with those without a value) up to each value.
 
 function drawCurves(rows, x, frame) {
   const { width, left, right, narrow } = frame;

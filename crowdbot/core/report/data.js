@@ -1,6 +1,6 @@
 // The report's numbers: reads what encode.py packed, and describes selections of runs.
 
-let report; // the document
+let report; // the decoded report
 const OK = 0;
 const ABSENT = 65535;
 const WITHOUT_VALUE = [
@@ -14,7 +14,7 @@ async function inflate(name) {
   return new Response(plain).arrayBuffer();
 }
 
-/** Doubles whose highest bytes are given: all first bytes, then all second ones, and so on. */
+/** Doubles from their highest bytes: all first bytes, then all second bytes, and so on. */
 function numbersOf(bytes, kept) {
   const count = bytes.length / kept;
   const doubles = new DataView(new ArrayBuffer(8 * count));
@@ -53,7 +53,7 @@ function quantile(sorted, q) {
   return sorted[k] + (place - k) * ((sorted[k + 1] ?? sorted[k]) - sorted[k]);
 }
 
-/** The mean of a series in some runs, or of a rate that of all of them together: `centre.py`. */
+/** Mean of a series over some runs, or for a rate, the rate of all together; as in `centre.py`. */
 function centreOf(series, runs) {
   const { metric, over } = report.series[series];
   const whole = over ? report.series.findIndex((s) => s.metric === metric && s.variant === over) : -1;
@@ -95,12 +95,12 @@ function describe(series, runs, known = null) {
   };
 }
 
-/** What a series of a planner is like in the runs that are selected. */
+/** Statistics of a series of a planner in the selected runs. */
 function describeSelected(series, planner) {
   return describe(series, selectedRuns(planner), intervalOf(selectionName(), series, planner));
 }
 
-/** What sums up a series, with its interval, where Python has worked it out for this selection. */
+/** Summary of a series with its interval, if Python has computed it for this selection. */
 function intervalOf(selection, series, planner) {
   const place = selection === null ? -1 : report.stats.selections.indexOf(selection);
   if (place < 0) return null;
@@ -119,7 +119,7 @@ function comparisonOf(series, pair) {
   return { ...found, verdict: verdicts[found.verdict], why: whys[found.why] };
 }
 
-/** Share of a score's spread that goes with an axis, for one planner, over all runs. */
+/** Share of a score's variance that an axis explains, for one planner, over all runs. */
 function effectOf(axis, series, planner) {
   return report.effects[(axis * report.series.length + series) * report.planners.length + planner];
 }

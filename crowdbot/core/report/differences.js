@@ -44,7 +44,7 @@ function differencesOf(a, b) {
 /** Folder of a run, as seen from this page. */
 const folderOf = (replay) => (replay ? decodeURIComponent(replay).replace(/\/[^/]*$/, "") : "");
 
-/** What to type for a replay of both. */
+/** Command for a replay of both. */
 function compareCommand(row) {
   const folders = [row.a, row.b].map(({ run }) => folderOf(report.runs.replay[run]));
   return folders.every(Boolean) ? `crowdbot view ${folders.map(quoted).join(" ")} --out compare.html` : "";

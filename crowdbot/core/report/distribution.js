@@ -1,4 +1,4 @@
-// How one score is distributed over the runs: dots with a box, or cumulative curves.
+// Distribution of one score over the runs: dots with a box, or cumulative curves.
 
 const RIGHT = 118; // room for counts
 
@@ -23,7 +23,7 @@ function drawDistribution() {
   }
 }
 
-/** Room for the picture: on a phone names stand above the dots instead of beside them. */
+/** Margins of the picture: on narrow screens names are above the dots instead of beside them. */
 function frameOf(box, rows) {
   const width = Math.max(280, box.clientWidth || 900);
   const narrow = width < 620;
@@ -40,7 +40,7 @@ function axisTitle(x, y, text) {
   return label(text, (x.place(x.low) + x.place(x.high)) / 2, y, "axis", "middle");
 }
 
-/** A planner's name, cut to what there is room for; the table has it in full. */
+/** A planner's name, truncated to the space available; the table has it in full. */
 function shortened(planner) {
   const name = report.planners[planner].label;
   return name.length > 22 ? `${name.slice(0, 21)}…` : name;
@@ -60,8 +60,8 @@ function distributionText(series, rows) {
 function distributionNote(series, rows, x) {
   const parts = [];
   if (state.chart === "strip") {
-    parts.push(`A dot is a run, which it opens at its worst moment; the bar is the middle half of the runs, the tick its median, the mark the ${series.centre}.`);
-    if (selectionName() === null) parts.push("Intervals are worked out for all runs and for one value of one parameter only, so there is none here.");
+    parts.push(`Each dot is a run; click it to open its replay at the worst moment; the bar is the middle half of the runs, the tick its median, the mark the ${series.centre}.`);
+    if (selectionName() === null) parts.push("Intervals are computed only for all runs and for single values of one parameter, so there is none here.");
     else parts.push(`The thin line is the ${report.stats.level} % interval of the ${series.centre}.`);
     if (rows.some(({ about }) => about.censored)) parts.push("Hollow arrows are censored runs: the value lies on the side to which they point.");
   } else {

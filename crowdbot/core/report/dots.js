@@ -1,6 +1,6 @@
-// Runs in pictures: each says what it is, and opens its replay at its worst moment.
+// Marks of runs in pictures: each has a tooltip, and opens its replay at its worst moment.
 
-/** Address of a run's replay at the moment to look at first, which knows the way back. */
+/** Address of a run's replay at its worst moment, with the link back to this page. */
 function replayAt(run, beside = null) {
   const [page, moment] = [report.runs.replay[run], report.runs.moment[run]];
   if (!page) return page;
@@ -20,7 +20,7 @@ function seenFrom(page, address) {
     to.shift();
   }
   if (!from.includes("..")) return [...from.map(() => ".."), ...to].join("/");
-  const here = decodeURI(location.pathname).split("/").slice(0, -1); // the way down again has names
+  const here = decodeURI(location.pathname).split("/").slice(0, -1); // folders on the way down have names
   const down = from.reduce((names, part) => (part === ".." ? names : [...names, ".."]), []);
   return [...down, ...here.slice(here.length - from.filter((part) => part === "..").length), ...to].join("/");
 }
@@ -38,7 +38,7 @@ function runText(run) {
   return `${scenario}, ${report.planners[planner].label}, seed ${seed}: ${words(status)}`;
 }
 
-/** Shows what a dot is while the pointer is over it. */
+/** Shows a tooltip while the pointer is over a dot. */
 function buildDots() {
   const tip = byId("tip");
   const close = () => { tip.hidden = true; };

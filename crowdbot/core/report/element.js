@@ -1,10 +1,10 @@
 "use strict";
-// Elements, markers and numbers as text.
+// Creates elements and markers, and formats numbers.
 
 const byId = (id) => document.getElementById(id);
 const SVG = "http://www.w3.org/2000/svg";
 
-/** An element of HTML; `text` becomes its text, never markup. */
+/** Creates an HTML element; `text` becomes its text, never markup. */
 function el(tag, attributes = {}, ...children) {
   return fill(document.createElement(tag), attributes, children);
 }
@@ -40,7 +40,7 @@ const SHAPES = [
   (r) => `M0 ${1.15 * r}l${1.15 * r} ${-2 * r}h${-2.3 * r}z`,
 ];
 
-/** The mark of a planner: colour and shape say the same. */
+/** The mark of a planner: colour and shape both identify it. */
 function marker(planner, x, y, r, extra = "") {
   return svg("path", {
     class: `mark p${planner % SHAPES.length} ${extra}`,
@@ -72,7 +72,7 @@ function decimalsOf(size, spread) {
   return Math.min(9, Math.max(0, places(Math.max(size, spread), 3), seen));
 }
 
-/** With so many decimals; what they would hide, the very large and the very small, as a power of ten. */
+/** Formats with this number of decimals; very large and very small numbers as powers of ten. */
 function format(number, decimals) {
   if (!Number.isFinite(number)) return "–";
   if (number === 0 && decimals > 6) return "0";
@@ -81,7 +81,7 @@ function format(number, decimals) {
   return (hidden ? number.toExponential(2) : Number(text) === 0 ? text.replace("-", "") : text).replaceAll("-", "−");
 }
 
-/** Four significant digits. */
+/** Formats a number with four significant digits. */
 function digits(number) {
   if (!Number.isFinite(number)) return "–";
   if (Number.isInteger(number) && Math.abs(number) < 1e6) return String(number).replace("-", "−");

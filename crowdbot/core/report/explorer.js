@@ -48,7 +48,7 @@ function drawFailedRow(row) {
     el("td", { class: "why" }, why), el("td", {}, replayLink(row)));
 }
 
-/** Opens a run where it is worth looking first. */
+/** Link to the replay of a run at its worst moment. */
 function replayLink({ run, scenario, planner, seed, replay }) {
   if (!replay) return el("small", { text: "–" });
   const moment = report.runs.moment[run];
@@ -57,7 +57,7 @@ function replayLink({ run, scenario, planner, seed, replay }) {
   return el("a", { href: replayAt(run), title: moment?.[1], "aria-label": name, text: `replay${when}` });
 }
 
-/** How bad a score is: larger is worse; a bound counts as the value, on the side that it leaves open. */
+/** Badness of a score for sorting: larger is worse; a bound counts as the value, on the side that it leaves open. */
 function badness(series, score) {
   const known = score.status === "ok" ? score.value : [score.upper, score.lower].find(Number.isFinite);
   if (known === undefined) return NaN;

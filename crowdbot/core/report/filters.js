@@ -1,4 +1,4 @@
-// What is shown: the controls, their state in the address, and the runs that it leaves.
+// Filters: the controls, their state in the address, and the runs selected.
 
 const state = {
   axes: {}, seed: "", category: "", variant: "headline", hidden: new Set(),
@@ -6,7 +6,7 @@ const state = {
 };
 const HEADLINE = "headline";
 
-/** Builds the controls from what the suite has. */
+/** Builds the controls for the axes of the suite. */
 function buildFilters(onchange) {
   const box = byId("filters");
   for (const axis of report.axes) {
@@ -52,7 +52,7 @@ function plannerChips(onchange) {
     el("span", { text: "planners" }), el("div", {}, chips));
 }
 
-/** Puts the state into the controls. */
+/** Updates the controls from the state. */
 function showFilters() {
   for (const axis of report.axes) byId(`axis-${axis.name}`).value = state.axes[axis.name] || "";
   for (const name of ["seed", "category", "variant"]) {
@@ -99,14 +99,14 @@ function matches(run, but = "") {
 
 const selectedRuns = (planner) => report.byPlanner[planner].filter((run) => matches(run));
 
-/** The name of the selection for which Python has worked out intervals; null: for none. */
+/** Name of the current selection if Python has computed its intervals; null otherwise. */
 function selectionName(axes = state.axes) {
   const set = report.axes.map((a) => a.name).filter((name) => axes[name]);
   if (state.seed || set.length > 1) return null;
   return set.length ? `${set[0]}=${axes[set[0]]}` : "";
 }
 
-/** Places of the series that category and variant leave. */
+/** Indices of the series selected by category and variant. */
 function shownSeries() {
   return report.series.map((_, s) => s).filter((s) => {
     const series = report.series[s];
@@ -135,7 +135,7 @@ function writeAddress() {
   }
 }
 
-/** Takes over what the address says, and leaves out what this report does not have. */
+/** Restores the state from the address; ignores values that this report does not have. */
 function readAddress() {
   const query = new URLSearchParams(location.hash.slice(1));
   const has = (id, value) => [...(byId(id)?.options ?? [])].some((o) => o.value === value);

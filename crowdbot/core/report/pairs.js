@@ -1,12 +1,12 @@
-// Planner against planner: paired by scenario and seed, as Python has worked it out.
+// Planner against planner: paired by scenario and seed, as computed in Python.
 
-/** Comparisons of the planners shown, for a score, in the selection of now or else none. */
+/** Comparisons of the planners shown for a score; empty if the selection has none. */
 function verdictsOf(series, planners) {
   return report.stats.pairs.map(([a, b], pair) => ({ a, b, pair, ...comparisonOf(series, pair) }))
     .filter(({ a, b, verdict }) => verdict !== undefined && planners.includes(a) && planners.includes(b));
 }
 
-/** Who is better than whom, in marks; no order where the difference may be chance. */
+/** Shows which planner is better, with marks; no order if the difference may be chance. */
 function verdictText(verdicts) {
   const decided = verdicts.filter(isClear);
   if (!decided.length) {
@@ -70,12 +70,12 @@ function probability(p) {
 
 function pairsNote(rows) {
   if (report.planners.length < 2) return "There is one planner only.";
-  if (!rows.length) return "Comparisons are worked out for all runs only: clear the filters of parameters and seeds to see them, and show at least two planners.";
+  if (!rows.length) return "Comparisons are computed for all runs only: clear the filters of parameters and seeds to see them, and show at least two planners.";
   const { tests, alpha, level } = report.stats;
   return `Mean of the differences over pairs of the same scenario and seed; effect size: the same in standard deviations; in brackets ${level} % intervals. ` +
     "Undefined, censored and failed runs take part in the probability and the test as far as they are known. " +
     `p: signed ranks, signs flipped for whole crowd draws, corrected for the ${tests} tests of ${report.stats.family}; there is a verdict where it is at most ${alpha}. ` +
-    "All other scores are detail, and corrected among themselves. Detectable: the mean difference that so many draws would find in four cases of five. " +
+    "All other scores are detail, and corrected among themselves. Detectable: the mean difference that this number of draws would find in four cases of five. " +
     "Below it: how many crowd draws would find the difference that was seen, if it is real; where every scenario has a crowd of its own, that many scenarios.";
 }
 
@@ -107,13 +107,13 @@ function drawForest(planners, choosePair) {
   box.replaceChildren(picture);
 }
 
-/** Which side of the picture speaks for whom. */
+/** Labels which side of the picture favours which planner. */
 function ahead(planner, x, anchor, y) {
   const name = shortened(planner);
   return label(anchor === "end" ? `${name} better →` : `← ${name} better`, x, y, "tick", anchor);
 }
 
-/** On a phone the names of scores stand above their lines. */
+/** On narrow screens the names of scores are above their lines. */
 function forestFrame(room) {
   const narrow = room < 700;
   const width = narrow ? Math.max(280, room) : 900;

@@ -17,7 +17,7 @@ function drawParameters() {
   byId("parameters-note").textContent = parametersNote();
 }
 
-/** For each label of an axis what each planner does there; the axis's own filter is set aside. */
+/** Results of each planner for each label of an axis; the axis's own filter is ignored. */
 function panelRows(axis, a, planners) {
   return axis.labels.map((text, l) => {
     const word = axis.words[l];
@@ -99,7 +99,7 @@ function parameterRows(rows, planners) {
     report.planners[planners[i]].label, about.centre, about.low, about.high, about.q1, about.q3, String(about.runs), String(about.ok)]))];
 }
 
-/** How much each parameter matters for each planner, from all runs. */
+/** Share of variance that each parameter explains, for each planner, from all runs. */
 function axisEffectText(a, planners) {
   return planners.map((planner) => [planner, effectOf(a, state.series, planner)])
     .filter(([, share]) => Number.isFinite(share))
@@ -122,12 +122,12 @@ function drawParameterTable(rows, planners) {
 function parametersNote() {
   const other = Object.values(state.axes).some(Boolean) || state.seed;
   const set = other ? "The other parameters are filtered as above. " : "";
-  const effects = report.axes.length ? "Percentages: how much of the spread between runs goes with the parameter (η²), always of all runs. " : "";
-  return `${centreWord(report.series[state.series])} with ${report.stats.level} % intervals where they are worked out, else quartiles in italics. ${set}${effects}${densityText()}` +
+  const effects = report.axes.length ? "Percentages: share of the variance between runs explained by the parameter (η²), always over all runs. " : "";
+  return `${centreWord(report.series[state.series])} with ${report.stats.level} % intervals where they are computed, else quartiles in italics. ${set}${effects}${densityText()}` +
     "Realised density: mean over the runs, and in brackets the least and the largest.";
 }
 
-/** How much of the spread goes with the density that the crowds really had. */
+/** Share of variance explained by the realised density of the crowds. */
 function densityText() {
   const shares = shownPlanners().map((p) => [p, effectOf(report.axes.length, state.series, p)])
     .filter(([, share]) => Number.isFinite(share))

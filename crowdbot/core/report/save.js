@@ -1,10 +1,10 @@
-// Every picture as SVG, PNG or CSV.
+// Saves pictures as SVG, PNG or CSV.
 
 const INLINED = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity", "stroke-dasharray",
   "stroke-linecap", "paint-order", "font-family", "font-size", "font-weight", "text-anchor"];
-const PIXELS = 2; // of a PNG, for each of the page
+const PIXELS = 2; // of a PNG per pixel of the page
 
-/** Puts buttons into a box that save a picture, and the numbers that it is made of. */
+/** Adds buttons that save a picture, and its numbers. */
 function offer(box, name, picture, rows) {
   const file = `${report.suite}-${name}`.replace(/[^\w.-]+/g, "-");
   const buttons = [
@@ -24,7 +24,7 @@ function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** A picture that needs no style sheet: what it looks like here and now is written into it. */
+/** Returns a picture without a style sheet: its current style is written into the elements. */
 function svgText(picture) {
   const copy = picture.cloneNode(true);
   const [, , width, height] = picture.getAttribute("viewBox").split(" ").map(Number);
@@ -37,7 +37,7 @@ function svgText(picture) {
     }
     for (const name of ["class", "data-run", "tabindex"]) node.removeAttribute(name);
   });
-  for (const link of copy.querySelectorAll("a")) link.replaceWith(...link.childNodes); // they lead nowhere from elsewhere
+  for (const link of copy.querySelectorAll("a")) link.replaceWith(...link.childNodes); // relative links break in a saved file
   const paper = getComputedStyle(document.querySelector("section")).backgroundColor;
   copy.prepend(svg("rect", { x: 0, y: 0, width, height, fill: paper }));
   copy.setAttribute("xmlns", SVG);
@@ -59,7 +59,7 @@ function savePng(picture, name) {
   image.src = url;
 }
 
-/** RFC 4180; a text that a spreadsheet would take for a formula has an apostrophe in front. */
+/** Formats rows as RFC 4180 CSV; an apostrophe before a text keeps it from being a formula. */
 function csvText(rows) {
   const cell = (value) => {
     if (typeof value === "number") return Number.isFinite(value) ? String(Number(value.toPrecision(5))) : "";

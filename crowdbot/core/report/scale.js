@@ -1,8 +1,8 @@
-// From values to places in a picture.
+// Scales: values to positions in a picture.
 
 const sizeOf = (low, high) => Math.max(Math.abs(low), Math.abs(high)) || 1;
 
-/** Whether numbers differ by more than rounding: between others there are no round ticks. */
+/** Returns true if numbers differ by more than rounding; otherwise there are no round ticks. */
 const isWide = (low, high) => high - low > 1e-9 * sizeOf(low, high);
 
 /** A linear scale with round ticks. */
@@ -33,13 +33,13 @@ function spanOf(numbers, marks = []) {
   return widened([low, high], marks);
 }
 
-/** Everything. */
+/** Returns the full range. */
 function wholeSpan(numbers, marks = []) {
   const known = numbers.filter(Number.isFinite);
   return known.length ? widened([Math.min(...known), Math.max(...known)], marks) : [0, 1];
 }
 
-/** With some room, and with the marks that are near. */
+/** Returns the range with a margin, including marks that are near. */
 function widened([low, high], marks) {
   for (const mark of marks) {
     const near = mark >= low - 0.5 * (high - low) && mark <= high + 0.5 * (high - low);

@@ -55,7 +55,7 @@ function drawScoreRow(row, planners, choose) {
     row.verdicts.length ? el("td", { class: "verdict" }, verdictText(row.verdicts)) : null);
 }
 
-/** What sums up some runs, with its interval, or the quartiles where there is none. */
+/** Summary of some runs, with its interval, or the quartiles if there is none. */
 function centreCell(about, series) {
   const range = about.known || series.centre === "share" ? about : { ...about, low: about.q1, high: about.q3 };
   const [value, ends] = estimateText(range); // quartiles of yes and no say nothing
@@ -113,7 +113,7 @@ function groupByCategory(table, rows) {
   });
 }
 
-/** How many runs a column is made of, and how many of them failed. */
+/** Number of runs in a column, and how many of them failed. */
 function endings(runs) {
   const failed = runs.filter((run) => report.endings[report.statuses[report.runs.status[run]]]?.failed).length;
   return el("small", { text: plural(runs.length, "run") }, failed ? ` · ${failed} failed` : "");
@@ -140,7 +140,7 @@ function silentText(rows) {
 function scoresNote() {
   const { stats } = report;
   const range = selectionName() === null
-    ? "in brackets, in italics, the quartiles of the runs: intervals are worked out for all runs and for one value of one parameter, not for this selection"
+    ? "in brackets, in italics, the quartiles of the runs: intervals are computed for all runs and for single values of one parameter, not for this selection"
     : `in brackets its ${stats.level} % interval over whole crowd draws`;
   return `Mean over the runs with a value; where it says so the share of yes, or the rate of all runs together; ${range}. Hatched: runs without a value, which no number beside them counts. Runs in which the planner failed count with the values that they have, and where planners are compared as worse than any other. ${differenceNote()}`;
 }
@@ -148,6 +148,6 @@ function scoresNote() {
 function differenceNote() {
   if (shownPlanners().length < 2) return "";
   return selectionName() === ""
-    ? "Difference: who is better than whom for certain, after Holm's correction."
-    : "Who is better is worked out for all runs only: every further selection would be a further chance to find a difference that is not there.";
+    ? "Difference: which planners are significantly better than which, after Holm's correction."
+    : "Comparisons are computed for all runs only: each further selection would be another chance to find a difference that is not there.";
 }

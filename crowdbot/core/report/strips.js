@@ -36,7 +36,7 @@ function strip({ planner, runs, about }, x, top, { width, narrow }) {
   return group;
 }
 
-/** What is known of a censored value. */
+/** Bounds of a censored value; empty for other values. */
 function boundsOf(run) {
   const { status, lower, upper } = scoreOf(state.series, run);
   return status === "censored" ? [lower, upper] : [];
@@ -63,7 +63,7 @@ function boxOf(planner, about, x, y) {
   return group;
 }
 
-/** What has no value, beside the picture: hatched boxes with numbers. */
+/** Counts of runs without a value, beside the picture: hatched boxes with numbers. */
 function counts(about, x, y) {
   const group = svg("g", {}, label(`${about.ok} with a value`, x, y, "tick"));
   let line = y;

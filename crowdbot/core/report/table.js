@@ -32,7 +32,7 @@ function headerCell({ text, node, key, numeric, kind: own }, onclick) {
     el("button", { type: "button", class: "sort", onclick }, inside));
 }
 
-/** Numbers by size, the rest by letters; what is missing comes last in either direction. */
+/** Compares numbers by size and other values as text; missing values come last in either direction. */
 function comparing(key, up) {
   return (a, b) => {
     const [x, y] = [key(a), key(b)];
@@ -47,7 +47,7 @@ function numberCell(text, more) {
   return el("td", { class: "number" }, text, more ? el("small", { text: more }) : null);
 }
 
-/** Hatched boxes with the counts of what has no value; nothing where everything has one. */
+/** Hatched boxes with the counts of runs without a value; empty if there are none. */
 function missingChips(about) {
   return WITHOUT_VALUE.filter(([kind]) => about[kind]).map(([kind, name]) =>
     el("span", { class: "missing", title: `${about[kind]} of ${about.runs} runs ${name}` },

@@ -1,6 +1,6 @@
 // Words for axes and their values: "ttca_dca weight" and "20" for `coeff` and `c20`.
 
-/** Texts of a label: the words of the suite where there are some. */
+/** Text of a label: the words of the suite if it has any. */
 const wordOf = (axis, name) => axis.words[axis.labels.indexOf(name)] ?? name;
 
 /** The same with the label itself, which ids of scenarios show. */
@@ -9,13 +9,13 @@ function wordAndLabel(axis, l) {
   return word === name ? name : `${word} (${name})`;
 }
 
-/** What a score is measured in, for the title of a picture's axis. */
+/** Name and unit of a score, for the title of an axis. */
 function measureOf(series) {
   const variant = series.variant === "corrected" ? "" : `, ${words(series.variant)}`;
   return `${words(series.metric)}${variant}${series.unit === "1" ? "" : ` in ${series.unit}`}`;
 }
 
-/** Text in lines of at most so many letters; the last one is cut where there is no room. */
+/** Splits text into lines of at most this many letters; truncates the last one if it does not fit. */
 function linesOf(text, letters, most) {
   const lines = [""];
   for (const word of text.split(" ")) {

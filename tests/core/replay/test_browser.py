@@ -294,7 +294,7 @@ def test_pictures_and_clips_are_saved(browser: Browser, two: Path) -> None:
 
 def test_runs_are_compared(browser: Browser, two: Path) -> None:
     with Visit(browser, two, "#paused&t=5") as page:
-        assert [e.inner_text() for e in page.query_selector_all(".told .name")] == list(_TWO)
+        assert [e.inner_text() for e in page.query_selector_all(".caption .name")] == list(_TWO)
         assert [readout(page, i)["speed"] for i in (0, 1)] == ["0.50\u00a0m/s", "0.40\u00a0m/s"]
         heads = [e.inner_text() for e in page.query_selector_all("aside thead th")]
         assert heads == ["Metric", *_TWO]

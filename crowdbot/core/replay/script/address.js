@@ -1,4 +1,4 @@
-// The address says what is seen: #t= and what differs from the beginning.
+// The view is stored in the address: #t= and all settings that differ from the defaults.
 
 const SWITCHES = ["lidar", "sonar", "trails", "ghost"];
 const ON_AT_FIRST = { lidar: true, sonar: true, trails: false, ghost: true };
@@ -6,7 +6,7 @@ let addressDue = 0;
 
 const fragment = () => new URLSearchParams(location.hash.slice(1));
 
-/** Takes over what the address says. */
+/** Restores the view from the address. */
 function readAddress() {
   const said = fragment();
   if (said.has("t")) state.time = clamp(Number(said.get("t")) || shown.first, shown.first, shown.last);
@@ -20,7 +20,7 @@ function readAddress() {
   setTheme(["light", "dark"].includes(said.get("theme")) ? said.get("theme") : "");
 }
 
-/** The address of what is seen now. */
+/** Returns the address of the current view. */
 function addressNow() {
   const said = fragment();
   const put = (name, value) => (value === null ? said.delete(name) : said.set(name, value));
@@ -36,7 +36,7 @@ function addressNow() {
   return `#${said.toString().replaceAll("%2F", "/")}`;
 }
 
-/** Writes the address soon: browsers allow only so many changes a second. */
+/** Updates the address after a delay: browsers limit the changes per second. */
 function keepAddress() {
   if (addressDue) return;
   addressDue = setTimeout(() => {
@@ -45,7 +45,7 @@ function keepAddress() {
   }, 200);
 }
 
-/** Copies a link to this moment; an older browser gets it by way of a selection. */
+/** Copies a link to this moment; older browsers use a text selection. */
 async function copyLink() {
   const link = new URL(addressNow(), location.href).href;
   try {
@@ -60,7 +60,7 @@ async function copyLink() {
   say("The link to this moment is in the clipboard.");
 }
 
-/** The report from which one came, where it said so: a page of the same kind of address. */
+/** Shows a link back to the report that opened this page, if it has the same origin. */
 function offerReport() {
   const said = fragment().get("report");
   const url = said ? new URL(said, location.href) : null;
@@ -69,7 +69,7 @@ function offerReport() {
   if (safe) byId("report").href = url.href;
 }
 
-/** Tells what was done, to eyes and to screen readers. */
+/** Shows a status message, also to screen readers. */
 function say(text) {
   byId("said").textContent = text;
 }

@@ -1,4 +1,4 @@
-// What is shown, and how it begins.
+// State of the page, and its start.
 
 const SPAN_AT_FIRST = 12; // m across a close-up
 const shown = { runs: [], panels: [], events: [], wide: { canvas: null }, hasRobot: false };
@@ -22,10 +22,10 @@ function addRun(run) {
 
 function makePanel(run) {
   const canvas = el("canvas", { tabindex: 0, role: "img",
-    "aria-label": `Close-up of ${run.label}. Click somebody to follow, drag to move, scroll or pinch to zoom.` });
+    "aria-label": `Close-up of ${run.label}. Click a person or robot to follow, drag to move, scroll or pinch to zoom.` });
   const readout = el("dl", { class: "readout" });
   const name = el("p", { class: "of-run name", "data-run": run.index % RUN_COLOURS, text: run.label });
-  byId("closeups").append(el("div", { class: "closeup" }, canvas, el("div", { class: "told" }, name, readout)));
+  byId("closeups").append(el("div", { class: "closeup" }, canvas, el("div", { class: "caption" }, name, readout)));
   const panel = { run, readout, view: { canvas, x: 0, y: 0, scale: 1 } };
   const { view } = panel;
   pointers(canvas, {
@@ -39,7 +39,7 @@ function makePanel(run) {
   return panel;
 }
 
-/** Fits everything to the runs that there are. */
+/** Adapts the page to the runs shown. */
 function arrange() {
   const { runs } = shown;
   shown.first = Math.min(...runs.map((run) => run.t[0]));
@@ -65,7 +65,7 @@ function arrange() {
   showState();
 }
 
-/** Lets the controls say what is. */
+/** Updates the controls from the state. */
 function showState() {
   for (const name of SWITCHES) byId(name).setAttribute("aria-pressed", String(state[name]));
   byId("whom").value = state.follow;

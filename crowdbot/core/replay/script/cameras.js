@@ -1,4 +1,4 @@
-// Images of cameras as they were recorded: the latest at a time.
+// Recorded camera images: the latest one at the current time.
 
 function offerCameras() {
   const figures = shown.runs.flatMap((run) => run.cameras.map((camera) => cameraFigure(run, camera)));
@@ -17,7 +17,7 @@ function cameraFigure(run, camera) {
   return figure;
 }
 
-/** Red, green, blue of each index; of distances near is light, and unknown is violet. */
+/** Red, green and blue of each index; for distances, near is light and unknown is violet. */
 function shadesOf({ kind, palette }) {
   const shades = new Uint8ClampedArray(3 * 256);
   if (kind === "colour") shades.set(palette);

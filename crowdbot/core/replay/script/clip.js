@@ -7,7 +7,7 @@ const VIDEO_RATE = 25;
 const LAST = 300; // ms
 let saving = false;
 
-/** Shows the moments of a span one after the other, and puts back what was. */
+/** Shows the moments of a time span one after the other, then restores the view. */
 async function overSpan(from, to, rate, canvas, each) {
   const [was, playing] = [state.time, state.playing];
   setPlaying(false);
@@ -42,7 +42,7 @@ async function makeGif(from, to) {
 const VIDEO_TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
 const videoType = () => window.MediaRecorder && VIDEO_TYPES.find((type) => MediaRecorder.isTypeSupported(type));
 
-/** In real time: the recorder takes its own clock. */
+/** Records in real time, since the recorder uses its own clock. */
 async function makeVideo(from, to) {
   const canvas = document.createElement("canvas");
   paintPicture(canvas, CLIP_WIDTH, 1);
@@ -68,7 +68,7 @@ async function makeVideo(from, to) {
 
 async function saveClip() {
   if (saving) {
-    saving = false; // asked again: stop
+    saving = false; // second press: stop
     return;
   }
   const [from, to] = ["clip-from", "clip-to"].map((id) => clamp(Number(byId(id).value), shown.first, shown.last));

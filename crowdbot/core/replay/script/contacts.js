@@ -2,12 +2,12 @@
 
 const FLASH = 0.9; // s that a contact stays visible at least
 
-/** Whether a contact is shown at this time; the shortest ones are shown a moment longer. */
+/** Returns true if a contact is shown at this time; short ones are shown for at least FLASH. */
 function isShown(contact, time) {
   return time >= contact.t0 && time <= Math.max(contact.t1, contact.t0 + FLASH);
 }
 
-/** Rings around those in contact; they widen and fade. */
+/** Draws rings that widen and fade around bodies in contact. */
 function drawContacts(g, run, frame, px) {
   for (const contact of run.contacts) {
     if (!isShown(contact, frame.time)) continue;
@@ -19,7 +19,7 @@ function drawContacts(g, run, frame, px) {
   }
 }
 
-/** Who was touched; for a wall, the robot. */
+/** The body to mark: the person or robot touched; for a wall, the robot itself. */
 function touched(run, frame, contact, robot) {
   const i = placeOf(frame.people, contact.person);
   if (i < 0) return { place: robot, radius: run.robots[contact.robot ?? 0]?.radius ?? 0.3 };
@@ -39,7 +39,7 @@ function drawRings(g, place, radius, age, px) {
   g.globalAlpha = 1;
 }
 
-/** Where on the robot it began. */
+/** Draws the place on the robot where the contact began. */
 function drawTouchedPoint(g, robot, contact, px) {
   const along = robot.theta + contact.bearing;
   const [x, y] = [robot.x + contact.reach * Math.cos(along), robot.y + contact.reach * Math.sin(along)];

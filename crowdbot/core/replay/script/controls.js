@@ -69,7 +69,7 @@ const KEYS = {
 function onKey(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.target.matches("select, input[type=number], input[type=file]")) return;
-  if (event.key === " " && event.target.matches("button, a, summary, input[type=checkbox]")) return; // they act
+  if (event.key === " " && event.target.matches("button, a, summary, input[type=checkbox]")) return; // they handle the key themselves
   const arrow = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
   const act = arrow ? () => (event.shiftKey ? seek(state.time + arrow) : step(arrow)) : KEYS[event.key];
   if (!act) return;

@@ -1,15 +1,15 @@
-// Reads what encode.py packed.
+// Decodes data packed by encode.py.
 
 const ABSENT = -32768;
 
-/** Text of base64 that was packed with zlib, as bytes. */
+/** Decodes base64 text and decompresses it with zlib; returns bytes. */
 async function inflate(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(plain).arrayBuffer());
 }
 
-/** Words of two bytes whose low bytes come first, unfolded: 0, 1, 2, 3 are 0, -1, 1, -2. */
+/** Zigzag-decodes 16-bit words stored with all low bytes first: 0, 1, 2, 3 are 0, -1, 1, -2. */
 function unfold(bytes) {
   const size = bytes.length / 2;
   const words = new Int16Array(size);
@@ -20,25 +20,25 @@ function unfold(bytes) {
   return words;
 }
 
-/** Adds up differences along rows of so many columns. */
+/** Sums up differences along rows with this number of columns. */
 function addAlong(words, columns) {
   for (let i = 1; i < words.length; i++) if (i % columns) words[i] += words[i - 1];
   return words;
 }
 
-/** Rows that change steadily: differences of differences. */
+/** Decodes rows stored as second differences. */
 async function unpackMotion(text, columns) {
   return addAlong(addAlong(unfold(await inflate(text)), columns), columns);
 }
 
-/** Rows that are like the row before. */
+/** Decodes rows stored as differences from the row before. */
 async function unpackReadings(text, columns) {
   const words = unfold(await inflate(text));
   for (let i = columns; i < words.length; i++) words[i] += words[i - columns];
   return words;
 }
 
-/** Floats of so many bytes, from the differences of their bits along each row. */
+/** Decodes floats of this number of bytes from the differences of their bits along each row. */
 async function unpackFloats(text, columns, size) {
   const planes = await inflate(text);
   const count = planes.length / size;
@@ -51,14 +51,14 @@ async function unpackFloats(text, columns, size) {
   return size === 8 ? new Float64Array(bits.buffer) : new Float32Array(bits.buffer);
 }
 
-/** Images of one camera: an index for each pixel. */
+/** Decodes the images of one camera: a colour index for each pixel. */
 async function unpackImages(text, size) {
   const indices = await inflate(text);
   for (let i = size; i < indices.length; i++) indices[i] ^= indices[i - size];
   return indices;
 }
 
-/** One run out of its plain data and the text of its blobs. */
+/** Builds a run from its metadata and the text of its blobs. */
 async function decodeRun(meta, blob) {
   const n = meta.n;
   const run = { ...meta, t: await unpackFloats(blob("t"), n, 8) };
@@ -91,7 +91,7 @@ async function decodeRun(meta, blob) {
   return run;
 }
 
-/** The runs that are packed into this page. */
+/** Returns the runs packed into this page. */
 function packedRuns() {
   const { runs } = JSON.parse(byId("meta").textContent);
   return runs.map((meta, i) => [meta, (name) => byId(`blob-${i}-${name}`).textContent]);

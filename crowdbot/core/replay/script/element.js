@@ -1,9 +1,9 @@
 "use strict";
-// Elements and numbers as text.
+// Creates elements, and formats numbers.
 
 const byId = (id) => document.getElementById(id);
 
-/** An element; `text` becomes its text, never markup. */
+/** Creates an element; `text` becomes its text, never markup. */
 function el(tag, { text, ...attributes } = {}, ...children) {
   const node = document.createElement(tag);
   if (text !== undefined) node.textContent = text;
@@ -17,7 +17,7 @@ function el(tag, { text, ...attributes } = {}, ...children) {
   return node;
 }
 
-/** A number with its unit, with a minus sign and a space that does not break. */
+/** Formats a number with its unit, a minus sign and a non-breaking space. */
 function withUnit(value, decimals, unit = "") {
   if (!Number.isFinite(value)) return "–";
   const text = value.toFixed(decimals);
@@ -25,18 +25,18 @@ function withUnit(value, decimals, unit = "") {
   return unit ? `${sign}\u00a0${unit}` : sign;
 }
 
-/** Four significant digits. */
+/** Formats a number with four significant digits. */
 function digits(value, unit = "") {
   if (!Number.isFinite(value)) return "–";
   const text = String(Number(value.toPrecision(4))).replace("-", "−");
   return unit ? `${text}\u00a0${unit}` : text;
 }
 
-/** Replaces a list of names and values, where it changed. */
+/** Replaces a list of names and values if it changed. */
 function writeFacts(list, rows) {
-  const told = JSON.stringify(rows);
-  if (list.dataset.told === told) return;
-  list.dataset.told = told;
+  const content = JSON.stringify(rows);
+  if (list.dataset.content === content) return;
+  list.dataset.content = content;
   list.replaceChildren(...rows.map(([name, text]) =>
     el("div", {}, el("dt", { text: name }), el("dd", { text }))));
 }

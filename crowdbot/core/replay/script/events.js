@@ -1,8 +1,8 @@
-// What happened: contacts, near misses, arrivals, the end. Each jumps to its moment.
+// List of events: contacts, near misses, arrivals, the end. A click on one jumps to its time.
 
 const NEAR = 0.1; // m between surfaces: nearer without contact is a near miss
-const EARLIER = 0.5; // s before a contact, to see it come
-const AROUND = 1; // s around a contact in which nearness belongs to it
+const EARLIER = 0.5; // s before a contact at which its playback starts
+const AROUND = 1; // s around a contact in which no near miss is listed
 
 function eventsOf(run) {
   const found = [...contactEvents(run), ...run.robots.flatMap((robot, i) => nearMisses(run, robot, i))];
@@ -29,7 +29,7 @@ function contactEvents(run) {
   });
 }
 
-/** The nearest moment of each stretch in which a person is near and does not touch. */
+/** Returns the time of least distance in each interval in which a person is near without contact. */
 function nearMisses(run, robot, index) {
   const found = [];
   for (let p = 0; p < (run.people?.count ?? 0); p++) {
@@ -67,7 +67,7 @@ function eventButton({ kind, t, to = t, text, run }) {
     ...(several ? [el("b", { class: "of-run", "data-run": run.index % RUN_COLOURS, text: run.label }), " "] : []), text);
 }
 
-/** Shows the kinds that are wanted, and says how many there are. */
+/** Shows the selected kinds of events, with their counts. */
 function writeEvents() {
   for (const box of document.querySelectorAll("#event-kinds input")) {
     const count = shown.events.filter(({ kind }) => kind === box.value).length;
@@ -80,7 +80,7 @@ function writeEvents() {
   }
 }
 
-/** The next event of some kinds after this moment; from the beginning again after the last. */
+/** Jumps to the next event of these kinds; after the last one, to the first. */
 function nextEvent(kinds) {
   const wanted = shown.events.filter(({ kind }) => kinds.includes(kind));
   const event = wanted.find(({ t, to = t }) => to > state.time + 0.01) ?? wanted[0];

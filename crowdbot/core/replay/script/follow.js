@@ -1,4 +1,4 @@
-// Whom the views follow: "robot", "robot 2", "person 17" by id, or nobody: "".
+// Body that the views follow: "robot", "robot 2", "person 17" by id, or "" for none.
 
 const REACH = 10; // px beside a body that still count as a click on it
 
@@ -8,7 +8,7 @@ function chosenPerson() {
   return match ? Number(match[1]) : null;
 }
 
-/** Whom a run's view follows now: {place, radius, and robot or person}; null for nobody. */
+/** Returns the body that a run's view follows: {place, radius, and robot or person}; null for none. */
 function followedIn(run, frame) {
   const id = chosenPerson();
   if (id !== null) {
@@ -23,7 +23,7 @@ function followedIn(run, frame) {
   return pose && Number.isFinite(pose.x) ? { robot: index, place: pose, radius: reachOf(run.robots[index]) } : null;
 }
 
-/** Follows from now on; the choice, the button and the address say whom. */
+/** Follows a body, and updates the list, the button and the address. */
 function follow(whom) {
   if (!whom && state.follow) rest();
   state.follow = whom;
@@ -33,12 +33,12 @@ function follow(whom) {
   ask();
 }
 
-/** Leaves the views where they are. */
+/** Keeps the views where they are when following ends. */
 function rest() {
   state.middle = { x: shown.panels[0].view.x, y: shown.panels[0].view.y };
 }
 
-/** What is under a point of a view, by name; "" where there is nothing. */
+/** Returns the name of the body at a point of a view; "" if there is none. */
 function under(panel, px, py) {
   const { run, view } = panel;
   const frame = frameAt(run, state.time);
@@ -57,7 +57,7 @@ function under(panel, px, py) {
   return best < 0 ? "" : personName(run, frame.people.person[best]);
 }
 
-/** What the list says of one to follow: of several robots, also the names that runs give it. */
+/** Returns the list's text for a body; with several robots, with the names that runs give it. */
 function followText(whom) {
   const match = /^robot(?: (\d+))?$/.exec(whom);
   if (!match) return whom;
@@ -66,7 +66,7 @@ function followText(whom) {
   return names.size ? `${whom}: ${[...names].join(", ")}` : whom;
 }
 
-/** The list to choose from without a pointer. */
+/** Fills the list of bodies to follow. */
 function offerFollowing() {
   const most = Math.max(...shown.runs.map((run) => run.robots.length));
   const ids = new Set(shown.runs.flatMap((run) => run.people?.id ?? []));
@@ -74,7 +74,7 @@ function offerFollowing() {
     ...Array.from({ length: most }, (_, i) => (i ? `robot ${i + 1}` : "robot")),
     ...[...ids].sort((a, b) => a - b).map((id) => `person ${id}`),
   ];
-  byId("whom").replaceChildren(el("option", { value: "", text: "nobody" }),
+  byId("whom").replaceChildren(el("option", { value: "", text: "no one" }),
     ...names.map((name) => el("option", { value: name, text: followText(name) })));
   byId("follow").hidden = !most;
 }

@@ -20,14 +20,14 @@ function fromRobot(robot, theta, dx, dy) {
   return capsule ? nearest - robot.radius : inside ? -nearest : nearest;
 }
 
-/** How far anything is from a robot's base at most, m. */
+/** Largest distance of a point of the robot from its base, m. */
 function reachOf(robot) {
   const capsule = robot.outline.length === 2 ? robot.radius : 0;
   return robot.outline.reduce((far, [x, y]) => Math.max(far, Math.hypot(x, y) + capsule), 0) ||
     robot.radius;
 }
 
-/** Gap between a robot's surface and a person's at sample k, m; Infinity where nobody is. */
+/** Gap between a robot's surface and a person's at sample k, m; Infinity if the person is absent. */
 function gapAt(run, robot, p, k) {
   const { scale, x, y } = run.people;
   const i = p * run.n + k;
@@ -36,7 +36,7 @@ function gapAt(run, robot, p, k) {
   return fromRobot(robot, robot.theta[k], dx, dy) - radiusOf(run.people, p);
 }
 
-/** The smallest gap to anybody at each sample, m; NaN where nobody is. */
+/** Smallest gap to a person at each sample, m; NaN if no one is present. */
 function clearanceOf(run, robot) {
   const gaps = new Float64Array(run.n).fill(Infinity);
   const { count, scale, x, y } = run.people;
@@ -47,14 +47,14 @@ function clearanceOf(run, robot) {
       const i = p * run.n + k;
       if (x[i] === ABSENT) continue;
       const [dx, dy] = [x[i] * scale - robot.x[k], y[i] * scale - robot.y[k]];
-      if (!(Math.hypot(dx, dy) - far - own < gaps[k])) continue; // farther than another, or gone
+      if (!(Math.hypot(dx, dy) - far - own < gaps[k])) continue; // farther than another person, or absent
       gaps[k] = Math.min(gaps[k], fromRobot(robot, robot.theta[k], dx, dy) - own);
     }
   }
   return gaps.map((gap) => (gap === Infinity ? NaN : gap));
 }
 
-/** Rectangle that shows all: walls, blocks, goal and robots; people too where nothing stands. */
+/** Rectangle that shows all: walls, blocks, goal and robots; and people if nothing else has a place. */
 function boundsOf(runs) {
   const box = { x0: Infinity, y0: Infinity, x1: -Infinity, y1: -Infinity };
   const grow = (x, y) => {

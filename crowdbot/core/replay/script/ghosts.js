@@ -1,4 +1,4 @@
-// Draws another run into a view: its robot, and people who are not where they are in this one.
+// Draws another run into a view: its robot, and people whose places differ from this one.
 
 const APART = 0.15; // m; nearer than that is the same place
 

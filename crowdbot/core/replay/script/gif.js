@@ -1,10 +1,10 @@
-// Writes GIF89a: one palette, and of each image only what changed since the one before.
+// Writes GIF89a: one palette; each image stores only pixels that changed since the one before.
 
-const CLEAR = 255; // the transparent index: as it was
-const FULL = 4096; // codes of LZW
-const GROUPS = 32768; // of colours: five bits a channel
+const CLEAR = 255; // transparent index: pixel unchanged
+const FULL = 4096; // number of LZW codes
+const GROUPS = 32768; // groups of colours: five bits a channel
 
-/** The means of the commonest groups of colours of some images, and the index of every group. */
+/** Returns a palette, the means of the most frequent colour groups, and the index of every group. */
 function paletteOf(images) {
   const counts = new Uint32Array(GROUPS);
   const sums = [0, 1, 2].map(() => new Float64Array(GROUPS));
@@ -38,7 +38,7 @@ function nearestTo(bytes, chosen) {
 
 const groupOf = (data, i) => ((data[i] >> 3) << 10) | ((data[i + 1] >> 3) << 5) | (data[i + 2] >> 3);
 
-/** Takes images one by one; `finish` gives the file. */
+/** Takes images one by one; `finish` returns the file. */
 function gifWriter(width, height, palette, delay) {
   const low = (n) => [n & 255, n >> 8];
   const parts = [new Uint8Array([...new TextEncoder().encode("GIF89a"), ...low(width), ...low(height), 0xf7, 0, 0]),

@@ -1,4 +1,4 @@
-// Says what is seen: nothing that is switched off, and nothing that no run has.
+// Legend: lists what is drawn; without layers that are off or that no run has.
 
 function legendEntries() {
   const any = (test) => shown.runs.some(test);
@@ -27,9 +27,9 @@ function legendEntries() {
 function writeLegend() {
   const entries = legendEntries();
   const list = byId("legend");
-  const told = JSON.stringify(entries);
-  if (list.dataset.told === told) return;
-  list.dataset.told = told;
+  const content = JSON.stringify(entries);
+  if (list.dataset.content === content) return;
+  list.dataset.content = content;
   list.replaceChildren(...entries.map(([mark, text]) =>
     el("li", {}, el("i", { class: mark.split(" ").map((m) => `k-${m}`).join(" ") }), text)));
 }

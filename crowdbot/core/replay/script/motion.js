@@ -1,4 +1,4 @@
-// Where everything is at any time. Person p at sample k is word p * n + k.
+// Positions of all bodies at any time. Person p at sample k is word p * n + k.
 
 const SLOW = 0.15; // m/s; slower people keep their heading
 const SPAN = 3; // samples on either side for speed and heading
@@ -9,7 +9,7 @@ function sampleAt(run, time) {
   return { k, f: clamp((time - run.t[k]) / (run.t[k + 1] - run.t[k]), 0, 1) };
 }
 
-/** Index of the last of some rising times that is not after `time`; -1 before the first. */
+/** Index of the last of ascending times that is not after `time`; -1 before the first. */
 function lastBefore(times, time) {
   let j = -1;
   let high = times.length;
@@ -34,7 +34,7 @@ function robotAt(run, robot, time) {
   return { x: mix(x), y: mix(y), theta: turn(theta[k], theta[j], f), v: mix(v), w: mix(w) };
 }
 
-/** Speed (m/s) and heading (rad) of everybody at every sample, never across a jump. */
+/** Speed (m/s) and heading (rad) of each person at each sample, never across a jump. */
 function prepare(run) {
   const { people, n } = run;
   if (!people) return;
@@ -69,7 +69,7 @@ function preparePerson(run, p, joined) {
   }
 }
 
-/** Everybody who is there: arrays x, y, speed, heading, person, and how many. */
+/** The people present: arrays x, y, speed, heading, person, and their number. */
 function peopleAt(run, time) {
   const { k, f } = sampleAt(run, time);
   const { count, scale, x, y, speed, heading, jumps } = run.people;
@@ -94,7 +94,7 @@ function peopleAt(run, time) {
   return out;
 }
 
-/** Place in a frame's arrays of a person; -1 where nobody is. */
+/** Index of a person in a frame's arrays; -1 if absent. */
 function placeOf(people, person) {
   for (let i = 0; i < people.size; i++) if (people.person[i] === person) return i;
   return -1;
@@ -104,7 +104,7 @@ function radiusOf(people, p) {
   return people.radius.length > 1 ? people.radius[p] : people.radius[0];
 }
 
-/** The speed at which the colour ramp ends: nearly everybody is slower. */
+/** The speed at which the colour ramp ends: nearly all people are slower. */
 function topSpeedOf(runs) {
   const speeds = runs.flatMap((run) => (run.people
     ? [...run.people.speed.filter((_, i) => i % 13 === 0)] : []));

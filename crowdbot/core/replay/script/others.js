@@ -10,7 +10,7 @@ function handOver() {
     const blobs = [...document.querySelectorAll(`[id^="${prefix}"]`)];
     return { meta, blobs: Object.fromEntries(blobs.map((b) => [b.id.slice(prefix.length), b.textContent])) };
   });
-  const files = location.protocol === "file:"; // whose pages have no origin by which to name them
+  const files = location.protocol === "file:"; // pages of files have no origin by which to name them
   window.parent.postMessage({ crowdbotRuns: runs }, files ? "*" : location.origin);
   return true;
 }

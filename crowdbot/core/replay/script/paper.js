@@ -1,4 +1,4 @@
-// Paper: light, and drawn for its own size, so that a circle stays one whatever the sheet.
+// Printing: in light colours, drawn for the size of the sheet, so that circles stay circles.
 
 const SHEET = 1000; // px that stand for the width of a sheet
 

@@ -1,4 +1,4 @@
-// Draws people: discs coloured by speed, a line where they look, and the ways they came.
+// Draws people: discs coloured by speed, a line where they look, and their past paths.
 
 const TRAIL = 4; // s
 
@@ -40,7 +40,7 @@ function drawHeadings(g, run, { people: { x, y, heading, person, size } }, px) {
   g.stroke();
 }
 
-/** The last seconds of everybody's way, broken where somebody jumped. */
+/** Draws the last seconds of all paths, interrupted where a person jumped. */
 function drawPeopleTrails(g, run, frame, px) {
   g.beginPath();
   for (let i = 0; i < frame.people.size; i++) {
@@ -67,7 +67,7 @@ function pathOfPerson(g, run, p, from, to) {
   }
 }
 
-/** Where the followed person came from, from the beginning on. */
+/** Draws the path of the followed person from the beginning on. */
 function drawFollowedTrail(g, run, frame, person, px) {
   g.beginPath();
   pathOfPerson(g, run, person, 0, frame.k);
@@ -77,7 +77,7 @@ function drawFollowedTrail(g, run, frame, person, px) {
   g.stroke();
 }
 
-/** A ring around whom the view follows. */
+/** Draws a ring around the followed body. */
 function drawFollowed(g, place, radius, px) {
   g.beginPath();
   g.arc(place.x, place.y, radius + 4 * px, 0, 2 * Math.PI);

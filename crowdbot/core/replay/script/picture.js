@@ -1,4 +1,4 @@
-// One picture of everything that is seen at a moment: title, whole scene, close-ups.
+// Picture of one moment: title, whole scene, close-ups.
 
 const HEAD = 30; // px
 
@@ -10,7 +10,7 @@ function pictureLayout(width) {
   return { width, columns, wide, cell, tall, height: HEAD + wide + rows * tall };
 }
 
-/** Paints the moment onto a canvas of so many CSS pixels, of which each is `ratio` wide. */
+/** Paints the moment onto a canvas of this size in CSS pixels, each `ratio` device pixels wide. */
 function paintPicture(canvas, width, ratio) {
   const layout = pictureLayout(width);
   const { g } = prepareCanvas({ canvas, size: { width, height: layout.height, ratio } });
@@ -55,8 +55,7 @@ function paintLabel({ canvas }, run) {
   g.fillText(run.label, 12, 21);
 }
 
-/** A file name that says what and when. */
-/** Of a moment, or of a span of time. */
+/** Returns a file name with the title and the moment or time span. */
 function fileName(suffix, ...times) {
   const title = document.querySelector("h1").textContent.replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "");
   const when = (times.length ? times : [state.time]).map((t) => t.toFixed(2)).join("-");

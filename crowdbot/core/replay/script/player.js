@@ -52,7 +52,7 @@ function step(by) {
   seek(run.t[clamp(at + by, 0, run.n - 1)]);
 }
 
-/** What a view of a run shows, apart from where it looks. */
+/** Content of the view of a run, apart from its centre. */
 function optionsFor(run, frames, more) {
   const ghosts = !state.ghost ? [] : shown.runs.filter((other) => other !== run).map((other) =>
     ({ other, ghost: frames[other.index], colour: colourOfRun(other.index) }));
@@ -61,7 +61,7 @@ function optionsFor(run, frames, more) {
   return { grid: 0.5, lidar: state.lidar, sonar: state.sonar, trails: state.trails, ghosts, colour, followed, ...more };
 }
 
-/** Looks at whom a view follows, or at the place that was chosen. */
+/** Centres a view on the followed body, or on the chosen place. */
 function aim(view, run, frame) {
   const { place } = followedIn(run, frame) ?? { place: state.follow ? view : state.middle };
   [view.x, view.y] = [place.x, place.y];

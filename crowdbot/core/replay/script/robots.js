@@ -39,7 +39,7 @@ function drawLook(g, robot, px) {
   }
 }
 
-/** Where a robot looks that has nothing else to tell it by. */
+/** Draws an arrow on a robot that is drawn as a plain outline. */
 function drawArrow(g, r) {
   g.beginPath();
   g.moveTo(0.72 * r, 0);
@@ -51,7 +51,7 @@ function drawArrow(g, r) {
   g.fill();
 }
 
-/** A tip in front of a robot whose look does not say where that is. */
+/** Draws a tip in front of a robot that is drawn by its parts. */
 function drawNose(g, reach, colour, px) {
   const [from, wide] = [reach + 2 * px, Math.max(0.3 * reach, 3 * px)];
   g.beginPath();
@@ -80,7 +80,7 @@ function robotPath(g, robot, r, more) {
   } else g.arc(0, 0, r + more, 0, 2 * Math.PI);
 }
 
-/** The way a robot came, the last seconds of it stronger. */
+/** Draws the past path of a robot, the last seconds stronger. */
 function drawTrail(g, run, robot, pose, frame, colour, px) {
   const recent = sampleAt(run, frame.time - TRAIL).k;
   g.strokeStyle = colour;

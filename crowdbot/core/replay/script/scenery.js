@@ -1,11 +1,11 @@
-// What does not move: floor, goal, walls, blocks, pillars, and the scale.
+// Draws what does not move: floor, goal, walls, blocks, pillars, and the scale.
 
-// Whom a wall stops: 1 robots, 2 people, 3 everybody, 0 nobody.
+// Styles of walls by what they stop: 1 robots, 2 people, 3 both, 0 neither.
 const WALLS = [
   { whom: 3, colour: "wall", width: 2.5, dash: [], text: "wall" },
   { whom: 1, colour: "robot", width: 2.5, dash: [9, 5], text: "wall for robots only" },
   { whom: 2, colour: "accent", width: 2.5, dash: [3, 4], text: "wall for people only" },
-  { whom: 0, colour: "muted", width: 1.5, dash: [1, 4], text: "wall that stops nobody" },
+  { whom: 0, colour: "muted", width: 1.5, dash: [1, 4], text: "wall that stops no one" },
 ];
 
 function drawGrid(g, view, width, height, spacing) {

@@ -1,6 +1,6 @@
-// What sensors saw at any time, in the world.
+// Sensor readings at any time, in world coordinates.
 
-/** Where a sensor is in the world and where it looks, with the robot at some pose. */
+/** Position and direction of a sensor in the world for a pose of the robot. */
 function mounted(robot, [mx, my, , yaw]) {
   const [c, s] = [Math.cos(robot.theta), Math.sin(robot.theta)];
   return { x: robot.x + c * mx - s * my, y: robot.y + s * mx + c * my, yaw: robot.theta + yaw };
@@ -18,7 +18,7 @@ function carrierAt(run, sensor, time) {
   return robotAt(run, run.robots[sensor.robot ?? 0], time);
 }
 
-/** What a group of cones read last; only those to which something came back. */
+/** Latest readings of a group of cones; only cones with an echo. */
 function conesAt(run, group, time) {
   const j = lastBefore(group.t, time);
   if (j < 0) return [];
@@ -51,7 +51,7 @@ function scanAt(run, scan, time) {
   return scan.cached;
 }
 
-/** Everything of a run at a time; after its end it stays as it was last. */
+/** State of a run at a time; after its end, its last state. */
 function frameAt(run, time) {
   const last = run.t[run.n - 1];
   const now = Math.min(time, last);

@@ -1,4 +1,4 @@
-// Draws what lidars, ultrasounds and infrared sensors saw.
+// Draws readings of lidars, ultrasonic and infrared sensors.
 
 function drawFan(g, scan) {
   g.beginPath();
@@ -31,7 +31,7 @@ function drawCone(g, cone, px) {
   g.globalAlpha = 1;
 }
 
-/** One reading: anywhere between the edges. */
+/** Draws one reading of a cone: the obstacle is anywhere between the edges. */
 function drawEcho(g, cone, px) {
   g.beginPath();
   g.arc(cone.x, cone.y, cone.range, cone.from, cone.to);

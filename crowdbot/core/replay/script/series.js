@@ -1,4 +1,4 @@
-// Everything of a run that can be plotted against time: {key, name, unit, t, values}.
+// The series of a run that can be plotted against time: {key, name, unit, t, values}.
 
 function seriesOf(run) {
   const found = run.robots.flatMap((robot, i) => robotSeries(run, robot, i));
@@ -41,7 +41,7 @@ function peopleSeries(run) {
 
 const oneOf = (run, key) => run.series.find((series) => series.key === key);
 
-/** What a series was last at a time; NaN before its first value. */
+/** Latest value of a series at a time; NaN before its first value. */
 function valueAt(series, time) {
   const k = lastBefore(series.t, time);
   return k < 0 ? NaN : series.values[k];

@@ -1,6 +1,6 @@
-// The strip under the slider: one lane a run, with a curve, contacts and arrivals.
+// The strip under the slider: one lane per run, with a curve, contacts and arrivals.
 
-/** What of a run is worth a lane, and between what ends. */
+/** Returns the series of a run to show in its lane, and its range. */
 function laneOf(run) {
   const best = ["clearance", "speed", "walking"].map((key) => oneOf(run, key)).find(Boolean);
   if (!best) return { name: "", series: null, top: 1 };

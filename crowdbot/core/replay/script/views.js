@@ -17,7 +17,7 @@ function prepareCanvas({ canvas, size }) {
 const widthOf = ({ canvas, size }) => (size ? size.width : canvas.clientWidth);
 const heightOf = ({ canvas, size }) => (size ? size.height : canvas.clientHeight);
 
-/** Draws a run; `others`: what of further runs is to be seen in it. */
+/** Draws a run; `others`: content of further runs to draw into it. */
 function drawView(run, view, frame, options) {
   const { g, width, height } = prepareCanvas(view);
   g.fillStyle = colours.floor;
@@ -52,7 +52,7 @@ function drawAll(g, run, frame, options, px) {
   drawContacts(g, run, frame, px);
 }
 
-/** What a close-up shows of the whole scene. */
+/** Outlines the area of a close-up in the whole scene. */
 function drawFrame(g, { x, y, w, h, colour }, px) {
   g.strokeStyle = colour;
   g.globalAlpha = 0.8;
