@@ -132,7 +132,7 @@ def test_robots_of_a_fleet_are_chosen_by_their_names(browser: Browser, tmp_path:
     write_replay(tmp_path / "fleet.html", replace(shown, robot="pepper", others=[other]))
     with Visit(browser, tmp_path / "fleet.html", "#paused&t=4") as page:
         texts = page.eval_on_selector_all("#whom option", "all => all.map((o) => o.textContent)")
-        assert texts[:4] == ["nobody", "robot: pepper", "robot 2: qolo", "person 7"]
+        assert texts[:4] == ["no one", "robot: pepper", "robot 2: qolo", "person 7"]
         page.select_option("#whom", label="robot 2: qolo")
         settled(page)
         assert "follow=robot+2" in page.url
