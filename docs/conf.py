@@ -1,4 +1,4 @@
-"""How Sphinx makes the site: ``make docs``; pages stay readable as they are."""
+"""Sphinx configuration of the site (``make docs``); pages also read well as plain Markdown."""
 
 import sys
 from importlib.metadata import version as installed

@@ -37,7 +37,7 @@ _HEAD = """# Gallery of metrics
 What each metric measures, drawn from one run: a robot that sways and hardly brakes, among \
 24 people who walk both ways in a corridor of 14 m. \
 The number above a picture is the metric's value in that run. \
-`make pictures` draws them. What users answer and command is made up, since nobody \
+`make pictures` draws them. What users answer and command is made up, since no one \
 steered. [Metrics by category](metrics_by_category.md) lists symbols and directions.
 """
 

@@ -38,8 +38,8 @@ NUMBERS = ROOT / "crowdbot" / "core" / "realism" / KNOWN
 SUITES = {"challenge-2026": "challenge-2026"}
 #: The crowd of challenge-2020 with the bodies it has there, and the speeds of real people.
 MIX, SPEEDS = "challenge_2020", ["speed.mean=1.34 m/s", "speed.std=0.26 m/s", "body.radius=0.33 m"]
-#: Copies of people who avoid nobody that are listed beside the crowds.
-_NOBODY = "people who avoid nobody"
+#: Copies of people without avoidance that are listed beside the crowds.
+_NOBODY = "people who do not avoid each other"
 
 
 def crowds(registry: Registry) -> Iterator[tuple[str, Crowd]]:
@@ -85,8 +85,8 @@ def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
         "0.2 m radius who prefer 1.5 m/s. `challenge mix` is `challenge_2020` with people "
         "of 0.33 m who prefer 1.34 ± 0.26 m/s, `challenge-2026` is the crowd of that suite: "
         "`calibrated`, with a larger spread of speeds and accelerations up to 3 m/s². "
-        "`demo_2` equals `social_forces`: they differ only in ranges beyond which nobody is felt "
-        "([named policies](named_policies.md)).",
+        "`demo_2` equals `social_forces`: they differ only in ranges beyond which people have "
+        "no influence ([named policies](named_policies.md)).",
         "",
         *_table(
             ["crowd", "index", "score", "speed", "acceleration", "turning", "nearest",
@@ -172,7 +172,7 @@ def _table(head: list[str], rows: list[list[str]]) -> list[str]:
 
 
 def write(rows: Mapping[str, tuple[str, dict[str, Any]]], reference: RealismReference) -> None:
-    """Numbers and page, after each crowd: whoever stops this keeps what was measured."""
+    """Numbers and page, after each crowd: if this is stopped, what was measured is kept."""
     kept = dict(rows.values())
     atomic_write(NUMBERS, json.dumps(kept, indent=1, ensure_ascii=False) + "\n")
     atomic_write(PAGE, page([row for _, row in rows.values()], reference))

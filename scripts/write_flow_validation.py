@@ -314,12 +314,12 @@ def page(found: Sequence[Measured]) -> str:
     ])  # fmt: skip
 
 
-#: What the numbers mean; looked at again whenever they are written anew.
+#: What the numbers mean; review it whenever they are written again.
 NOTES: tuple[str, ...] = (
     "## Where they are wrong",
     "",
     "- `calibrated` walks faster than Weidmann's people at all densities, by 10 to 28 %: it was "
-    "fitted to people who were told to walk through a corridor and who prefer more than 1.34 m/s. "
+    "fitted to people who were asked to walk through a corridor and who prefer more than 1.34 m/s. "
     "The shape is the same.",
     "- The challenge's mix does not slow down: up to 2 people/m² in one direction everybody keeps "
     "walking at nearly the preferred speed, twice as fast as published. A likely cause, not "

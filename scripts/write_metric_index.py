@@ -30,7 +30,7 @@ def page() -> str:
     parts = [_HEAD.format(four=four)]
     for category in sorted(groups):
         rows = [_row(c) for c in groups[category]]
-        head = "| metric | symbol | better | what it tells |\n|---|---|---|---|"
+        head = "| metric | symbol | better | what it measures |\n|---|---|---|---|"
         parts.append("\n".join([f"## {category}\n", head, *rows, ""]))
     return "\n".join(parts)
 

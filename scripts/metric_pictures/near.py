@@ -51,7 +51,7 @@ def _zone(world: World, metric: str) -> Figure:
     return figure.level(high, f"{high} m").level(low, f"{low} m" if low else "")
 
 
-@draws("space_compliance", "Time with nobody nearer than 0.5 m.")
+@draws("space_compliance", "Time with no person nearer than 0.5 m.")
 def _space_compliance(world: World, metric: str) -> Figure:
     figure = _gap(world, metric).spans(world.t, world.gap >= 0.5, "room enough")
     return figure.line(world.t, world.gap, ROBOT, "gap to the nearest person").level(0.5, "0.5 m")
@@ -91,7 +91,7 @@ def _local_density(world: World, metric: str) -> Figure:
     return figure.line(x, y, BAD, "within 3 m", dashed=True)
 
 
-@draws("intrusion", "Where the robot drives at somebody whom it would reach within the time gap.")
+@draws("intrusion", "Where the robot drives at a person whom it would reach in the time gap.")
 def _intrusion(world: World, metric: str) -> Figure:
     found = evasion(world.run, 2.0, JUMP)
     short = share_below(world.run, 1.0, JUMP)
@@ -107,7 +107,7 @@ def _ttc(world: World, metric: str) -> Figure:
     return world.over_time(metric, "time to collision in s", 0.0, 8.0).level(5.0, "horizon 5 s")
 
 
-@draws("min_time_to_collision", "Time to the next collision if nobody changed velocity; the least.")
+@draws("min_time_to_collision", "Time to the next collision if no one changed velocity; the least.")
 def _min_ttc(world: World, metric: str) -> Figure:
     tau = world.time_to_collision
     k = int(np.argmin(tau))
@@ -171,7 +171,7 @@ def _contacts(world: World, metric: str) -> Figure:
 
 
 @draws("collision_rate", "Contacts so far over time and over the driven path.")
-@draws("contacts_per_km", "Contacts so far over the way made good towards the goal.")
+@draws("contacts_per_km", "Contacts so far over the progress towards the goal.")
 def _rate(world: World, metric: str) -> Figure:
     t0, _ = _onsets(world)
     robot = world.robot
@@ -179,7 +179,7 @@ def _rate(world: World, metric: str) -> Figure:
     steps = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(robot.x), np.diff(robot.y)))])
     way = far[0] - far if metric == "contacts_per_km" else steps
     so_far = np.searchsorted(np.sort(t0), world.t, side="right").astype(float)
-    name = "way made good in m" if metric == "contacts_per_km" else "driven path in m"
+    name = "progress in m" if metric == "contacts_per_km" else "driven path in m"
     figure = Figure(
         world.title(metric), (name, 0.0, float(way.max())), ("contacts", 0.0, len(t0) + 0.5)
     )

@@ -128,9 +128,11 @@ def _neighbours_velocity(world: World, metric: str) -> Figure:
     "neighbours_time_to_goal", "Mean durations of trips: of people who meet the robot, and of all."
 )
 @draws(
-    "time_to_goal_similarity", "Time of the robot, and mean time of people, per metre made good."
+    "time_to_goal_similarity", "Time of the robot, and mean time of people, per metre of progress."
 )
-@draws("path_length_similarity", "Path of the robot, and mean path of people, per metre made good.")
+@draws(
+    "path_length_similarity", "Path of the robot, and mean path of people, per metre of progress."
+)
 def _two_bars(world: World, metric: str) -> Figure:
     if metric.endswith("similarity"):
         names, values, label = _per_metre(world, metric)

@@ -9,7 +9,7 @@ from crowdbot.plugin import Command, Observation, RobotLimits, SensorInfo, Task
 
 
 class Sidestep:
-    """Sways on its way to the goal where somebody is near; backs off once."""
+    """Sways on its way to the goal where a person is near; backs off once."""
 
     needs = ("lidar",)
 

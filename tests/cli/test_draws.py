@@ -199,7 +199,7 @@ def test_a_changed_seed_stops_every_reader(argv: list[str], suite: Path, capsys:
     ("text", "says"),
     [
         (SUITE.replace("id: s", "id: s, seed: 3"), "s.yaml:2:22: error[E215]"),
-        (SUITE + "base.crowd.seed.root: 3\n", "nobody is drawn from suite.seed"),
+        (SUITE + "base.crowd.seed.root: 3\n", "no people are drawn from suite.seed"),
         (f"{{{SUITE.replace('crowdbot: 1', 'crowdbot: 1,')}", "error[E002]"),
         ("{crowdbot: 1, suite: {id: s}, base: {extends: minimal.yaml}}\n", "suite.commitment: sha"),
         (SUITE + "suite.salt: 0123456789abcdef0123456789abcdef\n", "error[E215]"),

@@ -26,7 +26,7 @@ def test_commands_are_told_in_full(
     for command in ([], ["plugins"]):
         assert main([*command, "--help"]) == 0
     words = " ".join(capsys.readouterr().out.split())
-    assert "a suite and tests, to start from." in words
+    assert "a suite and tests." in words
     assert "--install-completion" in words
     assert "Pack scores, hashes, scenarios and provenance of one planner's runs into one" in words
 
@@ -36,4 +36,4 @@ def test_paragraphs_are_wrapped_once(
 ) -> None:
     monkeypatch.setenv("COLUMNS", "200")
     assert main(["bundle", "--help"]) == 0
-    assert "checks the archive and makes some of its runs again." in capsys.readouterr().out
+    assert "checks the archive and repeats some of its runs." in capsys.readouterr().out

@@ -136,7 +136,7 @@ FaultSpeed = Annotated[
 FaultReaction = Annotated[
     NonNegativeDuration,
     Field(
-        default=0.3, description="A robot may go on for so long once a contact is foreseeable, s."
+        default=0.3, description="The robot may go on this long once a contact is foreseeable, s."
     ),
 ]
 FaultBraking = Annotated[
@@ -176,7 +176,7 @@ SameStart = Annotated[
 ]
 AfterMeeting = Annotated[
     NonNegativeDuration,
-    Field(default=2.0, description="A meeting ends so long after the robot is out of reach, s."),
+    Field(default=2.0, description="A meeting ends this long after the robot is out of reach, s."),
 ]
 MuchDisplacement = Annotated[
     NonNegativeLength, Field(default=0.5, description="People displaced by more are counted, m.")

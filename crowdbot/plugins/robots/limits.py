@@ -29,7 +29,7 @@ MaxYawAcceleration = Annotated[
     PositiveAngularAcceleration, Field(description="Slew of w, rad/s^2.")
 ]
 CommandTimeout = Annotated[
-    PositiveDuration, Field(description="Without a command for so long it stops, s.")
+    PositiveDuration, Field(description="The robot stops after this long without a command, s.")
 ]
 Mass = Annotated[PositiveMass, Field(description="Whole robot, with who rides on it, kg.")]
 

@@ -29,7 +29,7 @@ class Drift:
         distance = np.hypot(offset[..., 0], offset[..., 1])
         gap = distance - view.agents.radius[:, None] - discs[None, :, 4]
         push = self._spec.push * np.exp(-np.maximum(gap, 0.0) / self._spec.fade)
-        push[distance < 1e-9] = 0.0  # oneself, or somebody in the very same place
+        push[distance < 1e-9] = 0.0  # the person itself, or another one in exactly the same place
         away = offset / np.maximum(distance, 1e-9)[..., None]
         return np.asarray(_preferred(view) + np.einsum("nd,ndk->nk", push, away))
 

@@ -37,7 +37,7 @@ class JsonProcess:
 
     @property
     def pid(self) -> int:
-        """Of the child."""
+        """Process id of the child."""
         return self._child.pid
 
     def ask(self, message: Mapping[str, Any], patience: float) -> dict[str, Any]:

@@ -55,7 +55,7 @@ class Outside:
         )
 
     def step(self, obs: Observation) -> Command:
-        """What the process answers.
+        """Return the answer of the process.
 
         Raises:
             NoValidCommand: it says that it knows none.

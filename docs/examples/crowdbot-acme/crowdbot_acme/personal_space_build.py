@@ -83,7 +83,7 @@ def _prepare(
 
 @njit(cache=True, error_model="numpy")
 def _gap(ux: float, uy: float, other: _Other, ahead: float) -> tuple[float, float, float]:
-    """Where a neighbour will be (m), and the gap between the surfaces then (m)."""
+    """Return the future place of a neighbour (m), and the gap between the surfaces there (m)."""
     x = other.x + (other.vx - ux) * ahead
     y = other.y + (other.vy - uy) * ahead
     return x, y, math.hypot(x, y) - other.reach

@@ -17,9 +17,9 @@ from pydantic import Field
 
 
 class RadarSpec(SensorSpec):
-    """Reading: distance (m, inf for nobody), closing speed (m/s) and bearing (rad) of one person.
+    """Reading: distance (m, inf for no one), closing speed (m/s) and bearing (rad) of one person.
 
-    It looks through people and walls, which a real one does not.
+    It looks through people and walls; a real radar does not.
     """
 
     kind: Literal["acme.radar"] = "acme.radar"

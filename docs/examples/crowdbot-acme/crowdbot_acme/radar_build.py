@@ -55,7 +55,7 @@ class Radar:
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Distance to the surface (m), closing speed (m/s), bearing (rad); inf, 0, 0: nobody."""
+        """Distance to the surface (m), closing speed (m/s), bearing (rad); inf, 0, 0: no one."""
         del t, rng
         (x, y, _), yaw = sensor_pose_in_world(self._spec.mount, scene, pose)
         offset = scene.people[:, :2] - [x, y]
@@ -72,7 +72,7 @@ class Radar:
 
 
 def _velocity(scene: Scene) -> Array:
-    """Of the robot, world frame, m/s."""
+    """Return the velocity of the robot in the world frame, m/s."""
     robot = scene.robot
     return np.zeros(2) if robot is None else np.array([robot.vx, robot.vy])
 

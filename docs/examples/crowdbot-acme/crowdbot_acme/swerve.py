@@ -1,4 +1,4 @@
-"""Swerve: to the goal, slower and to the side when somebody is near."""
+"""Swerve: to the goal, slower and to the side when a person is near."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class SwerveSpec(PlannerSpec):
     needs: ClassVar[tuple[str, ...]] = ("radar",)
 
     kind: Literal["acme.swerve"] = "acme.swerve"
-    stop: PositiveLength = Field(default=0.7, description="It stands when somebody is nearer, m.")
+    stop: PositiveLength = Field(default=0.7, description="It stops if a person is nearer, m.")
     slow: PositiveLength = Field(default=2.0, description="It slows down from here on, m.")
     gain: PositiveFrequency = Field(default=2.0, description="Yaw rate per heading error, 1/s.")
 
@@ -22,5 +22,5 @@ class SwerveSpec(PlannerSpec):
 SWERVE = Component(
     spec=SwerveSpec,
     build="crowdbot_acme.swerve_build:build",
-    summary="to the goal, slower and to the side when somebody is near",
+    summary="to the goal, slower and to the side when a person is near",
 )

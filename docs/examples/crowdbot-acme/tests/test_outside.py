@@ -39,7 +39,7 @@ def pid_of(made: Outside) -> int:
 
 
 def is_there(pid: int) -> bool:
-    """Whether a process exists; a zombie does."""
+    """Return True if a process exists; a zombie does."""
     try:
         os.kill(pid, 0)
     except ProcessLookupError:

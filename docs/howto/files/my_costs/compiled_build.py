@@ -33,7 +33,7 @@ class Header:
 
 
 class Place:
-    """Where a neighbour is going to be, and how near one may come to it; the other rows, m."""
+    """Future places of a neighbour, and the least distance to it; the other rows, m."""
 
     x: float
     y: float
