@@ -22,14 +22,14 @@ class Plugin:
     Attributes:
         name: name of its entry point; prefix of its components' kinds.
         distribution: name and version of the package, or the path it was loaded from.
-        pinned: whether it comes from an installed distribution, whose version says what it is;
-            one that was installed to be edited is not.
-        given: whether its path was named; it need not be installed.
-        file: the file of its module, empty where nothing is known.
-        api: the version of the hooks that it was written for; None if that is not known.
-        sha256: of the files of a plugin that is not pinned; empty otherwise.
-        error: why it could not be loaded; empty for one that was.
-        traceback: of the error, where there is one.
+        pinned: True if it comes from an installed distribution, identified by its version; False
+            for an editable installation.
+        given: True if the user named its path; such a plugin need not be installed.
+        file: file of its module; empty if unknown.
+        api: version of the hooks that it was written for; None if unknown.
+        sha256: hash of the files of a plugin that is not pinned; empty otherwise.
+        error: reason why it could not be loaded; empty if it was.
+        traceback: traceback of the error, if there is one.
     """
 
     name: str

@@ -39,7 +39,7 @@ class Part(BaseModel):
         return self.model_dump(mode="json", exclude_unset=True)
 
     def identity(self) -> dict[str, Any]:
-        """The fields that are marked as identity, as JSON has them; a part without marks, whole."""
+        """Return the fields marked as identity, as JSON values; all fields if none is marked."""
         marked = [n for n, field in type(self).model_fields.items() if _IDENTITY in field.metadata]
         if not marked:
             return self.document()
@@ -47,7 +47,7 @@ class Part(BaseModel):
         return {n: _identity_of(value) for n, value in found.items()}
 
     def id(self) -> str:
-        """The hash of the identity."""
+        """Return the hash of the identity."""
         return digest(self.identity())
 
 

@@ -75,10 +75,10 @@ def numbers_of(*arguments: Any) -> tuple[Any, ...]:
 
 
 def record_type(declared: type[T], columns: int | None = None) -> RecordType[T]:
-    """The dtype of a record with the annotated fields of a class and of its bases.
+    """Return the dtype of a record with the annotated fields of a class and its bases.
 
     Args:
-        columns: float64 from one row to the next, where these are more than the fields.
+        columns: width of a row in float64 values, if it is larger than the number of fields.
     """
     names = fields_of(declared)
     width = len(names) if columns is None else columns
@@ -94,7 +94,7 @@ def record_type(declared: type[T], columns: int | None = None) -> RecordType[T]:
 
 
 def fields_of(declared: type) -> list[str]:
-    """Names of a record's fields, in order."""
+    """Return the names of a record's fields, in order."""
     bases = reversed(declared.__mro__)
     return [name for base in bases for name in inspect.get_annotations(base)]
 

@@ -305,7 +305,7 @@ def _made(
     options: Mapping[str, Any],
     contacts: Mapping[str, ArrayLike] | None = None,
 ) -> _Run:
-    """The run of some tables and of the options beside them; warns of what cannot be."""
+    """Build a run from tables and further options; warn of implausible data."""
     given = {name: _checked(name, value) for name, value in {**DEFAULTS, **options}.items()}
     how = {name: given.pop(name) for name in _FOR_COLUMNS}
     columns = own.columns_of(*(tables.get(name) for name in _COLUMNS), **how)

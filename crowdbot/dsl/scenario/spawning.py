@@ -170,7 +170,7 @@ class Spawn(Spec):
 
     @property
     def routes(self) -> tuple[str, ...]:
-        """The fields that say where people go; a sound spawn has one."""
+        """Names of the fields given that define where people go; a valid spawn has exactly one."""
         fields = {"goals": self.goals, "portals": self.portals, "standing": self.standing}
         return tuple(name for name, value in fields.items() if value)
 

@@ -50,7 +50,7 @@ def parts() -> list[Part]:
 def build(spec: CuybotSpec) -> RobotModel:
     """Return the model with this spec's mass, limits and softness.
 
-    Contact is at its centre's height.
+    Contact forces act at the height of its centre of mass.
     """
     body = scaled(parts(), spec.mass)
     (_, _, centre), _ = balance(body)

@@ -38,7 +38,7 @@ def stop_short(
     outlines: Array,
     response: TickResponse,
 ) -> tuple[float, float]:
-    """Acceleration that agent i adds to its own will beside robots that stand, m/s^2.
+    """Return the acceleration that keeps agent i from walking into robots that stand, m/s^2.
 
     Args:
         robots, outlines: as in `crowdbot.core.crowd.contact.robot_contact`.

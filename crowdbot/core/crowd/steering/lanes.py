@@ -17,7 +17,7 @@ _STANDS = 0.2
 
 
 def keep_lane(part: LanesSpec, now: Moment, wanted: Array) -> None:
-    """Add the steps aside of all to accelerations (N, 2), m/s^2, in place."""
+    """Add the accelerations of all people who step aside to ``wanted`` (N, 2), m/s^2, in place."""
     _keep_all(*now.near, part.strength, part.reach, part.half_width, part.follow, wanted)
 
 

@@ -110,7 +110,7 @@ class McapFile:
         self._stream.flush()
 
     def close(self) -> None:
-        """Write index and footer; on return everything is on disk, if it is a disk."""
+        """Write index and footer; flush everything to disk."""
         self._finish_chunk()
         self._stream.write(ending(self._index(), self._stream.tell()))
         self._stream.flush()

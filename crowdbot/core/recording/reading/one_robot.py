@@ -58,7 +58,7 @@ class RobotRecords:
         self._records[topic].append(record)
 
     def add_header(self, topic: str, record: Record) -> None:
-        """Take a header, or the tilts of sensors: from here on their readings are known.
+        """Add a header record, or one with the tilts of sensors; readings can be decoded after it.
 
         Raises:
             InputError: it is damaged, or of a format that is not read.

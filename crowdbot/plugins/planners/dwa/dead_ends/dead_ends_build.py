@@ -16,7 +16,7 @@ from crowdbot.plugins.planners.dwa.scene_build import LEGS, REACH, SECTORS, Scen
 from crowdbot.plugins.planners.shared.people_build import with_discs
 from crowdbot.plugins.planners.shared.points_build import apart, nearest_per_sector
 
-#: The map is renewed so often while it is needed, s.
+#: Period at which the map is renewed while it is needed, s.
 _MAP_PERIOD = 0.5
 #: People in that map have this share of their radius.
 _MAPPED = 0.5
@@ -32,8 +32,8 @@ class Detour(NamedTuple):
 
     Attributes:
         goal, room: bearing (rad) and distance (m) of the goal or, on the map, of the next stretch.
-        escaping: whether the robot backs off.
-        mapped: whether `goal` is a way on the map.
+        escaping: True if the robot backs off.
+        mapped: True if `goal` is the next stretch of a path on the map.
         beside: (K, 2) further points that stand beside the robot, base frame, m.
         command: v, w and vy of a manoeuvre, which replaces any other choice.
     """
@@ -82,7 +82,7 @@ class DeadEnds:
         self, obs: Observation, pose: Pose, goal: float, distance: float, scene: Scene,
         period: float,
     ) -> Detour:  # fmt: skip
-        """Return what a dead end changes now.
+        """Return the changes to this step that lead out of a dead end.
 
         Args:
             obs: of this step.
