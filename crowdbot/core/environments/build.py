@@ -27,7 +27,7 @@ def build_environment(registry: Registry, spec: EnvironmentSpec) -> EnvironmentP
 
 
 def checked_parts(parts: object) -> EnvironmentParts:
-    """The parts of an environment, if their tables are sound and fit each other.
+    """Return the parts of an environment after checking that their tables are consistent.
 
     Raises:
         PluginError: they are not.

@@ -22,7 +22,7 @@ from crowdbot.core.types.motion import Command
 
 
 class ToolFile(Protocol):
-    """Takes messages, such as a recording."""
+    """Protocol of a file that takes messages, such as a recording."""
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
         """Take a message, logged at ``ns`` nanoseconds of simulated time."""

@@ -40,9 +40,9 @@ class RunLog:
         Args:
             writer: writer of the recording.
             agent_id: (N,) numbers of the people.
-            sideways: whether the robot's velocity may point elsewhere than it looks.
-            people: whether people and their trips are recorded, or only contacts with them: those
-                of a fleet are recorded once for all robots.
+            sideways: True if the robot's velocity may differ from its heading.
+            people: True to record people and their trips, False to record only contacts with them:
+                people near a fleet are recorded once for all robots.
             robot: its number among those of the crowd's state; None records no contacts.
             aim: column of the crowd's state where the point begins to which people walk.
             watchers: see each sample, too.

@@ -56,7 +56,7 @@ class Plugin:
         return listed.data_digest if isinstance(listed, ComponentList) else ""
 
     def import_components(self) -> None:
-        """Import all that the plugin names as text; `failure` then says what cannot be had."""
+        """Import all components that the plugin names as text; errors are in `failure`."""
         len(self.components)
 
     @property

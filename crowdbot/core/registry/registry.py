@@ -102,7 +102,7 @@ class Registry:
         return ""
 
     def import_components(self) -> None:
-        """Import all that plugins name as text; `Plugin.failure` then says what cannot be had."""
+        """Import all components that plugins name as text; errors are in `Plugin.failure`."""
         for plugin in self.plugins:
             plugin.import_components()
 

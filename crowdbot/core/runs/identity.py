@@ -221,7 +221,7 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> RunReco
     Args:
         request: what is wanted.
         run_id: of the run that is wanted.
-        compared: whether it must have calibration runs.
+        compared: True if it must have calibration runs.
     """
     place = request.directory
     if not place.is_dir():

@@ -36,7 +36,7 @@ class Run:
     Attributes:
         directory: where its files are.
         record: what ``run.json`` says; `RunRecord.document` is the same as plain values.
-        reused: whether the run had been made before.
+        reused: True if the run had been made before.
         replaced: how an earlier run in the same folder, which this one has replaced, was
             recorded differently; empty if there was none, or it was recorded in the same way.
     """

@@ -1,4 +1,4 @@
-"""The folder in which numba keeps compiled functions, and the test of whether they are stale."""
+"""The folder in which numba keeps compiled functions, and the test if they are stale."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Constructors of trajectories from what others recorded: tables, frames, bags, data sets.
+"""Constructors of trajectories from external data: tables, frames, bags, data sets.
 
-They all derive what is left out, and warn of what cannot be, such as positions in millimetres.
+They derive missing data and warn of implausible data, such as positions in millimetres.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ class SensorInfo:
         sees: True if ``read`` uses the scene's people; otherwise they may be out of date.
         feels: True if ``read`` uses the scene's ``push``; otherwise it may be out of date.
         memory: number of float64 the sensor keeps between readings (0: none).
-        random: whether ``read`` draws from ``rng``; if not, it must leave it alone.
+        random: True if ``read`` draws from ``rng``; otherwise it must not use it.
         camera: of a sensor whose readings are images. They are a pure function of what is seen
             at their instant and are kept out of the simulation's state; such a sensor has no
             memory.
@@ -74,7 +74,7 @@ class SensorInfo:
             none where they are not known. Of an IMU: of angular rates (rad/s) and of specific
             force (m/s^2). Of odometry: of the distance between two readings as a part of it, of
             the turn on each metre (rad/m), of the turn in a second (rad/sqrt(s)).
-        privileged: whether readings tell what no sensor of a real robot could; only planners
+        privileged: True if readings contain what no real sensor could measure; only planners
             that say that they are privileged may read them.
         message: of a sensor whose ``ros_type`` crowdbot has no encoder for; without it its
             readings are recorded as ``std_msgs/msg/Float64MultiArray``.

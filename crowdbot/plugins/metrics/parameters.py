@@ -105,7 +105,7 @@ Compliance = Annotated[
     NonNegativeLength, Field(default=0.5, description="A larger gap complies, m.")
 ]
 SamplePeriod = Annotated[
-    PositiveDuration, Field(default=0.15, description="Commands are looked at so often, s.")
+    PositiveDuration, Field(default=0.15, description="Period at which commands are compared, s.")
 ]
 StillSpeed = Annotated[
     NonNegativeSpeed, Field(default=1e-3, description="A slower robot does not drive, m/s.")

@@ -19,9 +19,9 @@ REACH = 6.0
 LEGS = 0.4
 #: Apparent motion below this is sampling noise, m/s.
 _STILL = 0.3
-#: People who walk within this distance are what the robot waits for, m.
+#: The robot waits for people who walk within this distance, m.
 _NEARBY = 4.0
-#: Faster people walk (m/s); so long (s) and such a share of those nearby make it a flow.
+#: Least speed of a walker (m/s); time (s) and share of walkers nearby that make a flow.
 _WALKS, _SETTLES, _MOST = 0.5, 1.0, 0.4
 
 
@@ -30,14 +30,14 @@ class Scene:
 
     Args:
         spec: of the planner.
-        splits: whether `stands` and `walkers` are told apart, which manoeuvres need.
+        splits: True if `stands` and `walkers` are separated, which manoeuvres need.
 
     Attributes:
         around: other points (K, 2), people (N, 2) and their velocities (N, 2), base frame; while
             people walk only what stands is kept current.
         stands: (K, 2) points without the legs of people who walk, base frame, m.
         walkers: (N, 4) places and velocities of people who walk, base frame.
-        walking: whether most people nearby walk.
+        walking: True if most people nearby walk.
     """
 
     def __init__(self, spec: DwaSpec, *, splits: bool) -> None:
@@ -83,7 +83,7 @@ class Scene:
         return points, velocities
 
     def _note_flow(self, rest: Array, people: Array, going: Array, period: float) -> None:
-        """Note whether those nearby walk; while they do, keep for the map only what stands.
+        """Update `walking`; while people walk, keep for the map only what stands.
 
         Legs that are paired now one way, now another, seem to move: one step proves nothing.
         """

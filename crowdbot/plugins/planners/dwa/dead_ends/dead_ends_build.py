@@ -53,7 +53,7 @@ class DeadEnds:
         spec: of the planner.
         half_width: of the robot, m.
         reach: radius of the disc that holds it, m.
-        outlined: whether its outline is a polygon or capsule.
+        outlined: True if its outline is a polygon or capsule.
         manoeuvring: of a long robot, which does not fit in every heading.
     """
 
