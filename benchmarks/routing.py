@@ -35,8 +35,8 @@ from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.core.sim.built_run import build_run
-from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.built_run import build_runs
+from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.dsl.scenario.scenario import Scenario
 
@@ -218,7 +218,7 @@ def run(world: str | int, seconds: float) -> None:
             stop=lambda: False,
             on_hang=None,
         )
-        record_robot(setup, build_run(scenario, registry(), choice, "used"))
+        record_robots(setup, build_runs(scenario, registry(), choice, "used"))
 
 
 def _timed(scenario: Scenario, seconds: float) -> Scenario:

@@ -24,7 +24,7 @@ from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import build_run
-from crowdbot.core.sim.record_all import record_all
+from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.run_setup import RunSetup
 
 _DOCUMENT = """\
@@ -76,7 +76,7 @@ def simulate(text: str, registry: Registry, seed: int = 0) -> tuple[Any, float, 
         robots = tuple(scenario.robots)
         builts = {n: build_run(scenario, registry, choice, "none", n) for n in robots}
         begin = time.process_time()
-        outcome = record_all(setup, builts)
+        outcome = record_robots(setup, builts)
         cost = time.process_time() - begin
         path = Path(folder) / "run.mcap"
         with Recording(path) as recording:

@@ -42,13 +42,13 @@ from crowdbot.core.robots.task import robot_task
 from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population
-from crowdbot.core.sim.built_run import build_run
+from crowdbot.core.sim.built_run import build_runs
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.metric_logger import MetricLogger
 from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.plant import add_plant, place_robot
-from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.rendering import check_egl
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.core.sim.run_setup import RunSetup
@@ -112,7 +112,8 @@ def whole(case: Case) -> float:
             stop=lambda: False,
             on_hang=None,
         )
-        outcome = record_robot(setup, build_run(world, registry(), choice, case.record))
+        builts = build_runs(world, registry(), choice, case.record)
+        outcome = record_robots(setup, builts)
     return 1e3 * outcome.cpu_time / outcome.sim_time
 
 

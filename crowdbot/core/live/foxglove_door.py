@@ -12,6 +12,7 @@ from typing import Any, cast
 from crowdbot.core.live.commands import twist
 from crowdbot.core.live.foxglove_parameters import parameters, set_parameters
 from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.robot_topics import robot_topic
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
@@ -25,12 +26,12 @@ from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 
 COMMAND = "/cmd_vel"
-#: Topics for viewers that planners do not see.
+#: What a spectator sees and a planner does not: people, and where each robot really is.
 SEEN = (
     Offer(str(Topic.PEOPLE_MARKER), MARKER),
     Offer(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
-    Offer(str(Topic.POSE), "geometry_msgs/msg/PoseStamped"),
 )
+_POSE = "geometry_msgs/msg/PoseStamped"
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
@@ -60,6 +61,7 @@ class FoxgloveDoor:
         self._people: PeopleMessages | None = None
         self._arrows: PeopleArrows | None = None
         self._pose = template.pose_stamped("map")
+        self._poses: dict[str, str] = {}  # topic -> robot
         self._context = foxglove.Context()
         self._channels: dict[str, Any] = {}
         self._latest: dict[str, LiveMessage] = {}
@@ -91,19 +93,22 @@ class FoxgloveDoor:
 
     # ---------------------------------------------------------------- the simulation's thread
     def open(self, offers: Sequence[Offer]) -> None:
-        """Start a run that offers these topics."""
-        from foxglove import Channel, Schema
-
+        """A run begins that offers these topics."""
         with self._lock:
             self._latest.clear()
-        for offer in (*offers, *SEEN):
+        self._make_channels((*offers, *SEEN))
+        self._server.publish_parameter_values(parameters(self._session))
+
+    def _make_channels(self, offers: Sequence[Offer]) -> None:
+        from foxglove import Channel, Schema
+
+        for offer in offers:
             if offer.topic not in self._channels:
                 kind, text = offer.msgtype, ros.definition(offer.msgtype)
                 schema = Schema(name=kind, encoding="ros2msg", data=text)
                 self._channels[offer.topic] = Channel(
                     offer.topic, message_encoding="cdr", schema=schema, context=self._context
                 )
-        self._server.publish_parameter_values(parameters(self._session))
 
     def wants(self, topic: str) -> bool:
         """Return True if a client views a topic."""
@@ -122,30 +127,28 @@ class FoxgloveDoor:
         if messages:
             self._server.broadcast_time(max(m.ns for m in messages))
 
-    def begin(self, header: RecordingHeader) -> None:
-        """Start a run whose people are shown, as for a watcher."""
-        agents = header.agents
+    def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
+        """A run begins whose robots and people are shown, as a watcher shows them."""
+        agents = shared.agents
+        self._poses = {robot_topic(str(Topic.POSE), name, robots): name for name in robots}
+        self._make_channels([Offer(topic, _POSE) for topic in self._poses])
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
 
-    def sample(self, t: float, robot: Sequence[float] | None, agents: Array | None) -> None:
-        """Show the ground truth to viewers: people, and the robot's true pose."""
+    def sample(self, t: float, robots: Mapping[str, Sequence[float]], agents: Array | None) -> None:
+        """Show the truth to those who look: people, and where the robots really are."""
         ns = self._epoch + ros.nanoseconds(t)
+        for topic, name in self._poses.items():
+            if name in robots and self.wants(topic):
+                x, y, yaw = robots[name][:3]
+                data = self._pose.fill(template.stamp(ns), template.two(x, y), template.turn(yaw))
+                self._channels[topic].log(data, log_time=ns)
         for offer in SEEN:
-            if not self.wants(offer.topic):
-                continue
-            data = self._seen(offer.topic, ns, robot, agents)
-            if data is not None:
-                self._channels[offer.topic].log(data, log_time=ns)
+            seen = self._people_seen(offer.topic, ns, agents) if self.wants(offer.topic) else None
+            if seen is not None:
+                self._channels[offer.topic].log(seen, log_time=ns)
 
-    def _seen(
-        self, topic: str, ns: int, robot: Sequence[float] | None, agents: Array | None
-    ) -> bytes | None:
-        if topic == Topic.POSE:
-            if robot is None:
-                return None
-            x, y, yaw = robot[:3]
-            return self._pose.fill(template.stamp(ns), template.two(x, y), template.turn(yaw))
+    def _people_seen(self, topic: str, ns: int, agents: Array | None) -> bytes | None:
         if agents is None or self._people is None or self._arrows is None:
             return None
         if topic == Topic.PEOPLE_MARKERS:

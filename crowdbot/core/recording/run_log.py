@@ -6,14 +6,13 @@ The recording defines the run: scores, replay and hashes are computed from its c
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
-from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.support.compile import kernel
 from crowdbot.core.types.arrays import Array
@@ -33,7 +32,7 @@ class RunLog:
         people: bool = True,
         robot: int | None = 0,
         aim: int = s.GOAL_X,
-        watchers: Sequence[Watcher] = (),
+        on_sample: Callable[[float, Sequence[float] | None, Array | None], None] | None = None,
     ) -> None:
         """Start a log.
 
@@ -45,9 +44,9 @@ class RunLog:
                 people near a fleet are recorded once for all robots.
             robot: its number among those of the crowd's state; None records no contacts.
             aim: column of the crowd's state where the point begins to which people walk.
-            watchers: see each sample, too.
+            on_sample: is given each sample, too: time, the robot's row, people.
         """
-        self._watchers = watchers
+        self._on_sample = on_sample
         self.writer = writer
         self._sideways, self._keeps_people, self._robot = sideways, people, robot
         self._id = agent_id
@@ -72,8 +71,8 @@ class RunLog:
             _take_sample(people, self._aim, self._jumps, agents, goals, jump)
         row = None if robot is None else self._row(robot)
         self.writer.state(t, row, agents, jump, goals=goals)
-        for watcher in self._watchers:
-            watcher.sample(t, row, agents)
+        if self._on_sample is not None:
+            self._on_sample(t, row, agents)
 
     def has_recorded(self, events: Array) -> bool:
         """Return True if all trips and contacts that have ended are recorded.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from crowdbot.core.recording.header import RecordingHeader
@@ -12,16 +12,21 @@ from crowdbot.core.types.arrays import Array
 class Watcher(Protocol):
     """Gets the ground truth, like a recording; it cannot affect the run."""
 
-    def begin(self, header: RecordingHeader) -> None:
-        """Start a run; its header has walls, goal, robot and people."""
+    def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
+        """A run begins.
+
+        Args:
+            shared: has walls and people.
+            robots: by name; each has its robot, sensors and goal.
+        """
         ...
 
-    def sample(self, t: float, robot: Sequence[float] | None, agents: Array | None) -> None:
-        """Show one sample of the log.
+    def sample(self, t: float, robots: Mapping[str, Sequence[float]], agents: Array | None) -> None:
+        """One sample of the log.
 
         Args:
             t: time, s.
-            robot: x, y, yaw, v, w; m, rad, m/s, rad/s.
-            agents: (4, M) x, y, vx, vy; NaN if absent. It must not be changed.
+            robots: x, y, yaw, v, w of each that is there; m, rad, m/s, rad/s.
+            agents: (4, M) x, y, vx, vy; NaN where somebody is absent. It must not be changed.
         """
         ...

@@ -27,7 +27,7 @@ from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
-from crowdbot.core.sim.fate import Fate
+from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
@@ -51,7 +51,7 @@ class CrowdSystem(LeafSystem):
         engine: CrowdEngine,
         models: Sequence[RobotModel],
         pushes: Sequence[Push],
-        fates: Sequence[Fate],
+        endings: Sequence[RobotEnding],
         margin: float,
         tick: float = TICK,
     ) -> None:
@@ -59,12 +59,12 @@ class CrowdSystem(LeafSystem):
 
         Args:
             pushes: how the force on each robot is written.
-            fates: which robots have left.
+            endings: which robots have left.
             margin: how much larger than its body people take a robot for, m.
             tick: s.
         """
         super().__init__()
-        self.engine, self._pushes, self._fates = engine, tuple(pushes), tuple(fates)
+        self.engine, self._pushes, self._endings = engine, tuple(pushes), tuple(endings)
         self._tick, count = tick, len(models)
         self._rows, self._outlines = rows_of(models, margin), outlines_of(models)
         body = engine.world.stiffness
@@ -110,7 +110,7 @@ class CrowdSystem(LeafSystem):
     def _take_out(self, crowd: Array) -> None:
         """Let robots that have left since the last tick feel nothing any more."""
         for k in self._here.tolist():
-            if self._fates[k].gone:
+            if self._endings[k].gone:
                 felt, _ = s.contact_with(crowd, k)
                 felt[[s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE]] = 0.0
                 self._here = self._here[self._here != k]
@@ -146,7 +146,7 @@ def add_crowd(
     builts: Sequence[BuiltRun],
     robots: Sequence[ControlledRobot],
     engine: CrowdEngine | None,
-    fates: Sequence[Fate],
+    endings: Sequence[RobotEnding],
     tick: float = TICK,
 ) -> CrowdSystem | None:
     """Add the people, if there are any, to a diagram; their forces are connected elsewhere."""
@@ -154,7 +154,7 @@ def add_crowd(
         return None
     spec, models = builts[0].scenario.crowd, [built.model for built in builts]
     margin = spec.robot_response.margin if spec else 0.0
-    crowd = CrowdSystem(engine, models, [r.push for r in robots], fates, margin, tick)
+    crowd = CrowdSystem(engine, models, [r.push for r in robots], endings, margin, tick)
     builder.AddNamedSystem("crowd", crowd)
     for k, robot in enumerate(robots):
         builder.Connect(robot.port, crowd.GetInputPort(ports.of_robot(ports.ROBOT_STATE, k)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from pydrake.geometry import (
@@ -33,7 +33,7 @@ _RIM = 24
 
 
 class MeshcatView:
-    """A watcher that shows walls, goal, people and robot.
+    """Watches runs and shows walls, people, and the robots with their goals.
 
     Attributes:
         url: address for a browser.
@@ -53,30 +53,40 @@ class MeshcatView:
             raise InputError(f"--meshcat {port}: that port cannot be had") from error
         self.url = str(self._meshcat.web_url())
         self._shown: set[int] = set()
+        self._robots: set[str] = set()
 
-    def begin(self, header: RecordingHeader) -> None:
-        """Show static objects, and remove those of an earlier run."""
+    def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
+        """Show what does not move; what was shown before is gone."""
         show = self._meshcat
         show.Delete("crowdbot")
-        for k, row in enumerate(() if header.walls is None else header.walls.tolist()):
+        for k, row in enumerate(() if shared.walls is None else shared.walls.tolist()):
             _wall(show, f"crowdbot/walls/{k}", row)
-        if header.goal_zone is not None and len(header.goal_zone):
-            show.SetObject("crowdbot/goal", _prism(header.goal_zone, 0.0, _FLOOR), _GOAL)
-        if header.robot is not None:
-            _robot(show, header.robot)
-        if header.agents is not None:
-            _people(show, header.agents)
-            self._shown = set(range(len(header.agents.id)))
+        for name, header in robots.items():
+            if header.goal_zone is not None and len(header.goal_zone):
+                goal = _prism(header.goal_zone, 0.0, _FLOOR)
+                show.SetObject(f"crowdbot/goals/{name}", goal, _GOAL)
+            if header.robot is not None:
+                _robot(show, f"crowdbot/robots/{name}", header.robot)
+        self._robots = set(robots)
+        if shared.agents is not None:
+            _people(show, shared.agents)
+            self._shown = set(range(len(shared.agents.id)))
         show.SetCameraPose(np.array([-4.0, 0.0, 9.0]), np.array([6.0, 0.0, 0.0]))
 
-    def sample(self, t: float, robot: Sequence[float] | None, agents: Array | None) -> None:
-        """Move people and robot; absent people are hidden."""
+    def sample(self, t: float, robots: Mapping[str, Sequence[float]], agents: Array | None) -> None:
+        """Move robots and people; those that are absent are hidden."""
         show = self._meshcat
         show.SetSimulationTime(t)
-        if robot is not None:
-            show.SetTransform("crowdbot/robot", _placed(*robot[:3]))
-        if agents is None:
-            return
+        for name in sorted(self._robots ^ set(robots)):
+            show.SetProperty(f"crowdbot/robots/{name}", "visible", name in robots)
+        self._robots = set(robots)
+        for name, row in robots.items():
+            show.SetTransform(f"crowdbot/robots/{name}", _placed(*row[:3]))
+        if agents is not None:
+            self._move_people(agents)
+
+    def _move_people(self, agents: Array) -> None:
+        show = self._meshcat
         there = set(np.flatnonzero(np.isfinite(agents[0])).tolist())
         for k in sorted(self._shown ^ there):
             show.SetProperty(f"crowdbot/people/{k}", "visible", k in there)
@@ -98,14 +108,14 @@ def _wall(show: Meshcat, path: str, ends: Sequence[float]) -> None:
     show.SetTransform(path, middle)
 
 
-def _robot(show: Meshcat, robot: RobotHeader) -> None:
+def _robot(show: Meshcat, path: str, robot: RobotHeader) -> None:
     angle = np.linspace(0.0, 2.0 * math.pi, _RIM, endpoint=False)
     circle = robot.radius * np.column_stack((np.cos(angle), np.sin(angle)))
     outline = circle if robot.footprint is None else robot.footprint
-    show.SetObject("crowdbot/robot/body", _prism(outline, 0.05, _ROBOT_HEIGHT), _ROBOT)
+    show.SetObject(f"{path}/body", _prism(outline, 0.05, _ROBOT_HEIGHT), _ROBOT)
     front = float(np.max(outline[:, 0]))
-    show.SetObject("crowdbot/robot/front", Box(0.1, 0.08, 0.08), _NOSE)
-    show.SetTransform("crowdbot/robot/front", _placed(front, 0.0, 0.0, _ROBOT_HEIGHT))
+    show.SetObject(f"{path}/front", Box(0.1, 0.08, 0.08), _NOSE)
+    show.SetTransform(f"{path}/front", _placed(front, 0.0, 0.0, _ROBOT_HEIGHT))
 
 
 def _people(show: Meshcat, people: AgentsHeader) -> None:

@@ -6,7 +6,6 @@ A publish event at tick k sees the state at k, before any update of that tick.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 from pydrake.common.value import Value
 from pydrake.multibody.plant import ContactResults
@@ -26,12 +25,11 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.clearance_cache import ClearanceCache
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.fate import Fate
+from crowdbot.core.sim.other_robots import OtherRobots
 from crowdbot.core.sim.wall_contact import WallContacts, wall_force
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
-from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.robot import RobotState
 from crowdbot.core.types.task import Task
 
@@ -42,12 +40,12 @@ LEANS = math.radians(60.0)
 
 
 class MetricLogger(LeafSystem):
-    """Inputs: robot state, crowd state, forces. Ends the run: arrived, toppled, out of time.
+    """Inputs: robot state, crowd state, forces. Ends its robot: arrived, toppled, out of time.
+
+    With the last robot of a run the run ends.
 
     Attributes:
         walls: contacts of the robot with walls.
-        goal_time: time of arrival, s, or None.
-        toppled_time: time of toppling, s, or None.
     """
 
     __slots__ = NO_ATTRIBUTES
@@ -61,15 +59,15 @@ class MetricLogger(LeafSystem):
         rate: float,
         *,
         felt: bool,
-        fate: Fate | None = None,
-        on_end: Callable[[], None] = lambda: None,
+        others: OtherRobots,
     ) -> None:
         """Monitor one robot.
 
         Args:
-            felt: True if forces act on the robot's base.
-            fate: ending of a fleet's robot, which does not end the run.
-            on_end: callback at its end.
+            crowd: the people, if there are any.
+            rate: of the log, Hz.
+            felt: True if the robot's base is one that forces act on.
+            others: the other robots, and the ending of this one.
         """
         super().__init__()
         self._log, self._task, self.walls = log, task, walls
@@ -77,9 +75,7 @@ class MetricLogger(LeafSystem):
         self._last_tick = -1
         self._before: Array | None = None  # the robot's state one tick ago
         self._clearance = ClearanceCache()
-        self.goal_time: float | None = None
-        self.toppled_time: float | None = None
-        self._fate, self._on_end = fate, on_end
+        self._ending, self._others, self._finished = others.ending, others, False
         self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
         self._crowd = self._events = None
         if crowd is not None:
@@ -98,13 +94,14 @@ class MetricLogger(LeafSystem):
         if tick == self._last_tick:  # Initialize and the first step may both publish t = 0
             return None
         self._last_tick = tick
-        if self._fate is not None and self._fate.ended:
+        ending = self._ending
+        if ending.ended:
             return None
         t = tick * TICK
         now, before = self._robot.Eval(context), self._before
         self._before = now
-        if self.toppled_time is None and now.item(_TILT) > LEANS:
-            self.toppled_time = t
+        if ending.toppled_time is None and now.item(_TILT) > LEANS:
+            ending.toppled_time = t
         sampled = tick % self._ticks_per_sample == 0
         crowd = self._crowd_state(context, always=sampled)
         if crowd is not None:
@@ -116,10 +113,13 @@ class MetricLogger(LeafSystem):
             self._log.sample(t, RobotState(*now.tolist()), crowd)
         if arrived:
             return self._end(context, t, ARRIVED, "centre inside the goal zone")
-        if self._fate is not None and self._fate.failure:
-            return self._end(context, t, PLANNER_FAILED, self._fate.failure)
-        if self.toppled_time is not None or t >= self._task.time_limit:
-            return self._end(context, t, *self.fate_without_arrival())
+        if ending.failure:
+            return self._end(context, t, PLANNER_FAILED, ending.failure)
+        if ending.toppled_time is not None:
+            return self._end(context, t, TOPPLED, f"toppled at {ending.toppled_time:.1f} s")
+        if t >= self._task.time_limit:
+            reason = f"time limit of {self._task.time_limit:g} s"
+            return self._end(context, t, TIMEOUT, reason)
         return None
 
     def _feel(self, context: Context, _values: DiscreteValues | None = None) -> None:
@@ -131,26 +131,23 @@ class MetricLogger(LeafSystem):
         if self._forces is not None and self.walls.near:
             self.walls.feel(wall_force(self._forces.Eval(context)))
 
-    def fate_without_arrival(self) -> tuple[Ending, str]:
-        """Return status and reason of a robot that has not arrived, if its planner did not fail."""
-        if self.toppled_time is not None:
-            return TOPPLED, f"toppled at {self.toppled_time:.1f} s"
-        return TIMEOUT, f"time limit of {self._task.time_limit:g} s"
-
     def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
-        """End the robot, and the run unless it is a fleet's."""
+        """The robot has ended; if it was the last one, the run ends, which is then finished."""
         self._feel(context)  # there is no further step
-        if self._fate is None:
+        self._ending.end(status, reason, t)
+        if all(other.ended for other in self._others.endings):
             return EventStatus.ReachedTermination(self, reason)
-        self._fate.end(status, reason, t, self.goal_time, self.toppled_time)
         self.finish(context, t)
         return None
 
     def finish(self, context: Context, t: float) -> None:
-        """Record active contacts at the end; ``context`` is this system's own."""
+        """Record what is still going on, once; ``context`` is this system's own."""
+        if self._finished:
+            return
+        self._finished = True
         self.walls.finish()
         self._log.finish(t, None if self._crowd is None else self._crowd.Eval(context))
-        self._on_end()
+        self._others.end_contacts()
 
     def _crowd_state(self, context: Context, *, always: bool) -> Array | None:
         """Return the crowd if there is something to log, since every access copies it."""
@@ -171,10 +168,11 @@ class MetricLogger(LeafSystem):
         zone = self._task.goal_zone
         distance = distance_to(zone, robot.x, robot.y)
         self._clearance.reset(robot.x, robot.y, min(free, distance - _ROUNDING))
-        if self.toppled_time is not None or distance > 0.0 or not inside(zone, robot.x, robot.y):
+        toppled = self._ending.toppled_time is not None
+        if toppled or distance > 0.0 or not inside(zone, robot.x, robot.y):
             return False
         fraction = entry_fraction(zone, was.x, was.y, robot.x, robot.y) if t > 0.0 else 1.0
-        self.goal_time = t - (1.0 - fraction) * TICK
+        self._ending.goal_time = t - (1.0 - fraction) * TICK
         return True
 
 
@@ -184,10 +182,9 @@ def add_metric_logger(
     robot: ControlledRobot,
     crowd: CrowdSystem | None,
     log: RunLog,
-    fate: Fate | None = None,
-    on_end: Callable[[], None] = lambda: None,
+    others: OtherRobots,
 ) -> MetricLogger:
-    """Add the task monitor and sampler to a diagram."""
+    """Add what watches the task and takes samples to a diagram."""
     logger = MetricLogger(
         log,
         built.task,
@@ -195,8 +192,7 @@ def add_metric_logger(
         crowd,
         built.scenario.rates.log,
         felt=robot.rig is not None,
-        fate=fate,
-        on_end=on_end,
+        others=others,
     )
     builder.AddNamedSystem("metric_logger", logger)
     builder.Connect(robot.port, logger.GetInputPort(ports.ROBOT_STATE))

@@ -19,7 +19,6 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
-from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
@@ -28,16 +27,15 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.fate import Fate
+from crowdbot.core.sim.other_robots import OtherRobots
 from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
-from crowdbot.core.types.robot import RobotLimits, RobotState
+from crowdbot.core.types.robot import RobotLimits, RobotModel, RobotState
 from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerError
 
@@ -47,8 +45,8 @@ class People:
     """All people who may be met, with number and radius, including those not present yet.
 
     Attributes:
-        robots: (R,) reach of a fleet's other robots, m; they are listed as people with the numbers
-            -2, -3, ….
+        robots: (R,) how far the other robots reach, m; they stand among the people,
+            numbered -2, -3, ….
     """
 
     id: NDArray[np.int64]
@@ -110,11 +108,14 @@ class PlannerSystem(LeafSystem):
         on_signal: Callable[[float, str, float], None],
         people: People | None = None,
         crowd_size: int = 0,
-        fates: Sequence[Fate] = (),
+        others: OtherRobots,
     ) -> None:
-        """Build the system. ``people``: for a privileged planner; None hides the truth.
+        """Take a planner.
 
-        ``fates``: endings of the robot and of all others, in a fleet.
+        Args:
+            people: who they are, for a planner that may know; None hides the truth.
+            crowd_size: length of their state.
+            others: the other robots, and the ending of this one.
         """
         super().__init__()
         self._host, self._desire, self._task = host, robot.desire, task
@@ -135,9 +136,9 @@ class PlannerSystem(LeafSystem):
             self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
             if crowd_size:
                 self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
-        self._fates = tuple(fates)
-        others = range(0 if people is None else len(people.robots))
-        self._others = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in others]
+        self._ending, self._others = others.ending, others
+        known = range(0 if people is None else len(others.states))
+        self._states = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in known]
         command = self.DeclareDiscreteState(ports.COMMAND_SIZE)
         desired = self.DeclareDiscreteState(robot.desired_size)
         self.DeclareStateOutputPort(ports.COMMAND, command)
@@ -150,7 +151,7 @@ class PlannerSystem(LeafSystem):
         tick, v, w, vy, slewed_v, slewed_w, slewed_vy = state.tolist()
         since = int(tick) % self._ticks
         due = since == 0
-        if self._fates and (self._fates[0].ended or self._fates[0].failure):
+        if self._ending.ended or self._ending.failure:
             due, v, w, vy = False, 0.0, 0.0, 0.0
         if since == self._timeout:  # without commands, the driver stops the robot
             v = w = vy = 0.0
@@ -166,17 +167,25 @@ class PlannerSystem(LeafSystem):
         values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w, slewed_vy)
 
     def _ask(self, context: Context, t: float) -> Command:
-        """Return the planner's command; a failure in a fleet ends only its own robot."""
+        """The planner's command; one that fails ends its robot, and with the only one the run."""
         seen = self._observe(self._port.Eval(context), t, self._truth(context))
         try:
             hosted = self._host.step(seen)
         except PlannerError as error:
-            if not self._fates:
+            self._ending.failure = str(error)
+            if not self._others.endings:
                 raise
-            self._fates[0].failure = str(error)
             return STOP
         self._on_step(t, hosted)
         return hosted.command
+
+    def observation(self, root: Context) -> Observation | None:
+        """What the planner sees at the present step, on demand; None if the robot has ended."""
+        if self._ending.ended or self._ending.failure:
+            return None
+        context = self.GetMyContextFromRoot(root)
+        t = context.get_discrete_state(self._command).value().item(0) * TICK
+        return self._observe(self._port.Eval(context), t, self._truth(context))
 
     def _truth(self, context: Context) -> Truth | None:
         """Return the ground truth, if the planner is privileged."""
@@ -185,8 +194,8 @@ class PlannerSystem(LeafSystem):
         robot = RobotState(*self._robot.Eval(context).tolist())
         crowd = np.zeros(0) if self._crowd is None else self._crowd.Eval(context)
         others = [
-            None if fate.gone else RobotState(*port.Eval(context).tolist())
-            for fate, port in zip(self._fates[1:], self._others, strict=False)
+            None if ending.gone else RobotState(*port.Eval(context).tolist())
+            for ending, port in zip(self._others.endings, self._states, strict=True)
         ]
         return self._people.truth(robot, crowd, others)
 
@@ -237,24 +246,19 @@ def add_planner(
     bank: SensorBank,
     host: PlannerHost,
     log: RunLog,
+    others: OtherRobots,
     *,
     privileged: bool,
-    company: Company | None = None,
 ) -> PlannerSystem:
-    """Add the planner to a diagram, between the readings and the robot's desired state.
-
-    Args:
-        company: the rest of a fleet.
-    """
-    others = () if company is None else company.others
+    """Add the planner to a diagram, between the readings and the robot's desired state."""
     planner = PlannerSystem(
         host, bank, robot, built.model.limits, built.task,
         rate=built.scenario.rates.planner, visible=dict.fromkeys(built.visible),
         on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
         on_signal=log.writer.signal,
-        people=_people(None if crowd is None else crowd.engine, others) if privileged else None,
+        people=_people(crowd, others.models) if privileged else None,
         crowd_size=0 if crowd is None else crowd.state.size(),
-        fates=() if company is None else company.fates,
+        others=others,
     )  # fmt: skip
     builder.AddNamedSystem("planner", planner)
     builder.Connect(bank.GetOutputPort(ports.READINGS), planner.GetInputPort(ports.READINGS))
@@ -263,13 +267,13 @@ def add_planner(
         builder.Connect(robot.port, planner.GetInputPort(ports.ROBOT_STATE))
         if crowd is not None:
             builder.Connect(crowd.state, planner.GetInputPort(ports.CROWD_STATE))
-        for k, other in enumerate(others):
-            builder.Connect(other.port, planner.GetInputPort(ports.other_robot(k)[0]))
+        for k, state in enumerate(others.states):
+            builder.Connect(state, planner.GetInputPort(ports.other_robot(k)[0]))
     return planner
 
 
-def _people(engine: CrowdEngine | None, others: Sequence[Companion]) -> People:
-    reach = np.array([footprint_of_model(other.model).reach for other in others])
-    if engine is None:
+def _people(crowd: CrowdSystem | None, others: Sequence[RobotModel]) -> People:
+    reach = np.array([footprint_of_model(model).reach for model in others])
+    if crowd is None:
         return People(np.zeros(0, np.int64), np.zeros(0), reach)
-    return People(engine.agents.id, engine.agents.radius, reach)
+    return People(crowd.engine.agents.id, crowd.engine.agents.radius, reach)

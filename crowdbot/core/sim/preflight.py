@@ -5,7 +5,6 @@ from __future__ import annotations
 from crowdbot.core.planning.fleet_choice import check_robots
 from crowdbot.core.runs.run import Request
 from crowdbot.core.sim.built_run import BuiltRun, build_runs
-from crowdbot.errors import InputError
 
 
 def preflight(request: Request) -> dict[str, BuiltRun]:
@@ -19,10 +18,6 @@ def preflight(request: Request) -> dict[str, BuiltRun]:
     """
     robots = tuple(request.scenario.robots)
     check_robots(request.choice, robots)
-    if len(robots) > 1 and request.watchers:
-        raise InputError(
-            f"only a run of one robot can be watched; {request.scenario.id} has {len(robots)}"
-        )
     builts = build_runs(request.scenario, request.registry, request.choice, request.options.record)
     cameras = (info.camera for built in builts.values() for info in built.infos.values())
     if any(camera is not None and camera.colour for camera in cameras):

@@ -1,97 +1,92 @@
-"""Record one run of a robot to one file, with or without people."""
+"""Records one run of a scenario's robots into one file: among people, or alone."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import cast
+from functools import partial
+from typing import Any, cast
 
-from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.planning.choice import PlannerChoice
 from crowdbot.core.planning.host import RESET_LIMIT, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.planning.process.process_planner import ProcessPlanner
-from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.planning.watchdog import Watchdog
-from crowdbot.core.recording.header import RecordingHeader, RobotHeader
-from crowdbot.core.recording.run_log import RunLog
-from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.diagram import build_diagram
-from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, ids, recording
+from crowdbot.core.sim.diagram import Blocks, RunRobot, build_diagram
+from crowdbot.core.sim.robot_ending import RobotEnding
+from crowdbot.core.sim.run_logs import run_logs
+from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.runner import run
-from crowdbot.core.sim.start_pose_check import check_start
+from crowdbot.core.sim.start_pose_check import check_starts
 from crowdbot.core.support.compile_cache import compiled
-from crowdbot.core.types.robot import HolonomicDrive, RobotLimits
+from crowdbot.core.types.robot import RobotLimits
 from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
 
 
-def record_robot(setup: RunSetup, built: BuiltRun, host: PlannerHost | None = None) -> Outcome:
-    """Simulate the scenario's robot with the planner, and its people if any.
+def record_robots(
+    setup: RunSetup,
+    builts: Mapping[str, BuiltRun],
+    hosts: Mapping[str, PlannerHost] | None = None,
+    on_begin: Callable[[Callable[[], Mapping[str, Observation]]], None] | None = None,
+) -> Outcome:
+    """Simulate the scenario's robots, each with its planner; people too if there are any.
 
     Args:
-        setup: setup of the recording.
-        built: from `build_run`, of the same scenario; not reusable.
-        host: host of a planner that has been reset; None: the planner in ``setup``.
+        setup: what to record, and where.
+        builts: from `build_runs`, of all robots of the scenario; used up by this.
+        hosts: ask planners that have been reset, by robot; None builds those that ``setup`` chose.
+        on_begin: is given a function that returns what the planners of all robots that go on see
+            at the present step, to be called within a step.
 
     Raises:
-        InputError: the robot would start in a wall, an obstacle or a person.
-        PlannerHungError: a planner step never returned; the recording is closed anyway.
+        InputError: a robot would start in a wall, an obstacle, a person or another robot.
+        PlannerHungError: a planner step never returned; the recording is closed all the same.
     """
-    engine = build_crowd(built.scenario, setup.agents, built.parts, setup.registry)
-    check_start(built.parts, built.model, built.task.start, engine, built.name)
-    header = replace(header_of(built, engine), hashes=setup.hashes)
-    for watcher in setup.watchers:
-        watcher.begin(header)
-    with (
-        recording(setup, header, engine, description_of(setup, built)) as (writer, ending),
-        watchdog_of(setup) as watchdog,
-        contextlib.ExitStack() as stack,
-    ):
-        sideways = isinstance(built.model.drive, HolonomicDrive)
-        log = RunLog(
-            writer, ids(engine), sideways=sideways, watchers=setup.watchers, aim=aim_of(engine)
-        )
-        host = host or stack.enter_context(hosted(setup, built, watchdog))
+    first = next(iter(builts.values()))
+    engine = build_crowd(first.scenario, setup.agents, first.parts, setup.registry)
+    check_starts(builts, engine)
+    endings = {
+        name: RobotEnding(leaves=built.robot.task.when_ended == "leave")
+        for name, built in builts.items()
+    }
+    with run_logs(setup, builts, engine, endings) as logs, contextlib.ExitStack() as stack:
+        robots = [
+            RunRobot(
+                built=built,
+                host=hosts[name] if hosts else stack.enter_context(_hosted(setup, built)),
+                log=logs.robots[name],
+                ending=endings[name],
+                privileged=setup.choice.of(name).privileged,
+            )
+            for name, built in builts.items()
+        ]
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
-        blocks = build_diagram(
-            built, engine, host, log, seed=setup.seed, privileged=setup.choice.privileged
-        )
-        outcome = run(
-            blocks, built.task, log, stage=setup.stage, progress=setup.progress, stop=setup.stop
-        )
-        ending.append(outcome)
-    return outcome
+        blocks = build_diagram(robots, engine, logs.people, seed=setup.seed)
+        return run(
+            blocks, stage=setup.stage, progress=setup.progress, stop=setup.stop,
+            on_begin=lambda root: on_begin and on_begin(partial(_seen, blocks, root)),
+        )  # fmt: skip
 
 
-def header_of(built: BuiltRun, engine: CrowdEngine | None) -> RecordingHeader:
-    """Return the constants of a robot's run."""
-    model, task = built.model, built.task
-    return RecordingHeader(
-        scenario=built.scenario.id,
-        robot=RobotHeader(
-            radius=model.footprint_radius,
-            mass=model.mass,
-            goal=task.goal,
-            base_height=model.base_height,
-            limits=model.limits,
-            footprint=model.footprint,
-        ),
-        agents=agents(engine),
-        sensors=built.infos,
-        walls=built.parts.walls[built.parts.wall_heights[:, 0] < model.height],
-        goal_zone=task.goal_zone,
-    )
+def _seen(blocks: Blocks, root: Any) -> dict[str, Observation]:
+    """What the planners of the robots that go on see; ``root`` is the context of the diagram."""
+    found = {robot.given.built.name: robot.planner.observation(root) for robot in blocks.robots}
+    return {name: obs for name, obs in found.items() if obs is not None}
 
 
-def description_of(setup: RunSetup, built: BuiltRun) -> str:
-    """The robot's URDF, where it is recorded."""
-    return to_urdf(built.model, built.infos, built.name) if setup.options.record != "none" else ""
+@contextmanager
+def _hosted(setup: RunSetup, built: BuiltRun) -> Iterator[PlannerHost]:
+    """The planner of a robot, watched over."""
+    own = replace(setup, choice=setup.choice.of(built.name))
+    with watchdog_of(own) as watchdog, hosted(own, built, watchdog) as host:
+        yield host
 
 
 @contextmanager

@@ -1,9 +1,11 @@
 """Recorder: closes a chunk of the recording each simulated second.
 
-The blocks pass their rows to the writer themselves, at the tick to which they belong.
+The blocks hand their rows to the writers themselves, at the tick to which they belong.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 
@@ -18,16 +20,18 @@ class Recorder(LeafSystem):
 
     __slots__ = NO_ATTRIBUTES
 
-    def __init__(self, writer: RecordingWriter) -> None:
+    def __init__(self, writers: Sequence[RecordingWriter]) -> None:
+        """Take the writers of one file; the last one closes the chunk of all."""
         super().__init__()
-        self._writer = writer
+        self._writers = tuple(writers)
         self.DeclarePeriodicPublishEvent(_PERIOD, 0.0, self._publish)
 
     def _publish(self, context: Context) -> None:
         del context
-        self._writer.flush()
+        for writer in self._writers:
+            writer.flush()
 
 
-def add_recorder(builder: DiagramBuilder, writer: RecordingWriter) -> None:
-    """Add the recorder to a diagram; it needs no connections."""
-    builder.AddNamedSystem("recorder", Recorder(writer))
+def add_recorder(builder: DiagramBuilder, writers: Sequence[RecordingWriter]) -> None:
+    """Add the recorder to a diagram; nothing is connected to it."""
+    builder.AddNamedSystem("recorder", Recorder(writers))

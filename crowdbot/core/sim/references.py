@@ -60,11 +60,11 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
 
 
 def _record_alone(setup: RunSetup) -> Outcome:
-    """Run separately, without the memory of sensors and planner from the run with people."""
-    from crowdbot.core.sim.record_all import record_all  # imports Drake
+    """A run of its own: what sensors and planner remember is not that of the run with people."""
+    from crowdbot.core.sim.record import record_robots  # imports Drake
 
     builts = build_runs(setup.scenario, setup.registry, setup.choice, setup.options.record)
-    return record_all(setup, builts)
+    return record_robots(setup, builts)
 
 
 def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:

@@ -3,61 +3,88 @@
 from __future__ import annotations
 
 import atexit
+import math
 import queue
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 from crowdbot.core.planning.host import STOP, PlannerHost
-from crowdbot.core.planning.planner import Observation
+from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
 
+#: What the robots that go on see at one step of their planners, by name.
+Seen = Mapping[str, Observation]
+
 
 class Exchange:
-    """Passes observations out of the run's thread and commands into it."""
+    """Hands observations out of the run's thread and commands into it, for all robots at once."""
 
     def __init__(self) -> None:
-        self._out: queue.SimpleQueue[Observation | Outcome | BaseException] = queue.SimpleQueue()
-        self._in: queue.SimpleQueue[Command | None] = queue.SimpleQueue()
+        self._out: queue.SimpleQueue[Seen | Outcome | BaseException] = queue.SimpleQueue()
+        self._in: queue.SimpleQueue[Mapping[str, Command]] = queue.SimpleQueue()
+        self._look: Callable[[], Seen] = dict
+        self._t, self._commands = -math.inf, dict[str, Command]()
         self.closed = False
 
-    def reset(
-        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
-    ) -> None:
-        """Do nothing: the session's owner has this data already."""
+    def planner(self, robot: str) -> Planner:
+        """The planner of a robot, for the run."""
+        return _Asking(self, robot)
 
-    def step(self, obs: Observation) -> Command:
-        """Planner's side: pass the observation and wait for the command."""
+    def begin(self, look: Callable[[], Seen]) -> None:
+        """The run's side: it begins; ``look`` gives what all robots see at the present step."""
+        self._look = look
+
+    def step(self, robot: str, obs: Observation) -> Command:
+        """The run's side: the first robot that is asked shows what all see, and waits."""
         if self.closed:
             return STOP
-        self._out.put(obs)
-        answer = self._in.get()
-        return STOP if answer is None else answer
+        if obs.t > self._t:
+            self._t = obs.t
+            self._out.put({**self._look(), robot: obs})
+            self._commands = dict(self._in.get())
+        return self._commands.get(robot, STOP)
 
     def put(self, end: Outcome | BaseException) -> None:
         """Run's side: report the end."""
         self._out.put(end)
 
-    def next(self) -> Observation | Outcome | BaseException:
-        """Session's side: return the next observation or the end."""
+    def next(self) -> Seen | Outcome | BaseException:
+        """The session's side: what comes next."""
         return self._out.get()
 
-    def answer(self, command: Command) -> None:
-        """Session's side: send the command."""
-        self._in.put(command)
+    def answer(self, commands: Mapping[str, Command]) -> None:
+        """The session's side: go on."""
+        self._in.put(commands)
 
     def close(self) -> None:
         """Session's side: end the run at its next check."""
         self.closed = True
-        self._in.put(None)
+        self._in.put({})
+
+
+class _Asking:
+    """A planner that asks the session."""
+
+    def __init__(self, exchange: Exchange, robot: str) -> None:
+        self._exchange, self._robot = exchange, robot
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Do nothing: the caller of the session knows all that already."""
+
+    def step(self, obs: Observation) -> Command:
+        """The command that the session is given."""
+        return self._exchange.step(self._robot, obs)
 
 
 #: Active runs with their threads: Python must not kill one inside Drake at exit.
@@ -72,27 +99,31 @@ def _end_all() -> None:
 
 
 def start_run(
-    exchange: Exchange, setup: RunSetup, built: BuiltRun, host: PlannerHost
+    exchange: Exchange, setup: RunSetup, builts: Mapping[str, BuiltRun]
 ) -> threading.Thread:
     """Simulate in a separate thread, whose end the exchange reports.
 
     Args:
-        exchange: the planner behind ``host``.
-        setup, built, host: arguments of `record_robot`.
+        exchange: asks for the commands of all robots.
+        setup, builts: as `record_robots` takes them.
     """
     thread = threading.Thread(
-        target=_simulate, args=(exchange, setup, built, host), name="session", daemon=True
+        target=_simulate, args=(exchange, setup, builts), name="session", daemon=True
     )
     _GOING_ON[exchange] = thread
     thread.start()
     return thread
 
 
-def _simulate(exchange: Exchange, setup: RunSetup, built: BuiltRun, host: PlannerHost) -> None:
-    """Run the thread."""
+def _simulate(exchange: Exchange, setup: RunSetup, builts: Mapping[str, BuiltRun]) -> None:
+    """The run's thread."""
+    hosts = {
+        name: PlannerHost(exchange.planner(name), "session", built.model.limits)
+        for name, built in builts.items()
+    }
     try:
-        exchange.put(record_robot(setup, built, host))
-    except BaseException as error:  # raised again in the session's step
+        exchange.put(record_robots(setup, builts, hosts, exchange.begin))
+    except BaseException as error:  # raised again where the session is stepped
         exchange.put(error)
     finally:
         _GOING_ON.pop(exchange, None)

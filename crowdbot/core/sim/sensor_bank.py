@@ -25,16 +25,15 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.companion import Companion, Company
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.images import ColourRenderer, Images, capture, view_size
+from crowdbot.core.sim.other_robots import OtherRobots
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, is_due
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
-from crowdbot.core.types.robot import RobotState
+from crowdbot.core.types.robot import RobotModel, RobotState
 from crowdbot.core.types.sensor import Reading, SensorInfo
 
 
@@ -122,8 +121,8 @@ class SensorBank(LeafSystem):
         sensors: Mapping[str, Sensor | SensorWithMemory],
         scene: Scene,
         crowd: CrowdSystem | None,
+        others: OtherRobots,
         *,
-        number: int = 0,
         seed: int,
         robot: str,
         writer: RecordingWriter,
@@ -133,7 +132,7 @@ class SensorBank(LeafSystem):
 
         Args:
             crowd: the people, if there are any.
-            number: of the robot in the crowd's state.
+            others: the other robots, and the ending of this one.
             writer: gets each reading, and those images that it asks for.
             renderers: what draws the colour images of cameras, by the camera's name.
         """
@@ -142,7 +141,8 @@ class SensorBank(LeafSystem):
         self._poses: list[Pose | None] = []
         self._writer, self._on_reading = writer, writer.reading
         self._idle = SensorStream(seed, robot, "").at(0)
-        people, self._number = 0 if crowd is None else len(crowd.engine.agents), number
+        people = 0 if crowd is None else len(crowd.engine.agents)
+        self._ending, self._others = others.ending, others
         self.slots, size = lay_out(
             {n: x.info() for n, x in sensors.items()}, people, len(scene.others)
         )
@@ -164,11 +164,10 @@ class SensorBank(LeafSystem):
             if crowd is None
             else self.DeclareVectorInputPort(ports.CROWD_STATE, crowd.state.size())
         )
-        self._fates: tuple[Fate, ...] = ()
-        others = range(len(scene.others))
-        self._others = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in others]
+        seen = range(len(others.states))
+        self._states = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in seen]
         self._pushed = (
-            self.DeclareVectorInputPort(ports.ROBOT_PUSH, ports.ROBOT_PUSH_SIZE) if others else None
+            self.DeclareVectorInputPort(ports.ROBOT_PUSH, ports.ROBOT_PUSH_SIZE) if seen else None
         )
         index = self.DeclareDiscreteState(initial)
         self.DeclareStateOutputPort(ports.READINGS, index)
@@ -179,10 +178,6 @@ class SensorBank(LeafSystem):
         infos = {n: x.info for n, x in self.slots.items()}
         self._blind = {n for n, i in infos.items() if not (i.sees or i.feels or i.camera)}
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._step * TICK, 0.0, self._update)
-
-    def take_part(self, fates: Sequence[Fate]) -> None:
-        """Set the endings of a fleet: of the robot itself, then of the others."""
-        self._fates = tuple(fates)
 
     def reading(self, name: str, bank: Array) -> Reading:
         """Return the latest reading in a state of the bank, read-only."""
@@ -201,7 +196,7 @@ class SensorBank(LeafSystem):
         tick = int(bank[0])
         bank[0] = tick + self._step
         due = self._due(tick)
-        if not due or (self._fates and self._fates[0].ended):
+        if not due or self._ending.ended:
             return
         robot, people = RobotState(*self._robot.Eval(context).tolist()), None
         if self._blind.issuperset(due):
@@ -236,7 +231,7 @@ class SensorBank(LeafSystem):
             self._scene.update(robot, np.zeros((0, 4)), np.zeros(0, np.bool_), push=push)
             return None
         crowd = self._crowd.Eval(context)
-        (_, rows), (feels, _) = s.view(crowd), s.contact_with(crowd, self._number)
+        (_, rows), (feels, _) = s.view(crowd), s.contact_with(crowd, self._others.number)
         felt = feels[s.ROBOT_FX], feels[s.ROBOT_FY], feels[s.ROBOT_TORQUE]
         self._scene.update(
             robot,
@@ -249,10 +244,10 @@ class SensorBank(LeafSystem):
         return rows
 
     def _show_others(self, context: Context) -> None:
-        """Update the poses of the fleet's other robots."""
-        states = (port.Eval(context)[:3].tolist() for port in self._others)
-        fates = self._fates[1:]
-        self._poses = [None if f.gone else Pose(*p) for f, p in zip(fates, states, strict=True)]
+        """Show where the other robots are."""
+        states = (port.Eval(context)[:3].tolist() for port in self._states)
+        ends = self._others.endings
+        self._poses = [None if e.gone else Pose(*p) for e, p in zip(ends, states, strict=True)]
         self._scene.show_robots(self._poses)
 
     def _read(self, name: str, bank: Array, pose: Pose, t: float, tick: int) -> None:
@@ -273,45 +268,42 @@ def add_sensors(
     robot: ControlledRobot,
     crowd: CrowdSystem | None,
     writer: RecordingWriter,
+    others: OtherRobots,
     *,
     seed: int,
-    company: Company | None = None,
 ) -> SensorBank:
-    """Add the sensors of a run to a diagram; they see robot and people of the same tick.
+    """Add the sensors of a robot to a diagram.
 
-    Args:
-        company: the rest of a fleet, which sensors sense.
+    They see the robot and the people of the same tick, and see and feel the other robots.
     """
-    others = () if company is None else company.others
-    scene = _scene(built, None if crowd is None else crowd.engine, others)
+    scene = _scene(built, None if crowd is None else crowd.engine, others.models)
     bank = SensorBank(
         built.sensors,
         scene,
         crowd,
-        number=0 if company is None else company.number,
+        others,
         seed=seed,
         robot=built.name,
         writer=writer,
-        renderers=_renderers(built.infos, scene, others),
+        renderers=_renderers(built.infos, scene, others.models),
     )
     builder.AddNamedSystem("sensors", bank)
     builder.Connect(robot.port, bank.GetInputPort(ports.ROBOT_STATE))
     if crowd is not None:
         builder.Connect(crowd.state, bank.GetInputPort(ports.CROWD_STATE))
-    for k, other in enumerate(others):
-        builder.Connect(other.port, bank.GetInputPort(ports.other_robot(k)[0]))
-    if company is not None:
-        bank.take_part(company.fates)
-        builder.Connect(company.push, bank.GetInputPort(ports.ROBOT_PUSH))
+    for k, state in enumerate(others.states):
+        builder.Connect(state, bank.GetInputPort(ports.other_robot(k)[0]))
+    if others.push is not None:
+        builder.Connect(others.push, bank.GetInputPort(ports.ROBOT_PUSH))
     return bank
 
 
-def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[Companion] = ()) -> Scene:
+def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[RobotModel]) -> Scene:
     crowd, parts = built.scenario.crowd, built.parts
     radius = np.zeros(0) if engine is None else engine.agents.radius
     height = np.full(len(radius), crowd.body.height if crowd else 0.0)
     looks = None if engine is None else engine.agents.looks
-    seen = [OtherRobot(footprint_of_model(o.model), o.model.height) for o in others]
+    seen = [OtherRobot(footprint_of_model(model), model.height) for model in others]
     return Scene(
         parts.walls, parts.wall_heights, radius, height, parts.pillars, parts.pillar_heights,
         looks, seen,
@@ -319,7 +311,7 @@ def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[Compani
 
 
 def _renderers(
-    infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[Companion]
+    infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[RobotModel]
 ) -> dict[str, ColourRenderer]:
     """Return renderers of cameras with colour, for which VTK is loaded."""
     cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
@@ -327,9 +319,8 @@ def _renderers(
         return {}
     from crowdbot.core.sim.rendering import Renderer
 
-    robots = [other.model for other in others]
     return {
-        n: Renderer(scene, i.camera, i.mount, i.tilt, robots)
+        n: Renderer(scene, i.camera, i.mount, i.tilt, others)
         for n, i in cameras.items()
         if i.camera
     }

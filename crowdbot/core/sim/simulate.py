@@ -42,7 +42,7 @@ from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.preflight import preflight
-from crowdbot.core.sim.record_all import record_all
+from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.support.arguments import expect, expect_function, whole_number_of
@@ -182,7 +182,7 @@ def _record_run(
     final = request.directory
     parts = next(iter(builts.values())).parts
     with partial(final) as folder:
-        outcome = record_all(_setup(request, prepared, folder, identity), builts)
+        outcome = record_robots(_setup(request, prepared, folder, identity), builts)
         check_interrupted(outcome, folder)
         images = _images(request, builts, folder / files.RECORDING)
         seen = read_robots(folder / files.RECORDING, tuple(builts), REPLAY_RATE, images)

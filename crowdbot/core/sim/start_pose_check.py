@@ -1,6 +1,9 @@
-"""Refuse a start at which the robot overlaps a wall, an obstacle or a person."""
+"""Refuses starts at which a robot stands in a wall, an obstacle, a person or another robot."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import combinations
 
 import numpy as np
 
@@ -9,8 +12,11 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import R_YAW, overlap
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.geometry.polygon import inside
+from crowdbot.core.sim.bodies import rows_of
+from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control.kinematic import obstacles
 from crowdbot.core.sim.outline_gap import outline_gap
+from crowdbot.core.sim.outline_overlap import overlap_of_robots
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel
@@ -18,6 +24,32 @@ from crowdbot.errors import InputError
 
 #: Tolerance for rounding of the document's numbers, m.
 _TOLERANCE = 1e-6
+
+
+def check_starts(builts: Mapping[str, BuiltRun], engine: CrowdEngine | None) -> None:
+    """Look at the start of each robot of a run.
+
+    Raises:
+        InputError: as `check_start`, or two robots overlap.
+    """
+    for name, built in builts.items():
+        check_start(built.parts, built.model, built.task.start, engine, name)
+    _check_apart(builts)
+
+
+def _check_apart(builts: Mapping[str, BuiltRun]) -> None:
+    models = [built.model for built in builts.values()]
+    rows = rows_of(models)
+    for row, built in zip(rows, builts.values(), strict=True):
+        row[0], row[1], row[6] = built.task.start
+    corners = [footprint_of_model(model).corners for model in models]
+    names = list(builts)
+    for i, j in combinations(range(len(names)), 2):
+        depth = overlap_of_robots(rows[i], corners[i], rows[j], corners[j])[0]
+        if depth > _TOLERANCE:
+            raise InputError(
+                f"robots '{names[i]}' and '{names[j]}' would start in each other; move task.start"
+            )
 
 
 def check_start(

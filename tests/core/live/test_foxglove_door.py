@@ -173,7 +173,8 @@ def test_a_parameter_that_is_wrong_is_told(name: str, value: Any, message: str) 
 def test_a_spectator_sees_people_and_the_true_pose() -> None:
     run = random_run()
     with _both() as (door, _, socket):
-        door.begin(header_of(run))
+        header = header_of(run)
+        door.begin(header, {"robot": header})
         assert run.robot is not None
         assert run.agents is not None
         ids: dict[str, int] = {}
@@ -181,7 +182,7 @@ def test_a_spectator_sees_people_and_the_true_pose() -> None:
             ids |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
         _subscribe(socket, 1, ids["/people_markers"])
         until(lambda: door.wants("/people_markers"))
-        door.sample(0.5, run.robot[0].tolist(), run.agents[0])
+        door.sample(0.5, {"robot": run.robot[0].tolist()}, run.agents[0])
         data = _data(socket, 1)[13:]
         message = ros.from_cdr(data, "visualization_msgs/msg/MarkerArray")
         assert len(message.markers) == 1 + int(np.isfinite(run.agents[0, 0]).sum())

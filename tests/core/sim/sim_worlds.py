@@ -27,8 +27,9 @@ from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.diagram import Blocks, build_diagram
+from crowdbot.core.sim.diagram import Blocks, RobotBlocks, RunRobot, build_diagram
 from crowdbot.core.sim.plant import RobotPlant
+from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.support.ticks import TICK
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.plugin import CameraFrame, Command, Observation, Planner, Reading, RobotState
@@ -134,16 +135,27 @@ class Rig:
         return self
 
     @property
+    def own(self) -> RobotBlocks:
+        """The blocks of the only robot."""
+        (blocks,) = self.blocks.robots
+        return blocks
+
+    @property
+    def ending(self) -> RobotEnding:
+        """How the robot has ended."""
+        return self.own.given.ending
+
+    @property
     def plant(self) -> RobotPlant:
         """The multibody plant of a robot that has one."""
-        rig = self.blocks.robot.rig
+        rig = self.own.base.rig
         assert rig is not None
         return rig
 
     def robot(self) -> RobotState:
         """The robot's state now."""
-        mine = self.blocks.robot.state.GetMyContextFromRoot(self.context)
-        port = self.blocks.robot.state.GetOutputPort(ports.ROBOT_STATE)
+        mine = self.own.base.state.GetMyContextFromRoot(self.context)
+        port = self.own.base.state.GetOutputPort(ports.ROBOT_STATE)
         return RobotState(*port.Eval(mine).tolist())
 
     def crowd(self) -> Array:
@@ -206,10 +218,11 @@ def rig(
         visible=tuple(n for n in (sensors if visible is None else visible) if n in made),
     )  # fmt: skip
     host.reset(task, built.infos, seed)
-    blocks = build_diagram(built, engine, host, log, seed=seed, tick=tick)
+    own = RunRobot(built=built, host=host, log=log, ending=RobotEnding())
+    blocks = build_diagram([own], engine, log, seed=seed, tick=tick)
     simulator: Any = Simulator(blocks.diagram)
     context = simulator.get_mutable_context()
-    blocks.robot.place(context, task.start)
+    blocks.robots[0].base.place(context, task.start)
     if initialize:  # publishes t = 0
         simulator.Initialize()
     return Rig(blocks, simulator, memory, log)

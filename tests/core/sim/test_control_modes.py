@@ -70,7 +70,7 @@ def test_a_wall_stops_every_mode(mode: str) -> None:
     assert max(r.y for _, r in track) < 4.822 + 3e-3
     assert max(r.tilt for _, r in track) < math.radians(1.0)
     assert abs(_forward(track[-1][1])) < 1e-3
-    world.blocks.logger.walls.finish()
+    world.own.logger.walls.finish()
     (contact,) = world.memory.contacts
     assert contact["agent"] == -1
     assert contact["relative_speed"] == pytest.approx(0.4, rel=0.01)

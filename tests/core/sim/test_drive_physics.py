@@ -103,7 +103,7 @@ def test_pushing_at_a_wall_neither_tips_nor_tunnels(mode: str, yaw: float) -> No
     assert max(r.tilt for r in track) < math.radians(3.0)
     assert max(abs(r.z - track[0].z) for r in track) < 0.01
     assert track[-1].y == pytest.approx(5.0 - 0.178, abs=5e-3)
-    world.blocks.logger.walls.finish()
+    world.own.logger.walls.finish()
     first = world.memory.contacts[0]
     assert first["agent"] == -1
     assert first["bearing"] == pytest.approx(
@@ -120,7 +120,7 @@ def test_a_contact_goes_on_until_the_last_tick(mode: str) -> None:
         alone(BEFORE_WALL.format(yaw), f"robots.robot.control={mode}", limit), constant(0.65)
     )
     world.advance(2.0)
-    world.blocks.logger.walls.finish()
+    world.own.logger.walls.finish()
     (contact,) = world.memory.contacts
     assert contact["t1"] == 2.0
     ticks = round((contact["t1"] - contact["t0"]) / TICK) + 1

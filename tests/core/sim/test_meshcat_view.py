@@ -29,6 +29,12 @@ def _header(people: int = 2) -> RecordingHeader:
     return RecordingHeader(scenario="x", robot=robot, agents=about, walls=WALLS, goal_zone=GOAL)
 
 
+def _begin(view: MeshcatView, *robots: str, people: int = 2) -> None:
+    """A run of one robot, or of several."""
+    header = _header(people)
+    view.begin(header, dict.fromkeys(robots or ("robot",), header))
+
+
 def _pose(view: MeshcatView, path: str) -> tuple[list[float], float]:
     """Place (m) and yaw (rad) of a path, out of the message that the browser gets."""
     packed = cast(Any, view)._meshcat._GetPackedTransform(path)
@@ -47,8 +53,14 @@ def _hidden(view: MeshcatView, path: str) -> bool:
 
 
 def test_what_stands_still_is_drawn_where_it_is(view: MeshcatView) -> None:
-    view.begin(_header())
-    paths = ("goal", "robot/body", "robot/front", "people/0/body", "people/1/body")
+    _begin(view)
+    paths = (
+        "goals/robot",
+        "robots/robot/body",
+        "robots/robot/front",
+        "people/0/body",
+        "people/1/body",
+    )
     assert all(_has(view, f"crowdbot/{path}") for path in paths)
     assert _pose(view, "crowdbot/walls/0") == ([5.0, -2.0, 0.5], 0.0)
     place, yaw = _pose(view, "crowdbot/walls/1")
@@ -57,39 +69,52 @@ def test_what_stands_still_is_drawn_where_it_is(view: MeshcatView) -> None:
 
 
 def test_everybody_is_moved_and_who_is_absent_is_hidden(view: MeshcatView) -> None:
-    view.begin(_header())
+    _begin(view)
     nan = np.nan
     view.sample(
-        1.0, (1.0, 0.5, 0.3, 0.0, 0.0), np.array([[2.0, nan], [1.0, nan], [0, nan], [1, nan]])
+        1.0,
+        {"robot": (1.0, 0.5, 0.3, 0.0, 0.0)},
+        np.array([[2.0, nan], [1.0, nan], [0, nan], [1, nan]]),
     )
-    place, yaw = _pose(view, "crowdbot/robot")
+    place, yaw = _pose(view, "crowdbot/robots/robot")
     assert place == [1.0, 0.5, 0.0]
     assert yaw == pytest.approx(0.3)
     place, yaw = _pose(view, "crowdbot/people/0")
     assert place == [2.0, 1.0, 0.0]
     assert yaw == pytest.approx(0.5 * np.pi)
     assert _hidden(view, "crowdbot/people/1")
-    view.sample(2.0, None, np.array([[2.0, 3.0], [1.0, 4.0], [0, -1], [1, 0]]))
+    view.sample(2.0, {}, np.array([[2.0, 3.0], [1.0, 4.0], [0, -1], [1, 0]]))
     assert not _hidden(view, "crowdbot/people/1")
     assert _pose(view, "crowdbot/people/1")[0] == [3.0, 4.0, 0.0]
 
 
+def test_several_robots_are_moved_and_one_that_has_left_is_hidden(view: MeshcatView) -> None:
+    _begin(view, "a", "b")
+    rows = {"a": (1.0, 0.5, 0.3, 0.0, 0.0), "b": (4.0, -0.5, 0.0, 0.0, 0.0)}
+    view.sample(1.0, rows, None)
+    assert _has(view, "crowdbot/goals/b")
+    assert [_pose(view, f"crowdbot/robots/{name}")[0][0] for name in rows] == [1.0, 4.0]
+    view.sample(2.0, {"b": rows["b"]}, None)
+    assert _hidden(view, "crowdbot/robots/a")
+    assert not _hidden(view, "crowdbot/robots/b")
+
+
 def test_the_next_run_takes_the_place_of_the_last_one(view: MeshcatView) -> None:
-    view.begin(_header(people=3))
+    _begin(view, people=3)
     assert _has(view, "crowdbot/people/2")
-    view.begin(_header(people=1))
+    _begin(view, people=1)
     assert _has(view, "crowdbot/people/0")
     assert not _has(view, "crowdbot/people/2")
 
 
 def test_a_run_without_robot_or_people_is_drawn(view: MeshcatView) -> None:
-    view.begin(RecordingHeader(scenario="x"))
-    view.sample(0.0, None, None)
-    assert not _has(view, "crowdbot/robot")
+    view.begin(RecordingHeader(scenario="x"), {})
+    view.sample(0.0, {}, None)
+    assert not _has(view, "crowdbot/robots")
 
 
 def test_the_scene_is_one_page(view: MeshcatView) -> None:
-    view.begin(_header())
+    _begin(view)
     assert view.page().lstrip().startswith("<!DOCTYPE html>")
     assert view.url.startswith("http://localhost:")
 

@@ -174,7 +174,7 @@ def test_a_wall_stops_an_outline(shape: str) -> None:
     corners, radius = OUTLINES[shape]
     front = float(np.max(corners[:, 0])) + radius
     assert world.robot().y == pytest.approx(5.0 - front, abs=2e-6)
-    world.blocks.logger.walls.finish()
+    world.own.logger.walls.finish()
     (contact,) = world.memory.contacts
     assert contact["agent"] == -1
     assert contact["relative_speed"] == pytest.approx(0.4, rel=1e-6)

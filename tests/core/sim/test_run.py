@@ -31,7 +31,7 @@ def _whole(world: Scenario, planner: object, **options: object) -> tuple[Rig, ob
     made = rig(world, planner, sensors=ALL, initialize=False)  # type: ignore[arg-type]
     given: dict[str, object] = {"stage": "run", "progress": None, "stop": lambda: False, **options}
     # `run` makes its own simulator from the diagram.
-    outcome = run(made.blocks, _task(world), made.log, **given)  # type: ignore[arg-type]
+    outcome = run(made.blocks, **given)  # type: ignore[arg-type]
     return made, outcome
 
 

@@ -131,7 +131,7 @@ def test_odometry_starts_at_the_start_pose(start: tuple[float, float, float]) ->
 def test_people_outside_are_not_seen() -> None:
     """The scene holds whom the crowd holds: everybody present, nobody else."""
     world, _ = _run()
-    bank = world.blocks.bank
+    bank = world.own.bank
     mine = bank.GetMyContextFromRoot(world.context)
     assert bank.GetOutputPort(ports.READINGS).Eval(mine)[0] == 1.5 * 128
 
@@ -171,8 +171,8 @@ def test_people_are_seen_walking() -> None:
     seen = []
     for tick in range(1, 129, 8):
         world.advance(tick * TICK)
-        bodies = world.blocks.bank._scene.cylinders
-        person = int(np.argmax(world.blocks.bank._scene.present))
+        bodies = world.own.bank._scene.cylinders
+        person = int(np.argmax(world.own.bank._scene.present))
         left, right = bodies[3 * person, :2], bodies[3 * person + 1, :2]
         seen.append(math.dist(left, right))
     assert max(seen) - min(seen) > 0.05

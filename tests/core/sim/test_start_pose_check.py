@@ -18,8 +18,8 @@ from crowdbot.core.robots import build_model
 from crowdbot.core.robots.check import check_model
 from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.lock import population
-from crowdbot.core.sim.built_run import BuiltRun, build_run
-from crowdbot.core.sim.record import record_robot
+from crowdbot.core.sim.built_run import BuiltRun, build_runs
+from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -138,8 +138,8 @@ class _Outlined:
         return getattr(registry(), name)
 
 
-def _built(setup: RunSetup) -> BuiltRun:
-    return build_run(setup.scenario, setup.registry, setup.choice, setup.options.record)
+def _built(setup: RunSetup) -> dict[str, BuiltRun]:
+    return build_runs(setup.scenario, setup.registry, setup.choice, setup.options.record)
 
 
 @pytest.mark.slow
@@ -152,7 +152,7 @@ def test_the_outline_is_recorded(tmp_path: Path) -> None:
         stage="run", progress=None,
         stop=lambda: False, on_hang=None,
     )  # fmt: skip
-    record_robot(setup, _built(setup))
+    record_robots(setup, _built(setup))
     run = Recording(tmp_path / "run.mcap").trajectories()
     assert run.robot_footprint is not None
     assert run.robot_footprint.tolist() == BOX.tolist()
@@ -160,5 +160,5 @@ def test_the_outline_is_recorded(tmp_path: Path) -> None:
     blocked.robots["robot"].task.__dict__["start"] = (2.5, 4.9, 0.0)
     again = replace(setup, scenario=blocked, recording=tmp_path / "b.mcap")
     with pytest.raises(InputError, match="in a wall"):
-        record_robot(again, _built(again))
+        record_robots(again, _built(again))
     assert not (tmp_path / "b.mcap").exists()

@@ -7,8 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core.environments.build import build_environment
-from crowdbot.core.robots.task import robot_task
 from crowdbot.core.runs.make_record import ending
 from crowdbot.core.runs.outcome import (
     ARRIVED,
@@ -19,12 +17,11 @@ from crowdbot.core.runs.outcome import (
 )
 from crowdbot.core.runs.record_parts import RobotPart
 from crowdbot.core.runs.run_record import RunRecord
-from crowdbot.core.sim.fate import Fate
-from crowdbot.core.sim.fleet.record import _status
 from crowdbot.core.sim.metric_logger import LEANS
+from crowdbot.core.sim.run_outcome import run_status
 from crowdbot.core.sim.runner import run
 from crowdbot.core.support.ticks import TICK
-from tests.core.sim.sim_worlds import Rig, alone, constant, person, registry, rig, scenario
+from tests.core.sim.sim_worlds import Rig, alone, constant, person, rig, scenario
 
 SIDE, FRONT = 0.5 * math.pi, 0.0
 GOAL = 45.0  # where its goal zone begins, m
@@ -34,7 +31,7 @@ START = "robots.robot.task.start=[{}, 0, {}]"
 def _pushed(start: float, yaw: float, force: float, pushed_ticks: int, until: float) -> Rig:
     """A robot at (start, 0), pushed in x at the height at which people push."""
     world = rig(alone(START.format(start, yaw)), constant(0.0)).advance(0.25)
-    plant, layout = world.plant.plant, world.blocks.robot.push
+    plant, layout = world.plant.plant, world.own.base.push
     context = plant.GetMyMutableContextFromRoot(world.context)
     values = np.zeros(layout.size)
     layout.write(values, force, 0.0)
@@ -54,7 +51,7 @@ def test_what_knocks_it_over(yaw: float, pushed_ticks: int, *, topples: bool) ->
     world = _pushed(25.0, yaw, 300.0, pushed_ticks, 1.5)
     robot = world.robot()
     assert (robot.tilt > LEANS) == topples
-    assert (world.blocks.logger.toppled_time is not None) == topples
+    assert (world.ending.toppled_time is not None) == topples
     if not topples:
         assert robot.tilt < math.radians(0.1)
         assert math.hypot(robot.vx, robot.vy) < 0.01
@@ -66,20 +63,19 @@ def test_what_has_toppled_does_not_arrive(yaw: float, *, arrives: bool) -> None:
     """The same push drives one into the goal zone; the other's run ends before."""
     world = _pushed(43.5, yaw, 600.0, 8, 1.0)
     assert (world.robot().x > GOAL) == arrives
-    logger = world.blocks.logger
-    ended = logger.goal_time if arrives else logger.toppled_time
+    ending = world.ending
+    ended = ending.goal_time if arrives else ending.toppled_time
     assert world.context.get_time() == pytest.approx(ended, abs=TICK)
-    assert (logger.goal_time is not None) == arrives
-    assert (logger.toppled_time is None) == arrives
+    assert (ending.goal_time is not None) == arrives
+    assert (ending.toppled_time is None) == arrives
 
 
 @pytest.mark.slow
 def test_the_run_ends_and_says_so() -> None:
     """Somebody who takes no notice walks into its side."""
     world = scenario(START.format(20.0, SIDE), "robots.robot.task.time_limit=1")
-    task = robot_task(world.robots["robot"], build_environment(registry(), world.environment))
     made = rig(world, constant(0.0), person(21.0, speed=1.5), initialize=False)
-    outcome = run(made.blocks, task, made.log, stage="run", progress=None, stop=lambda: False)
+    outcome = run(made.blocks, stage="run", progress=None, stop=lambda: False)
     assert outcome.status == TOPPLED
     assert outcome.toppled_time == pytest.approx(0.57, abs=0.1)
     assert outcome.sim_time == outcome.toppled_time
@@ -98,8 +94,7 @@ def test_the_run_ends_and_says_so() -> None:
     ],
 )
 def test_what_is_said_of_several_robots(statuses: tuple[str, str], said: str) -> None:
-    fates = {str(i): Fate(status=status) for i, status in enumerate(statuses)}
-    assert _status(fates) == said
+    assert run_status(statuses) == said
 
 
 def test_the_record_of_what_stood_does_not_mention_it() -> None:

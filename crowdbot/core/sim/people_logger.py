@@ -1,32 +1,27 @@
-"""Log the people once for all robots of a fleet, and end its run."""
+"""PeopleLogger: samples people who are recorded once for several robots."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from pydrake.systems.framework import Context, DiagramBuilder, EventStatus, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 
 
 class PeopleLogger(LeafSystem):
-    """Input: crowd state. Samples it; ends the run when all robots have ended.
+    """Inputs: crowd state and events.
 
     Add it after the robots' monitors: blocks publish in the order of addition.
     """
 
     __slots__ = NO_ATTRIBUTES
 
-    def __init__(
-        self, log: RunLog, crowd: CrowdSystem | None, rate: float, fates: Sequence[Fate]
-    ) -> None:
+    def __init__(self, log: RunLog, crowd: CrowdSystem | None, rate: float) -> None:
         super().__init__()
-        self._log, self._fates = log, tuple(fates)
+        self._log = log
         self._ticks_per_sample, self._last_tick = ticks(rate), -1
         self._crowd = self._events = None
         if crowd is not None:
@@ -34,18 +29,15 @@ class PeopleLogger(LeafSystem):
             self._events = self.DeclareVectorInputPort(ports.EVENTS, crowd.events.size())
         self.DeclarePeriodicPublishEvent(TICK, 0.0, self._publish)
 
-    def _publish(self, context: Context) -> EventStatus | None:
+    def _publish(self, context: Context) -> None:
         tick = round(context.get_time() * TICKS_PER_SECOND)
         if tick == self._last_tick:  # Initialize and the first step may both publish t = 0
-            return None
+            return
         self._last_tick = tick
         self._record_events(context)
         if tick % self._ticks_per_sample == 0:
             crowd = None if self._crowd is None else self._crowd.Eval(context)
             self._log.sample(tick * TICK, None, crowd)
-        if all(fate.ended for fate in self._fates):
-            return EventStatus.ReachedTermination(self, "all robots have ended")
-        return None
 
     def _record_events(self, context: Context) -> None:
         if self._crowd is None or self._events is None:
@@ -59,14 +51,10 @@ class PeopleLogger(LeafSystem):
 
 
 def add_people_logger(
-    builder: DiagramBuilder,
-    crowd: CrowdSystem | None,
-    log: RunLog,
-    rate: float,
-    fates: Sequence[Fate],
+    builder: DiagramBuilder, crowd: CrowdSystem | None, log: RunLog, rate: float
 ) -> PeopleLogger:
-    """Add it to a diagram, after all monitors of robots."""
-    logger = PeopleLogger(log, crowd, rate, fates)
+    """Add it to a diagram, after everything that watches robots."""
+    logger = PeopleLogger(log, crowd, rate)
     builder.AddNamedSystem("people_logger", logger)
     if crowd is not None:
         builder.Connect(crowd.state, logger.GetInputPort(ports.CROWD_STATE))

@@ -1,4 +1,4 @@
-"""Forces on one robot of a fleet: from people, and from other robots."""
+"""Forces on a robot: those of people, and those of other robots."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, Leaf
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.fleet.robot_contacts import FleetContacts
+from crowdbot.core.sim.robot_contacts import RobotContacts
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 
 
@@ -36,10 +36,14 @@ def connect_pushes(
     k: int,
     robot: ControlledRobot,
     crowd: CrowdSystem | None,
-    contacts: FleetContacts,
+    contacts: RobotContacts | None,
 ) -> None:
-    """Connect forces of people and robots to robot k, if any."""
+    """Let people and other robots push robot k, if anything can."""
     if robot.push_port is None:
+        return
+    if contacts is None:
+        if crowd is not None:
+            builder.Connect(crowd.force_on(k), robot.push_port)
         return
     total = builder.AddSystem(PushSum(robot, people=crowd is not None))
     if crowd is not None:

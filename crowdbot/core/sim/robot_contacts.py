@@ -1,4 +1,4 @@
-"""FleetContacts: contact forces between robots, equal and opposite.
+"""RobotContacts: robots that touch each other push each other, by one number for both.
 
 The force is that between people and robots (`crowdbot.core.crowd.contact.robot_contact`): Hunt and
 Crossley's along the normal, without friction, never pulling. The default stiffness of shells is
@@ -41,9 +41,10 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
+from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.fate import Fate
 from crowdbot.core.sim.outline_overlap import mark_within_reach, overlap_of_robots
+from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
@@ -103,8 +104,8 @@ def _velocity_at(row: Array, x: float, y: float) -> tuple[float, float]:
     return row[RVX] - row[R_W] * (y - row[RY]), row[RVY] + row[R_W] * (x - row[RX])
 
 
-class FleetContacts(LeafSystem):
-    """Inputs: states of all robots. Outputs: force x, y and torque per robot (`ports.ROBOT_PUSH`).
+class RobotContacts(LeafSystem):
+    """Inputs: states of all robots. Outputs: of each, force x, y and torque (`ports.ROBOT_PUSH`).
 
     The event is unrestricted, like the crowd's: both robots of a pair use one computation.
     """
@@ -112,10 +113,10 @@ class FleetContacts(LeafSystem):
     __slots__ = NO_ATTRIBUTES
 
     def __init__(
-        self, models: Sequence[RobotModel], fates: Sequence[Fate], logs: Sequence[RunLog]
+        self, models: Sequence[RobotModel], endings: Sequence[RobotEnding], logs: Sequence[RunLog]
     ) -> None:
         super().__init__()
-        self._rows, self._fates, self._logs = rows_of(models), tuple(fates), tuple(logs)
+        self._rows, self._endings, self._logs = rows_of(models), tuple(endings), tuple(logs)
         outlines = outlines_of(models)
         self._outlines = [outlines[k][: corners_of(outlines, k)] for k in range(len(models))]
         self._near = np.zeros((len(models), len(models)), dtype=np.bool_)
@@ -154,7 +155,7 @@ class FleetContacts(LeafSystem):
         forces = flat.reshape(-1, ports.ROBOT_PUSH_SIZE)
         forces[:] = 0.0
         for i, j in self._candidates():
-            if self._fates[i].gone or self._fates[j].gone:
+            if self._endings[i].gone or self._endings[j].gone:
                 continue
             found = self._touch(i, j)
             self._keep(i, j, found, t)
@@ -181,7 +182,7 @@ class FleetContacts(LeafSystem):
             forces[k] += sign * np.array([fx, fy, px * fy - py * fx])
 
     def _keep(self, i: int, j: int, found: Touched | None, t: float) -> None:
-        """Update the state of this pair's contact."""
+        """Record this pair's contact."""
         going_on = self._going_on.get((i, j))
         if found is None:
             if going_on is not None and self._gap_exceeds(i, j):
@@ -205,16 +206,16 @@ class FleetContacts(LeafSystem):
         depth = overlap_of_robots(grown, self._outlines[i], self._rows[j], self._outlines[j])[0]
         return bool(depth <= 0.0)
 
-    def finish(self, k: int | None = None) -> None:
-        """End the active contacts of all robots, or of one."""
+    def finish(self, k: int) -> None:
+        """End the contacts of robot k that are going on."""
         for i, j in list(self._going_on):
-            if k is None or k in (i, j):
+            if k in (i, j):
                 self._finish(i, j)
 
     def _finish(self, i: int, j: int) -> None:
         c = self._going_on.pop((i, j))
         for mine, other in ((i, j), (j, i)):
-            if self._fates[mine].ended and self._fates[mine].until < c.start:
+            if self._endings[mine].ended and self._endings[mine].until < c.start:
                 continue
             self._logs[mine].writer.contact(
                 t0=c.start, t1=c.end, agent=FIRST_ROBOT - other, impulse=c.impulse,
@@ -223,15 +224,17 @@ class FleetContacts(LeafSystem):
             )  # fmt: skip
 
 
-def add_fleet_contacts(
+def add_robot_contacts(
     builder: DiagramBuilder,
-    models: Sequence[RobotModel],
+    builts: Sequence[BuiltRun],
     robots: Sequence[ControlledRobot],
-    fates: Sequence[Fate],
+    endings: Sequence[RobotEnding],
     logs: Sequence[RunLog],
-) -> FleetContacts:
-    """Add the contacts between robots to a diagram; their forces are connected elsewhere."""
-    contacts = FleetContacts(models, fates, logs)
+) -> RobotContacts | None:
+    """Add the contacts of several robots with each other; pushes are connected elsewhere."""
+    if len(robots) < 2:
+        return None
+    contacts = RobotContacts([built.model for built in builts], endings, logs)
     builder.AddNamedSystem("robot_contacts", contacts)
     for k, robot in enumerate(robots):
         builder.Connect(robot.port, contacts.GetInputPort(ports.other_robot(k)[0]))

@@ -1,1 +1,0 @@
-"""Several robots in one run, each with its own plant, sensors and planner, in one diagram."""

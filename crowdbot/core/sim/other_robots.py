@@ -1,0 +1,33 @@
+"""OtherRobots: the other robots of a run, as the blocks of one robot know them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from pydrake.systems.framework import OutputPort
+
+from crowdbot.core.sim.robot_ending import RobotEnding
+from crowdbot.core.types.robot import RobotModel
+
+
+@dataclass(frozen=True, slots=True)
+class OtherRobots:
+    """Nothing but the robot's own ending where it is the only one.
+
+    Attributes:
+        ending: of the robot itself.
+        number: of the robot itself, in the order of all.
+        models, states, endings: of the others: what they are, the ports with their states, and
+            how they have ended.
+        push: what they exert on the robot; None where there are none.
+        end_contacts: ends the contacts with them that are going on.
+    """
+
+    ending: RobotEnding
+    number: int = 0
+    models: Sequence[RobotModel] = ()
+    states: Sequence[OutputPort] = ()
+    endings: Sequence[RobotEnding] = ()
+    push: OutputPort | None = None
+    end_contacts: Callable[[], None] = lambda: None

@@ -1,0 +1,48 @@
+"""WatchedRun: shows watchers one sample of all robots and people at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.watcher import Watcher
+from crowdbot.core.sim.robot_ending import RobotEnding
+from crowdbot.core.types.arrays import Array
+
+#: Takes a sample: time (s), the robot's row and the people, either missing.
+OnSample = Callable[[float, Sequence[float] | None, Array | None], None]
+
+
+class WatchedRun:
+    """Collects what the logs of one tick sample; that of the people comes last."""
+
+    def __init__(
+        self,
+        watchers: Sequence[Watcher],
+        shared: RecordingHeader,
+        robots: Mapping[str, RecordingHeader],
+        endings: Mapping[str, RobotEnding],
+    ) -> None:
+        """Tell the watchers that a run begins; see `Watcher.begin`."""
+        self._watchers, self._endings = tuple(watchers), endings
+        self._rows: dict[str, Sequence[float]] = {}
+        for watcher in self._watchers:
+            watcher.begin(shared, robots)
+
+    def watch(self, robot: str, *, people: bool) -> OnSample | None:
+        """What the log of a robot, of people, or of both calls; None where there is no watcher."""
+        if not self._watchers:
+            return None
+
+        def on_sample(t: float, row: Sequence[float] | None, agents: Array | None) -> None:
+            if row is not None:
+                self._rows[robot] = row
+            if people:
+                self._show(t, agents)
+
+        return on_sample
+
+    def _show(self, t: float, agents: Array | None) -> None:
+        there = {name: row for name, row in self._rows.items() if not self._endings[name].gone}
+        for watcher in self._watchers:
+            watcher.sample(t, there, agents)
