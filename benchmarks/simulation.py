@@ -43,13 +43,13 @@ from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import build_runs
+from crowdbot.core.sim.cameras.rendering import check_egl
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.metric_logger import MetricLogger
+from crowdbot.core.sim.loggers.metric_logger import MetricLogger
 from crowdbot.core.sim.planner_system import PlannerSystem
 from crowdbot.core.sim.plant import add_plant, place_robot
 from crowdbot.core.sim.record import record_robots
-from crowdbot.core.sim.rendering import check_egl
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.sensor_bank import SensorBank

@@ -16,7 +16,7 @@ from typing import Any
 
 from pydrake.systems.framework import Context
 
-from crowdbot.core.sim.recorder import Recorder
+from crowdbot.core.sim.loggers.recorder import Recorder
 
 Job = Callable[[], object]
 #: Seconds at the start that do not count: they prepare templates and fill caches.

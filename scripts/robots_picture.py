@@ -13,7 +13,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.core.sim.rendering import Renderer
+from crowdbot.core.sim.cameras.rendering import Renderer
 from crowdbot.core.types.sensor import Pinhole
 from crowdbot.plugin import Pose, RobotState
 from scripts.draw_robots import FOLDER, KINDS

@@ -22,9 +22,9 @@ from pydrake.systems.framework import (
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.contacts.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
 from crowdbot.core.sim.robot_ending import RobotEnding

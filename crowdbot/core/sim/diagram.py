@@ -13,15 +13,15 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.contacts.pushes import connect_pushes
+from crowdbot.core.sim.contacts.robot_contacts import RobotContacts, add_robot_contacts
 from crowdbot.core.sim.control import ControlledRobot, add_robot
 from crowdbot.core.sim.crowd_system import CrowdSystem, add_crowd
-from crowdbot.core.sim.metric_logger import MetricLogger, add_metric_logger
+from crowdbot.core.sim.loggers.metric_logger import MetricLogger, add_metric_logger
+from crowdbot.core.sim.loggers.people_logger import PeopleLogger, add_people_logger
+from crowdbot.core.sim.loggers.recorder import add_recorder
 from crowdbot.core.sim.other_robots import OtherRobots
-from crowdbot.core.sim.people_logger import PeopleLogger, add_people_logger
 from crowdbot.core.sim.planner_system import PlannerSystem, add_planner
-from crowdbot.core.sim.pushes import connect_pushes
-from crowdbot.core.sim.recorder import add_recorder
-from crowdbot.core.sim.robot_contacts import RobotContacts, add_robot_contacts
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.sensor_bank import SensorBank, add_sensors
 from crowdbot.core.support.ticks import TICK

@@ -21,7 +21,7 @@ def preflight(request: Request) -> dict[str, BuiltRun]:
     builts = build_runs(request.scenario, request.registry, request.choice, request.options.record)
     cameras = (info.camera for built in builts.values() for info in built.infos.values())
     if any(camera is not None and camera.colour for camera in cameras):
-        from crowdbot.core.sim.rendering import check_egl
+        from crowdbot.core.sim.cameras.rendering import check_egl
 
         check_egl()
     return builts

@@ -17,12 +17,12 @@ from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.contacts.start_pose_check import check_starts
 from crowdbot.core.sim.diagram import Blocks, RunRobot, build_diagram
+from crowdbot.core.sim.loggers.run_logs import run_logs
 from crowdbot.core.sim.robot_ending import RobotEnding
-from crowdbot.core.sim.run_logs import run_logs
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.runner import run
-from crowdbot.core.sim.start_pose_check import check_starts
 from crowdbot.core.support.compile_cache import compiled
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.dsl.scenario.seeds import stream_seed

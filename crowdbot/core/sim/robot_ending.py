@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class RobotEnding:
     """A robot goes on, or has ended: then it stands where it is, or has left.
 
-    Updated at the start of each tick (`crowdbot.core.sim.metric_logger`), so that it is constant
-    for all blocks during the tick.
+    Watched at the beginning of each tick, by `crowdbot.core.sim.loggers.metric_logger`, so that all
+    blocks agree on it during the tick.
 
     Attributes:
         leaves: True if it is out of everybody's way once it has ended.

@@ -25,9 +25,9 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.cameras.images import ColourRenderer, Images, capture, view_size
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.images import ColourRenderer, Images, capture, view_size
 from crowdbot.core.sim.other_robots import OtherRobots
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, is_due
@@ -41,7 +41,7 @@ from crowdbot.core.types.sensor import Reading, SensorInfo
 class Slot:
     """Offsets of a sensor's stamp, values and memory in the bank's state vector.
 
-    For a camera, ``values`` is its view data (`crowdbot.core.sim.images`).
+    Of a camera, ``values`` is what it saw (`crowdbot.core.sim.cameras.images`).
     """
 
     info: SensorInfo
@@ -317,7 +317,7 @@ def _renderers(
     cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
     if not cameras:
         return {}
-    from crowdbot.core.sim.rendering import Renderer
+    from crowdbot.core.sim.cameras.rendering import Renderer
 
     return {
         n: Renderer(scene, i.camera, i.mount, i.tilt, others)

@@ -12,7 +12,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.core.sim.images import Images, capture, view_size
+from crowdbot.core.sim.cameras.images import Images, capture, view_size
 from crowdbot.plugin import Pose, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera

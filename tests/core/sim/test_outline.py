@@ -14,7 +14,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import ROBOT, from_outline, robot_contact
 from crowdbot.core.crowd.traits import TRAITS
 from crowdbot.core.geometry.footprint import Footprint, body_side
-from crowdbot.core.sim.outline_gap import outline_gap, touched_at
+from crowdbot.core.sim.contacts.outline_gap import outline_gap, touched_at
 from crowdbot.core.support.records import rows_in, rows_of
 from tests.core.sim.sim_worlds import Array, Drive, alone, constant, person, rig, scenario
 

@@ -17,8 +17,8 @@ from crowdbot.core.robots import build_model
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
-from crowdbot.core.sim.rendering import Renderer, check_egl
+from crowdbot.core.sim.cameras.person_mesh import leg_obj, trunk_obj
+from crowdbot.core.sim.cameras.rendering import Renderer, check_egl
 from crowdbot.errors import MissingLibraryError
 from crowdbot.plugin import Pose, RobotModel, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec

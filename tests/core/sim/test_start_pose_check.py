@@ -19,9 +19,9 @@ from crowdbot.core.robots.check import check_model
 from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import BuiltRun, build_runs
+from crowdbot.core.sim.contacts.start_pose_check import check_start
 from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.run_setup import RunSetup
-from crowdbot.core.sim.start_pose_check import check_start
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError, PluginError
 from crowdbot.plugin import EnvironmentParts, Pose, RobotModel

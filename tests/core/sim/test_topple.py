@@ -17,7 +17,7 @@ from crowdbot.core.runs.outcome import (
 )
 from crowdbot.core.runs.record_parts import RobotPart
 from crowdbot.core.runs.run_record import RunRecord
-from crowdbot.core.sim.metric_logger import LEANS
+from crowdbot.core.sim.loggers.metric_logger import LEANS
 from crowdbot.core.sim.run_outcome import run_status
 from crowdbot.core.sim.runner import run
 from crowdbot.core.support.ticks import TICK

@@ -20,8 +20,8 @@ from pydrake.systems.framework import (
 
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.contacts.outline_gap import outline_gap
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
-from crowdbot.core.sim.outline_gap import outline_gap
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.compile import array_kernel
 from crowdbot.core.types.arrays import Array

@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from shapely.affinity import rotate, translate  # type: ignore[import-untyped]
 from shapely.geometry import LineString, Point, Polygon  # type: ignore[import-untyped]
 
-from crowdbot.core.sim.outline_overlap import mark_within_reach, overlap_of_robots
-from crowdbot.core.sim.robot_contacts import DISSIPATION, SHELL, touch
+from crowdbot.core.sim.contacts.outline_overlap import mark_within_reach, overlap_of_robots
+from crowdbot.core.sim.contacts.robot_contacts import DISSIPATION, SHELL, touch
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 

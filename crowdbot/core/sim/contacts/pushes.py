@@ -5,9 +5,9 @@ from __future__ import annotations
 from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
 
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.contacts.robot_contacts import RobotContacts
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.robot_contacts import RobotContacts
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 
 

@@ -18,8 +18,8 @@ from pydrake.multibody.tree import world_index
 from crowdbot.core.crowd.contact.robot_contact import RELEASE_GAP
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.recording.run_log import RunLog
+from crowdbot.core.sim.contacts.outline_gap import outline_gap, touched_at
 from crowdbot.core.sim.control.kinematic import obstacles
-from crowdbot.core.sim.outline_gap import outline_gap, touched_at
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel, RobotState

@@ -12,10 +12,10 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.loggers.watched_run import WatchedRun
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.run_outcome import last_arrival, run_status, status_of
 from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, choosers, ids
-from crowdbot.core.sim.watched_run import WatchedRun
 from crowdbot.core.types.robot import HolonomicDrive
 
 

@@ -12,11 +12,11 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import R_YAW, overlap
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.geometry.polygon import inside
-from crowdbot.core.sim.bodies import rows_of
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.contacts.bodies import rows_of
+from crowdbot.core.sim.contacts.outline_gap import outline_gap
+from crowdbot.core.sim.contacts.outline_overlap import overlap_of_robots
 from crowdbot.core.sim.control.kinematic import obstacles
-from crowdbot.core.sim.outline_gap import outline_gap
-from crowdbot.core.sim.outline_overlap import overlap_of_robots
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel

@@ -46,7 +46,7 @@ from crowdbot.core.sensing.body_model import PARTS, TRUNK
 from crowdbot.core.sensing.mount import sensor_pose_in_world
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.core.sim.person_mesh import leg_obj, trunk_obj
+from crowdbot.core.sim.cameras.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import Pinhole
@@ -65,7 +65,7 @@ _THING = (0.30, 0.30, 0.34)
 _TROUSERS = ((0.16, 0.18, 0.26), (0.25, 0.22, 0.2), (0.22, 0.28, 0.36))
 _ROBOT = (0.35, 0.38, 0.45)
 _HIDDEN = RigidTransform([0.0, 0.0, -100.0])
-_PROBE = "from crowdbot.core.sim.rendering import probe; probe()"
+_PROBE = "from crowdbot.core.sim.cameras.rendering import probe; probe()"
 
 
 class Renderer:

@@ -22,11 +22,11 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, TOPPLED
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.clearance_cache import ClearanceCache
+from crowdbot.core.sim.contacts.clearance_cache import ClearanceCache
+from crowdbot.core.sim.contacts.wall_contact import WallContacts, wall_force
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.other_robots import OtherRobots
-from crowdbot.core.sim.wall_contact import WallContacts, wall_force
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array

@@ -39,11 +39,11 @@ from crowdbot.core.crowd.contact.robot_contact import (
 )
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
+from crowdbot.core.sim.contacts.bodies import SEEN, outlines_of, rows_of
+from crowdbot.core.sim.contacts.outline_overlap import mark_within_reach, overlap_of_robots
 from crowdbot.core.sim.control import ControlledRobot
-from crowdbot.core.sim.outline_overlap import mark_within_reach, overlap_of_robots
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.ticks import TICK

@@ -1,0 +1,1 @@
+"""Images of cameras: depth, and colour drawn by VTK."""

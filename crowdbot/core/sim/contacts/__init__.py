@@ -1,0 +1,1 @@
+"""Contacts of robots with walls and with each other, and what pushes a robot."""
