@@ -8,7 +8,7 @@ import pytest
 
 from crowdbot.cli import main
 from crowdbot.core.registry.registry import discover
-from tests.core.sim.fleet.fleets import robot, scenario
+from tests.core.sim.fleets import robot, scenario
 
 
 def test_serve_refuses_several_robots_before_anybody_connects(

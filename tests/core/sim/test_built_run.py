@@ -26,8 +26,8 @@ from crowdbot.core.types.motion import Command
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.component_specs import EnvironmentSpec, RobotSpec, SensorSpec
 from crowdbot.errors import InputError
-from tests.core.sim.fleet.fleets import robot
-from tests.core.sim.fleet.fleets import scenario as fleet_scenario
+from tests.core.sim.fleets import robot
+from tests.core.sim.fleets import scenario as fleet_scenario
 from tests.core.sim.sim_worlds import scenario
 
 SHORT = "robots.robot.task.time_limit=0.25"

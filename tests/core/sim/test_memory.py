@@ -19,7 +19,7 @@ from crowdbot.core.sim.references import make_reference
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.sim.weak_callback import weak_callback
 from crowdbot.testing.tiny import tiny_scenario
-from tests.core.sim.fleet import fleets
+from tests.core.sim import fleets
 from tests.core.sim.sim_worlds import registry, scenario
 
 _MODES = ("differential_drive", "force", "kinematic")

@@ -12,7 +12,7 @@ from crowdbot.core.recording import read_trajectories
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.sim.session import Session
-from tests.core.sim.fleet.fleets import PEOPLE, robot, run, scenario
+from tests.core.sim.fleets import PEOPLE, robot, run, scenario
 
 TWO = {"a": robot(-6.0, 0.5, 0.0, "east", 1.0), "b": robot(6.0, 0.0, 180.0, "west", 2.0)}
 

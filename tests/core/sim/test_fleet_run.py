@@ -19,7 +19,7 @@ from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
-from tests.core.sim.fleet.fleets import PEOPLE, robot, run, scenario
+from tests.core.sim.fleets import PEOPLE, robot, run, scenario
 
 REGISTRY = discover()
 
