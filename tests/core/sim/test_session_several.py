@@ -8,7 +8,7 @@ import pytest
 
 import crowdbot
 from crowdbot.core.planning.resolve import resolve_planner
-from crowdbot.core.recording import read_trajectories
+from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.sim.session import Session
@@ -37,7 +37,7 @@ def test_the_same_logic_gives_the_same_trajectories(tmp_path: Path) -> None:
     assert session.statuses == {"a": "timeout", "b": "timeout"}
     for name in TWO:
         mine = session.trajectories_of(name)
-        theirs = read_trajectories(expected.directory / "run.mcap", name)
+        theirs = Recording(expected.directory / "run.mcap").trajectories(name)
         assert trajectory_hash(mine) == trajectory_hash(theirs)
 
 
