@@ -92,7 +92,9 @@ def _several_logs(
     watched: WatchedRun,
     stack: ExitStack,
 ) -> RunLogs:
-    root = RecordingWriter(setup.recording, shared, record=setup.options.record, choosers=choosers(engine))
+    root = RecordingWriter(
+        setup.recording, shared, record=setup.options.record, choosers=choosers(engine)
+    )
     stack.callback(_close_shared, root, endings)
     robots = {}
     for k, (name, built) in enumerate(builts.items()):
