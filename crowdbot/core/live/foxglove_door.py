@@ -93,7 +93,7 @@ class FoxgloveDoor:
 
     # ---------------------------------------------------------------- the simulation's thread
     def open(self, offers: Sequence[Offer]) -> None:
-        """A run begins that offers these topics."""
+        """Start a run that offers these topics."""
         with self._lock:
             self._latest.clear()
         self._make_channels((*offers, *SEEN))

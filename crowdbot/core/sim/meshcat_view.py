@@ -56,7 +56,7 @@ class MeshcatView:
         self._robots: set[str] = set()
 
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
-        """Show what does not move; what was shown before is gone."""
+        """Show static objects, and remove those of an earlier run."""
         show = self._meshcat
         show.Delete("crowdbot")
         for k, row in enumerate(() if shared.walls is None else shared.walls.tolist()):

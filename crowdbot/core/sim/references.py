@@ -60,7 +60,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
 
 
 def _record_alone(setup: RunSetup) -> Outcome:
-    """A run of its own: what sensors and planner remember is not that of the run with people."""
+    """Run separately, without the memory of sensors and planner from the run with people."""
     from crowdbot.core.sim.record import record_robots  # imports Drake
 
     builts = build_runs(setup.scenario, setup.registry, setup.choice, setup.options.record)

@@ -58,11 +58,11 @@ class Exchange:
         self._out.put(end)
 
     def next(self) -> Seen | Outcome | BaseException:
-        """The session's side: what comes next."""
+        """Session's side: return the next observation or the end."""
         return self._out.get()
 
     def answer(self, commands: Mapping[str, Command]) -> None:
-        """The session's side: go on."""
+        """Session's side: send the command."""
         self._in.put(commands)
 
     def close(self) -> None:
@@ -116,7 +116,7 @@ def start_run(
 
 
 def _simulate(exchange: Exchange, setup: RunSetup, builts: Mapping[str, BuiltRun]) -> None:
-    """The run's thread."""
+    """Run the thread."""
     hosts = {
         name: PlannerHost(exchange.planner(name), "session", built.model.limits)
         for name, built in builts.items()

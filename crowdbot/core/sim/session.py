@@ -366,7 +366,7 @@ class Session:
         }
 
     def _take(self) -> dict[str, Observation]:
-        """What the run says next; errors of the run are raised here."""
+        """Return the run's next observation or end; raise its errors."""
         assert self._exchange is not None
         with own_stdout():
             answer = self._exchange.next()

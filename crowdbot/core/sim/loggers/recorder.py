@@ -33,5 +33,5 @@ class Recorder(LeafSystem):
 
 
 def add_recorder(builder: DiagramBuilder, writers: Sequence[RecordingWriter]) -> None:
-    """Add the recorder to a diagram; nothing is connected to it."""
+    """Add the recorder to a diagram; it needs no connections."""
     builder.AddNamedSystem("recorder", Recorder(writers))
