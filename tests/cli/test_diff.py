@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from crowdbot.cli import main
 from crowdbot.core.support.json_diff import ABSENT, differences
+from tests.core.results.made_up_record import made_up_record
 from tests.paths import ROOT
 
 Captured = pytest.CaptureFixture[str]
@@ -74,8 +75,7 @@ def run(folder: Path, capsys: Captured, value: str, trajectory: str) -> str:
     folder.mkdir()
     main(["expand", "challenge-2020", "--one", "in-d0125-slow-c01-r02"])
     (folder / "scenario.yaml").write_text(capsys.readouterr().out, encoding="utf-8")
-    record = {"status": "arrived", "hashes": {"trajectory": trajectory}, "wall_time": len(value)}
-    (folder / "run.json").write_text(json.dumps(record), encoding="utf-8")
+    made_up_record(trajectory_hash=trajectory, wall_time=len(value)).write(folder)
     (folder / "scores.csv").write_text(
         "metric,variant,value,unit,status,reason\n"
         f"risk,literal,{value},s,ok,\nrisk,corrected,,s,undefined,no people\n",

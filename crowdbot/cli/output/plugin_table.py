@@ -34,7 +34,7 @@ def as_text(registry: Registry) -> str:
 
 
 def as_dicts(registry: Registry) -> list[dict[str, Any]]:
-    """The same as JSON, with all components."""
+    """Return the table as JSON data, with all components."""
     found = [_as_dict(p, "failed" if p.failure else "ok") for p in registry.plugins]
     return found + [_as_dict(p, "off") for p in registry.excluded]
 

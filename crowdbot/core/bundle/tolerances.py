@@ -8,11 +8,11 @@ from one published number per score, its ``spread``:
 - no single difference is larger than `SINGLE` spreads;
 - the mean of n differences is within `MEAN` spreads / sqrt(n) of zero.
 
-The spread of a score is twice the root mean square by which two runs of one scenario differ that
-have come apart for good: 12 scenarios of challenge-2020, planner dwa, two seeds
+The spread of a score is twice the root mean square difference between two runs of one scenario
+whose trajectories have diverged: 12 scenarios of challenge-2020, planner dwa, two seeds
 (benchmarks/processor_targets.py, way ``seed``). Those of yes or no are set by hand, since twelve
-scenarios do not tell how often an outcome turns: 0.5, which no single run can be off by 10 of, so
-that only the mean tells. Rounding alone did far less: at most 2e-6 in any of these scores but
+scenarios do not show how often an outcome turns: 0.5. No single run can differ by 10 of these, so
+only the mean decides. Rounding alone did far less: at most 2e-6 in any of these scores but
 one. Scores without a spread are not compared.
 """
 

@@ -35,7 +35,7 @@ from crowdbot.errors import InputError
 _NAMES = ("kind", "name", "label")
 
 
-class NotRunnable(InputError):  # noqa: N818 - an outcome of verification, told as such
+class NotRunnable(InputError):  # noqa: N818 - an outcome of verification
     """The planner of a bundle is missing or different here."""
 
 

@@ -1,4 +1,4 @@
-"""Directions that are nearly right, for who can tell where that is not enough; compiled."""
+"""Approximate directions, for callers that detect where more precision is needed; compiled."""
 
 from __future__ import annotations
 

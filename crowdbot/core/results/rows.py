@@ -90,7 +90,7 @@ class RunRow:
 
     @property
     def privileged(self) -> bool:
-        """True if the planner was told what no sensor can tell."""
+        """True if the planner gets information that no sensor can provide."""
         return self.record.knows_truth
 
     @property

@@ -88,7 +88,7 @@ class Reference:
 
     @property
     def finished(self) -> ReferenceRecord | None:
-        """Its record if it is complete, perhaps with a planner that failed."""
+        """Record of the calibration run if complete, even if the planner failed; None otherwise."""
         record = ReferenceRecord.find(self.directory)
         if record is None or record.run_id != self.run_id:
             return None
@@ -96,7 +96,7 @@ class Reference:
 
     @property
     def complete(self) -> ReferenceRecord | None:
-        """The same if no planner failed in it, which may have a passing cause."""
+        """As `finished`, but None if the planner failed, which may have a temporary cause."""
         record = self.finished
         return None if record is None or has_failed(record.status) else record
 

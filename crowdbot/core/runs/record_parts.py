@@ -72,7 +72,7 @@ class IdentityHashes(Part):
 
 
 class HashesPart(IdentityHashes):
-    """The same, and the hash of what happened."""
+    """Hashes known before the run, and the hash of its trajectory."""
 
     trajectory: Hash
 
@@ -105,7 +105,7 @@ class EndedPart(Part):
 
 
 class CostPart(EndedPart):
-    """The same of a whole run, with what it took."""
+    """Ending of a whole run, with its computing time."""
 
     wall_time: Seconds
     cpu_time: Seconds = 0.0

@@ -77,7 +77,7 @@ class _Record(CostPart):
 
     @classmethod
     def find(cls, directory: Path) -> Self | None:
-        """The same, or None."""
+        """Return the record of the complete run in a directory; None if it cannot be read."""
         try:
             return cls.read(directory)
         except InputError:
@@ -127,7 +127,7 @@ class RunRecord(_Record, RunIdentity):
 
     @property
     def knows_truth(self) -> bool:
-        """True if the planner was told what no sensor can tell."""
+        """True if the planner gets information that no sensor can provide."""
         return self.privileged or self.planner.label.endswith("+privileged")
 
     @property

@@ -156,7 +156,7 @@ def _gap(run: Trajectories) -> Array:
 
 
 def _outline_gap(outline: Footprint, wall: Array, robot: RobotTrack) -> Array:
-    """Return the least distance between wall and outline: from ends and corners to the other."""
+    """Return the least distance between wall and outline, from wall ends and outline corners."""
     c, s = np.cos(robot.theta), np.sin(robot.theta)
     ends = []
     for wx, wy in wall:

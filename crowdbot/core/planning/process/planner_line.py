@@ -25,7 +25,7 @@ _CRASH = "Fatal Python error: "
 _FRAME = re.compile(r"File \"([^<\"][^\"]*)\", line (\d+) in")
 
 
-class LineClosed(Exception):  # noqa: N818 - what happened, told by who knows the planner
+class LineClosed(Exception):  # noqa: N818 - an event, reported by the caller
     """The planner's end of the connection is closed."""
 
 

@@ -43,11 +43,11 @@ class RecordingContents:
 
     Attributes:
         finished: the file has its end; an interrupted one has not.
-        complete: besides, the run itself came to its end.
-        status: why the run ended, ``recovered`` after that; empty where nothing says so.
+        complete: the run itself came to its end, too.
+        status: reason for the end of the run, or ``recovered``; empty if unknown.
         is_run: True if crowdbot recorded it.
-        end: of the last message, s.
-        size: of the file, bytes.
+        end: time of the last message, s.
+        size: size of the file, bytes.
         attachments: name -> bytes of the files inside.
     """
 
