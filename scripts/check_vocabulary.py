@@ -4,7 +4,8 @@
 
 Prints ``file:line: text -> what to write`` and ends with exit code 1 if there are any. Only words
 that have no other meaning here are listed: this finds renamed terms, and prose that is hard to read
-in docstrings, comments and messages of the package (`PLAIN`). It is not a style guide.
+in the pages and in docstrings, comments and messages of the package (`PLAIN`). It is not a style
+guide.
 """
 
 from __future__ import annotations
@@ -24,24 +25,8 @@ PLACES = ("crowdbot", "docs", "tests", "README.md", "CONTRIBUTING.md")
 EXEMPT = ("tests/test_check_vocabulary.py", "scripts/check_vocabulary.py")
 CODE, TEXT = (".py", ".js", ".j2", ".tmpl"), (".md", ".txt", ".yaml", ".toml")
 EVERYWHERE = CODE + TEXT
-#: Folders whose Python files are also checked with `PLAIN`.
-PLAIN_PLACES = ("crowdbot",)
-#: Folders below these that are still exempt.
-NOT_YET_PLAIN = (
-    "crowdbot/core/bundle",
-    "crowdbot/core/crowd",
-    "crowdbot/core/planning",
-    "crowdbot/core/population",
-    "crowdbot/core/recording",
-    "crowdbot/core/registry",
-    "crowdbot/core/report",
-    "crowdbot/core/results",
-    "crowdbot/core/runs",
-    "crowdbot/core/sensing",
-    "crowdbot/core/sim",
-    "crowdbot/core/view",
-    "crowdbot/dsl/scenario",
-)
+#: Folders and files whose code and pages are also checked with `PLAIN`.
+PLAIN_PLACES = ("crowdbot", "docs", "README.md", "CONTRIBUTING.md")
 _BEFORE = 40  # characters that `Rule.unless` sees
 
 
@@ -91,11 +76,11 @@ RULES = (
     Rule(r"\b(?:is|are)\s+none\b(?!\s+of)", "is not one, has none", unless=r"\b[Tt]here\s+"),
 )  # fmt: skip
 
-#: Rules for docstrings, comments and other strings of Python files.
+#: Rules for pages, and for docstrings, comments and other strings of Python files.
 PLAIN = (
     Rule(r'(?m)^[ \t]*r?"""(?:What|How|Who|Whom|Whose|Where|When|Whether|Why|Which|Of)\b',
-         "say what it is, or what it does: 'Return True if …'"),
-    Rule(r"#:?\s(?:Of|Whether)\b", "say what it is"),
+         "say what it is, or what it does: 'Return True if …'", (".py",)),
+    Rule(r"#:?\s(?:Of|Whether)\b", "say what it is", (".py",)),
     Rule(r"\b(?i:nobody|somebody|whoever)\b", "no one, a person, it",
          unless=r"\bavoid[ _]|\""),
     Rule(r"\banew\b", "again, new"),
@@ -154,13 +139,10 @@ def prose(code: str) -> str:
 
 def is_plain_place(file: Path) -> bool:
     """Return True if a file is checked with `PLAIN`."""
-    if file.suffix != ".py" or not file.is_relative_to(ROOT):
+    if file.suffix not in (".py", ".md", ".js", ".j2") or not file.is_relative_to(ROOT):
         return False
     name = file.relative_to(ROOT).as_posix()
-    below = [
-        any(name.startswith(f"{p}/") for p in places) for places in (PLAIN_PLACES, NOT_YET_PLAIN)
-    ]
-    return below[0] and not below[1] and name != "scripts/check_vocabulary.py"
+    return any(name == place or name.startswith(f"{place}/") for place in PLAIN_PLACES)
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -170,7 +152,8 @@ def main(arguments: Sequence[str]) -> int:
         content = file.read_text("utf-8", errors="replace")
         all_findings = list(findings(content, file.suffix))
         if is_plain_place(file.resolve()):
-            all_findings += findings(prose(content), file.suffix, PLAIN)
+            text = prose(content) if file.suffix == ".py" else content
+            all_findings += findings(text, file.suffix, PLAIN)
         for line, text, instead in sorted(all_findings):
             place = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
             print(f"{place}:{line}: {text} -> {instead}")

@@ -79,3 +79,18 @@ def test_files_are_read_where_they_should_be() -> None:
 def test_prose_of_the_package_is_plain(code: str, words: list[str]) -> None:
     prose = vocabulary.prose(code)
     assert [word for _, word, _ in vocabulary.findings(prose, ".py", vocabulary.PLAIN)] == words
+
+
+def test_pages_are_plain() -> None:
+    page = "Whether nobody, somebody or he draws them anew, for ever."
+    found = [word for _, word, _ in vocabulary.findings(page, ".md", vocabulary.PLAIN)]
+    assert sorted(found) == ["anew", "for ever", "he", "nobody", "somebody"]
+
+
+@pytest.mark.parametrize(("name", "plain"), [
+    ("README.md", True), ("docs/index.md", True), ("docs/conf.py", True),
+    ("crowdbot/core/report/app.js", True), ("crowdbot/core/report/page.html.j2", True),
+    ("tests/paths.py", False), ("docs/examples/planners/a.toml", False),
+])  # fmt: skip
+def test_places_with_plain_prose(name: str, plain: bool) -> None:
+    assert vocabulary.is_plain_place(vocabulary.ROOT / name) is plain

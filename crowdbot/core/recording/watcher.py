@@ -27,6 +27,6 @@ class Watcher(Protocol):
         Args:
             t: time, s.
             robots: x, y, yaw, v, w of each that is there; m, rad, m/s, rad/s.
-            agents: (4, M) x, y, vx, vy; NaN where somebody is absent. It must not be changed.
+            agents: (4, M) x, y, vx, vy; NaN where a person is absent. It must not be changed.
         """
         ...

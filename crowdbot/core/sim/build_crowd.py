@@ -39,7 +39,7 @@ def build_crowd(
     parts: EnvironmentParts,
     registry: Registry,
 ) -> CrowdEngine | None:
-    """The engine for a scenario's crowd, or None when it has none."""
+    """Return the engine for a scenario's crowd, or None if it has no crowd."""
     crowd = scenario.crowd
     if crowd is None:
         return None
@@ -121,7 +121,7 @@ def _ahead(queue: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _looks(drawn: Realisation) -> Appearance | None:
-    """What sensors see of each, if not all are alike."""
+    """Return the appearance of each person for sensors; None if all are alike."""
     if not (any(drawn.look) or np.any(drawn.height) or np.any(drawn.phase)):
         return None
     return Appearance(

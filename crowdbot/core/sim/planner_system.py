@@ -180,7 +180,7 @@ class PlannerSystem(LeafSystem):
         return hosted.command
 
     def observation(self, root: Context) -> Observation | None:
-        """What the planner sees at the present step, on demand; None if the robot has ended."""
+        """Return the planner's observation at the current step; None if the robot has ended."""
         if self._ending.ended or self._ending.failure:
             return None
         context = self.GetMyContextFromRoot(root)

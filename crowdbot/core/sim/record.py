@@ -76,7 +76,7 @@ def record_robots(
 
 
 def _seen(blocks: Blocks, root: Any) -> dict[str, Observation]:
-    """What the planners of the robots that go on see; ``root`` is the context of the diagram."""
+    """Return the observations of all robots that go on; ``root``: the diagram's context."""
     found = {robot.given.built.name: robot.planner.observation(root) for robot in blocks.robots}
     return {name: obs for name, obs in found.items() if obs is not None}
 

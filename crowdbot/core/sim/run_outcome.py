@@ -44,13 +44,13 @@ def status_of(ending: RobotEnding) -> str:
 
 
 def last_arrival(endings: Sequence[RobotEnding]) -> float | None:
-    """When the last robot arrived, s; None where one did not."""
+    """Return the arrival time of the last robot, s; None if one did not arrive."""
     known = [ending.goal_time for ending in endings if ending.goal_time is not None]
     return max(known) if len(known) == len(endings) else None
 
 
 def _robot_outcome(robot: RunRobot) -> Outcome:
-    """How one robot ended; times of the machine are those of the run."""
+    """Return the outcome of one robot; its computing times are those of the run."""
     ending = robot.ending
     return Outcome(
         status=status_of(ending),
@@ -66,7 +66,7 @@ def _robot_outcome(robot: RunRobot) -> Outcome:
 
 
 def _together(robots: Sequence[RunRobot], found: Mapping[str, Outcome]) -> Outcome:
-    """How several robots ended; its times are filled in by the caller."""
+    """Return the outcome of several robots; the caller fills in computing times."""
     outcomes = found.values()
     status = run_status({outcome.status for outcome in outcomes})
     reason = "; ".join(f"{name}: {robots[k].ending.reason}" for k, name in enumerate(found))

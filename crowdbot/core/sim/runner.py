@@ -76,7 +76,7 @@ def _finish(blocks: Blocks, context: Any) -> None:
 
 
 def _progress(stage: str, blocks: Blocks, context: Any, begin: float) -> Progress:
-    """How far the run is: the largest time limit, and distance of a robot that goes on."""
+    """Return the progress: the largest time limit, and distance of a robot that goes on."""
     t = float(context.get_time())
     factor = t / max(time.perf_counter() - begin, 1e-9)
     limit = max(robot.given.built.task.time_limit for robot in blocks.robots)

@@ -205,7 +205,7 @@ class Session:
 
     @property
     def observations(self) -> dict[str, Observation]:
-        """What each robot saw last, by name; it stays the same until the next step.
+        """Latest observation of each robot, by name; unchanged until the next step.
 
         Raises:
             InputError: `reset` was not called.
@@ -255,7 +255,7 @@ class Session:
 
     @property
     def planner_seed(self) -> int:
-        """What the only robot's planner would get in this run for its own random numbers."""
+        """Seed that a planner of the only robot would get in this run for its random numbers."""
         return self.robots[self._only("planner_seed")].planner_seed
 
     @property
@@ -290,7 +290,7 @@ class Session:
 
     @property
     def goal_time(self) -> float | None:
-        """When the robot, or the last of several, arrived, s; None if one has not."""
+        """Arrival time of the robot, or of the last one, s; None if one has not arrived."""
         return None if self._outcome is None else self._outcome.goal_time
 
     @property

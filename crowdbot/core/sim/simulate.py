@@ -133,7 +133,7 @@ def _check_callbacks(progress: object, stop: object) -> None:
 
 
 def _check_suite(suite: str) -> None:
-    """Refuse what cannot be the name of a folder.
+    """Check that the name of a suite can be the name of a folder.
 
     Raises:
         InputError: it cannot.

@@ -69,7 +69,7 @@ def show(scene: Scene, view: Array) -> Pose:
 
 
 class Images:
-    """The latest image of one camera, cached outside the state while it matches it."""
+    """Cache of the latest image of one camera, kept outside the state; valid for one view."""
 
     def __init__(
         self,

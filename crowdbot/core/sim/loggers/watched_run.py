@@ -30,7 +30,7 @@ class WatchedRun:
             watcher.begin(shared, robots)
 
     def watch(self, robot: str, *, people: bool) -> OnSample | None:
-        """What the log of a robot, of people, or of both calls; None where there is no watcher."""
+        """Return the callback for the log of a robot, people or both; None without watchers."""
         if not self._watchers:
             return None
 
