@@ -75,7 +75,7 @@ def run(folder: Path, capsys: Captured, value: str, trajectory: str) -> str:
     folder.mkdir()
     main(["expand", "challenge-2020", "--one", "in-d0125-slow-c01-r02"])
     (folder / "scenario.yaml").write_text(capsys.readouterr().out, encoding="utf-8")
-    made_up_record(trajectory_hash=trajectory, wall_time=len(value)).write(folder)
+    made_up_record(trajectory_hash=trajectory, wall_time=float(len(value))).write(folder)
     (folder / "scores.csv").write_text(
         "metric,variant,value,unit,status,reason\n"
         f"risk,literal,{value},s,ok,\nrisk,corrected,,s,undefined,no people\n",

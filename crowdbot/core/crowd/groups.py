@@ -24,7 +24,7 @@ from crowdbot.core.types.arrays import Array, Indices
 SIGHT = 8.0
 
 
-class GroupForces:
+class GroupForcesRecord:
     """Parameters of `hold_together`, see `Cohesion`; half_view: half the field of view, rad."""
 
     gaze: float
@@ -35,7 +35,7 @@ class GroupForces:
     limit: float
 
 
-_FORCES = record_type(GroupForces)
+_FORCES = record_type(GroupForcesRecord)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +53,7 @@ class Cohesion:
     limit: float = 3.0
 
     @property
-    def forces(self) -> Rows[GroupForces]:
+    def forces(self) -> Rows[GroupForcesRecord]:
         """(1,) the numbers as `hold_together` takes them."""
         numbers = record_values(
             _FORCES,
@@ -89,7 +89,7 @@ def hold_together(
     ends: Indices,
     most: Array,
     boundary: Array,
-    parameters: Rows[GroupForces],
+    parameters: Rows[GroupForcesRecord],
 ) -> None:
     """Add group forces to the desired acceleration of each member on its way.
 
@@ -121,7 +121,7 @@ def _pull(
     begin: int,
     end: int,
     boundary: Array,
-    forces: GroupForces,
+    forces: GroupForcesRecord,
 ) -> tuple[float, float]:
     """Return agent i's acceleration by the others of its group, m/s^2."""
     count, mx, my, ax, ay = 1, 0.0, 0.0, 0.0, 0.0

@@ -17,7 +17,7 @@ import numpy as np
 from crowdbot.core.planning.choice import IN_PROCESS
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs.record_parts import Part
+from crowdbot.core.runs.record_parts import RecordPart
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.support.float_fingerprint import fingerprint
 from crowdbot.core.support.json_digest import digest
@@ -26,7 +26,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 _PACKAGES = ("crowdbot", "drake", "mcap", "numba", "numpy", "pydantic", "rosbags")
 
 
-def recording_hashes(identity: Part) -> dict[str, str]:
+def recording_hashes(identity: RecordPart) -> dict[str, str]:
     """Return the hashes in the header of a recording that identify its run and planner.
 
     Args:

@@ -29,7 +29,7 @@ def _complete(ending: Ending) -> Ending:
 Status = Annotated[Ending, Field(strict=False), AfterValidator(_complete)]
 
 
-class Part(BaseModel):
+class RecordPart(BaseModel):
     """A part of a record; keys that it does not know are kept."""
 
     model_config = ConfigDict(extra="allow", strict=True, frozen=True)
@@ -51,7 +51,7 @@ class Part(BaseModel):
         return digest(self.identity())
 
 
-class PlannerPart(Part):
+class PlannerPart(RecordPart):
     """The planner; its parameters stand beside these.
 
     Attributes:
@@ -64,7 +64,7 @@ class PlannerPart(Part):
     sha256: str = ""
 
 
-class IdentityHashes(Part):
+class IdentityHashes(RecordPart):
     """Hashes of the scenario and of its people, as they are known before the run."""
 
     spec: Identity[Hash]
@@ -77,7 +77,7 @@ class HashesPart(IdentityHashes):
     trajectory: Hash
 
 
-class PluginPart(Part):
+class PluginPart(RecordPart):
     """One plugin that was loaded; ``sha256`` of its files where it is not pinned."""
 
     name: str
@@ -86,13 +86,13 @@ class PluginPart(Part):
     sha256: str = ""
 
 
-class MetricPart(Part):
+class MetricPart(RecordPart):
     """Version of a metric; its parameters are additional keys."""
 
     spec_version: Annotated[int, Ge(0)]
 
 
-class EndedPart(Part):
+class EndedPart(RecordPart):
     """Ending of a run, or of one of its robots."""
 
     status: Status
@@ -119,7 +119,7 @@ class RobotPart(EndedPart):
     trajectory: Hash
 
 
-class MomentPart(Part):
+class MomentPart(RecordPart):
     """The moment at which a run is worst."""
 
     t: Seconds
@@ -127,7 +127,7 @@ class MomentPart(Part):
     clearance: Annotated[float, Field(allow_inf_nan=False)] | None = None
 
 
-class LivePart(Part):
+class LivePart(RecordPart):
     """Data that only runs by ``crowdbot serve`` have; ``largest_lag`` in s."""
 
     steps: Count
@@ -137,7 +137,7 @@ class LivePart(Part):
 
 
 def _identity_of(value: Any) -> Any:
-    if isinstance(value, Part):
+    if isinstance(value, RecordPart):
         return value.identity()
     if isinstance(value, list):
         return [_identity_of(one) for one in value]

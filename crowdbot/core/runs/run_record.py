@@ -22,15 +22,15 @@ from crowdbot.core.runs.record_parts import (
     LivePart,
     MetricPart,
     MomentPart,
-    Part,
     PlannerPart,
     PluginPart,
+    RecordPart,
     RobotPart,
 )
 from crowdbot.errors import InputError
 
 
-class RunIdentity(Part):
+class RunIdentity(RecordPart):
     """Everything that decides what happens in a run.
 
     Attributes:
@@ -156,7 +156,7 @@ class RunRecord(_Record, RunIdentity):
         return self.document()[key]
 
 
-class ReferenceIdentity(Part):
+class ReferenceIdentity(RecordPart):
     """Everything that a calibration run depends on."""
 
     reference: Identity[str]
@@ -180,7 +180,7 @@ def record_problems(document: Mapping[str, Any]) -> list[str]:
     return _problems(RunRecord, document)
 
 
-def _problems(model: type[Part], document: Mapping[str, Any]) -> list[str]:
+def _problems(model: type[RecordPart], document: Mapping[str, Any]) -> list[str]:
     try:
         model.model_validate(dict(document))
     except ValidationError as error:

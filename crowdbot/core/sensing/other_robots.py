@@ -24,7 +24,7 @@ class OtherRobot:
     height: float
 
 
-class OtherRobots:
+class RobotSurfaces:
     """Surfaces of several robots: a disc is a cylinder, others are plates.
 
     Attributes:

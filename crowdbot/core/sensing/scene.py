@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core.sensing.appearance_model import gaits, heights, place_looks, place_things, things
 from crowdbot.core.sensing.body_model import DISC_COLUMNS, PARTS, place_people
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
-from crowdbot.core.sensing.other_robots import OtherRobot, OtherRobots
+from crowdbot.core.sensing.other_robots import OtherRobot, RobotSurfaces
 from crowdbot.core.sensing.raycast import cast_rays
 from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
 from crowdbot.core.sensing.raycast_tilted import cast_tilted_rays
@@ -83,7 +83,7 @@ class Scene:
         self._pillars = _constant(np.reshape(pillars, (-1, 3)), (np.size(pillars) // 3, 3))
         self.pillar_heights = _constant(pillar_heights, (len(self._pillars), 2))
         self.fixed_pillars = len(self._pillars)
-        self.others = OtherRobots(robots)
+        self.others = RobotSurfaces(robots)
         if robots:
             self._make_room()
         self._obstacles = Obstacles(self._walls, self.wall_heights, *self._lay_out())

@@ -1,4 +1,4 @@
-"""OtherRobots: the other robots of a run, as the blocks of one robot know them."""
+"""The other robots of a run, as the blocks of one robot know them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.core.types.robot import RobotModel
 
 @dataclass(frozen=True, slots=True)
 class OtherRobots:
-    """Nothing but the robot's own ending where it is the only one.
+    """The other robots, and the ending of the robot itself.
 
     Attributes:
         ending: of the robot itself.

@@ -205,13 +205,13 @@ def in_manifest(old: bytes, new: bytes) -> Change:
 
 @pytest.mark.parametrize(("change", "why"), [
     (in_manifest(b'"team"', b'"team": "They", "team"'), "the key 'team' is there twice"),
-    (in_json(team="\ud800"), "the character U+D800"),
-    (in_json(team="\u202eabc"), "the character U+202E"),
+    (in_json(team="\ud800"), "the hidden character U+D800"),
+    (in_json(team="\u202eabc"), "the hidden character U+202E"),
     (in_json(team="a\nb"), "team: the character U+000A is not one that is shown"),
     (in_json(contact="x" * 201), "contact: String should have at most 200 characters"),
-    (in_json(versions={"crowdbot": "\x1b[2J"}), "the character U+001B"),
+    (in_json(versions={"crowdbot": "\x1b[2J"}), "the hidden character U+001B"),
     (in_json(seeds=[float("nan")]), "NaN is not a number of JSON"),
-    (in_edition(title="\u2028"), "the character U+2028"),
+    (in_edition(title="\u2028"), "the hidden character U+2028"),
 ])  # fmt: skip
 def test_a_manifest_that_is_shown_otherwise_than_it_is(
     bundle: Path, change: Change, why: str
@@ -255,7 +255,7 @@ def test_runs_that_a_manifest_does_not_account_for_keep_it_off_the_leaderboard(
 @pytest.mark.parametrize(("change", "why"), [
     (in_manifest(b'"seed"', b'"seed": 1, "seed"'), "the key 'seed' is there twice"),
     (in_json(density=float("nan")), "NaN is not a number"),
-    (in_json(reason="\ud800"), "the character U+D800"),
+    (in_json(reason="\ud800"), "the hidden character U+D800"),
     (in_manifest(b'"seed": 0', b'"seed": ' + b"9" * 5000), "has 5000 digits"),
 ])  # fmt: skip
 def test_a_record_that_can_be_read_in_two_ways_is_named(
@@ -275,7 +275,10 @@ def change_row(content: bytes, old: bytes, new: bytes) -> bytes:
 @pytest.mark.parametrize(("change", "why"), [
     (lambda c: c + c.split(b"\r\n")[1] + b"\r\n", "risk.corrected is there 2 times"),
     (lambda c: change_row(c, b",dwa,", b",other,"), "scores of another planner: 'other'"),
-    (lambda c: change_row(c, b",ok,", b",ok,\xe2\x80\xae"), "reason has the character U+202E"),
+    (
+        lambda c: change_row(c, b",ok,", b",ok,\xe2\x80\xae"),
+        "reason has the hidden character U+202E",
+    ),
     (lambda c: re.sub(rb",(lower|higher),ok", b",none,ok", c), ", none there, here "),
     (lambda c: re.sub(rb"(spl,.*,corrected),[^,]*,", rb"\1,2.5,", c), "is 2.5; it lies between 0 "),
     (lambda c: change_row(c, b",corrected,", b",better,"), "risk has no variant 'better'"),

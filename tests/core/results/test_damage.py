@@ -68,7 +68,7 @@ DAMAGE: tuple[tuple[Callable[[Path], object], str], ...] = (
     (lambda run: (run / "run.json").unlink(), "run.json is missing"),
     (lambda run: cut(run / "run.json"), "cut, or not a record of a run"),
     (lambda run: (run / "run.json").write_text("[]"), "cut, or not a record of a run"),
-    (lambda run: (run / "run.json").write_text("{}"), "'run_id': field required"),
+    (lambda run: (run / "run.json").write_text("{}"), "'scenario': field required"),
     (lambda run: (run / "run.mcap").unlink(), "run.mcap is missing"),
     (lambda run: cut(run / "run.mcap"), "run.mcap has "),
     (lambda run: (run / "scores.csv").unlink(), "scores.csv is missing"),

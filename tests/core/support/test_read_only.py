@@ -15,7 +15,7 @@ import pytest
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.build import build_policy
 from crowdbot.core.geometry.footprint import Footprint
-from crowdbot.core.sensing.other_robots import OtherRobot, OtherRobots
+from crowdbot.core.sensing.other_robots import OtherRobot, RobotSurfaces
 from crowdbot.core.sensing.range_model import RangeModel
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.support.immutable import immutable_fields
@@ -76,7 +76,7 @@ def with_parts(value: Any) -> Iterator[Any]:
     elif isinstance(value, (tuple, list)):
         for part in value:
             yield from with_parts(part)
-    elif isinstance(value, (Scene, OtherRobots)):
+    elif isinstance(value, (Scene, RobotSurfaces)):
         for name in dir(value):
             if not name.startswith("_"):
                 yield from with_parts(getattr(value, name))

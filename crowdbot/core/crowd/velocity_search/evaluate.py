@@ -17,9 +17,9 @@ from crowdbot.core.crowd.velocity_search.cost import AgentView, Neighbours, Nump
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord, Starts, gather, gather_walls
 from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
 from crowdbot.core.crowd.velocity_search.surroundings import (
+    DecisionTraitsRecord,
     SettingsRecord,
     Surroundings,
-    TraitsRecord,
     describe,
 )
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
@@ -129,7 +129,7 @@ def _columns(rows: Rows[Any], chosen: Mask, *names: str) -> Array:
 @kernel
 def _evaluate(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord], functions: Functions, weights: Array,
     active: Indices, velocities: Array, total: Array,

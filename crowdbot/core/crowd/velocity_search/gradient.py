@@ -22,9 +22,9 @@ from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord, Starts
 from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
 from crowdbot.core.crowd.velocity_search.surroundings import (
+    DecisionTraitsRecord,
     SettingsRecord,
     Surroundings,
-    TraitsRecord,
     describe,
 )
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
@@ -69,7 +69,7 @@ class Descent:
 @kernel
 def _descend(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord], functions: Functions, weights: Array, active: Indices, out: Array,
     result: Array,

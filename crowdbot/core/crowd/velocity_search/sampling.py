@@ -48,9 +48,9 @@ from crowdbot.core.crowd.velocity_search.search import (
 )
 from crowdbot.core.crowd.velocity_search.single import polar, single_candidates
 from crowdbot.core.crowd.velocity_search.surroundings import (
+    DecisionTraitsRecord,
     SettingsRecord,
     Surroundings,
-    TraitsRecord,
     describe,
 )
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
@@ -142,7 +142,7 @@ class Sampler:
 @kernel
 def _tabulate(
     candidates: Array,
-    traits: Rows[TraitsRecord],
+    traits: Rows[DecisionTraitsRecord],
     radius: int,
     dt: float,
     functions: Functions,
@@ -170,7 +170,7 @@ def _tabulate(
 @kernel
 def _choose(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord],
     functions: Functions, weights: Array,
@@ -243,7 +243,7 @@ def _choose(
 @kernel
 def _candidates_of(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[TraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord],
     base: int, direction: int, radius: int, half: float, drawn: bool,

@@ -24,7 +24,7 @@ from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.types.arrays import Array, Mask
 
 
-class TraitsRecord:
+class DecisionTraitsRecord:
     """Traits of an agent for the search; fields as of `AgentRecord`."""
 
     preferred: float
@@ -41,7 +41,7 @@ class SettingsRecord:
     parity: float
 
 
-TRAITS = record_type(TraitsRecord)
+TRAITS = record_type(DecisionTraitsRecord)
 SETTINGS = record_type(SettingsRecord)
 
 
@@ -71,7 +71,7 @@ class Surroundings(NamedTuple):
     goal: Array
     walls: Array
     reach: float
-    traits: Rows[TraitsRecord]
+    traits: Rows[DecisionTraitsRecord]
     settings: Rows[SettingsRecord]
     random: Array
     near: Rows[NeighbourRecord]

@@ -31,7 +31,7 @@ from crowdbot.plugins.planners.dwa.dead_ends.manoeuvring_build import Manoeuvrin
 from crowdbot.plugins.planners.dwa.direction_build import choose_direction
 from crowdbot.plugins.planners.dwa.dwa import DwaSpec
 from crowdbot.plugins.planners.dwa.parameters_build import PARAMETERS, PERIOD, parameters_of
-from crowdbot.plugins.planners.dwa.scene_build import REACH, Scene
+from crowdbot.plugins.planners.dwa.scene_build import REACH, PerceivedScene
 from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_aside
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.shared.heading_by_walls_build import HeadingByWalls, compile_heading
@@ -50,7 +50,7 @@ _REVERSE = -0.2
 
 
 class Dwa:
-    """Remembers its last choice; `Scene` remembers scans and `DeadEnds` a small map."""
+    """Remembers its last choice; `PerceivedScene` remembers scans and `DeadEnds` a small map."""
 
     def __init__(self, spec: DwaSpec) -> None:
         self._spec = spec
@@ -66,7 +66,7 @@ class Dwa:
 
     def _forget(self) -> None:
         self._heading_by_walls = HeadingByWalls()
-        self._scene = Scene(self._spec, splits=self._manoeuvring is not None)
+        self._scene = PerceivedScene(self._spec, splits=self._manoeuvring is not None)
         self._dead_ends = DeadEnds(
             self._spec, self._half_width, self._reach,
             outlined=len(self._core) > 0, manoeuvring=self._manoeuvring,

@@ -25,7 +25,7 @@ _NEARBY = 4.0
 _WALKS, _SETTLES, _MOST = 0.5, 1.0, 0.4
 
 
-class Scene:
+class PerceivedScene:
     """Remembers old scans, and whether the people nearby walk.
 
     Args:

@@ -12,7 +12,7 @@ from crowdbot.plugin import Array, Observation, Pose
 from crowdbot.plugins.planners.dwa.dead_ends.manoeuvring_build import Manoeuvring
 from crowdbot.plugins.planners.dwa.dead_ends.map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa.dwa import DwaSpec
-from crowdbot.plugins.planners.dwa.scene_build import LEGS, REACH, SECTORS, Scene
+from crowdbot.plugins.planners.dwa.scene_build import LEGS, REACH, SECTORS, PerceivedScene
 from crowdbot.plugins.planners.shared.people_build import with_discs
 from crowdbot.plugins.planners.shared.points_build import apart, nearest_per_sector
 
@@ -79,7 +79,7 @@ class DeadEnds:
             manoeuvring.forget()
 
     def detour(
-        self, obs: Observation, pose: Pose, goal: float, distance: float, scene: Scene,
+        self, obs: Observation, pose: Pose, goal: float, distance: float, scene: PerceivedScene,
         period: float,
     ) -> Detour:  # fmt: skip
         """Return the changes to this step that lead out of a dead end.
@@ -140,7 +140,7 @@ class DeadEnds:
             self._nearest = (distance, t)
         return t - self._nearest[1] > 2.0 * self._spec.patience
 
-    def _renew_map(self, obs: Observation, pose: Pose, scene: Scene) -> None:
+    def _renew_map(self, obs: Observation, pose: Pose, scene: PerceivedScene) -> None:
         """Find the first stretch of a way past everything that stands around."""
         x, y, yaw = pose
         if obs.t - self._mapped_at < _MAP_PERIOD:
