@@ -322,6 +322,7 @@ def _call(client: ClientConnection, service: str, args: dict[str, Any]) -> None:
         (["--budget", "nan"], 2, "--budget must be above 0"),
         (["--rate", "1", "--clock", "external"], 2, "exclude each other"),
         (["--name", "a/b"], 1, "cannot be the name"),
+        (["--set", "robots={}"], 1, "has no robot"),
         (["--host", "203.0.113.1", "--port", "0"], 1, "cannot listen there"),
     ],
 )

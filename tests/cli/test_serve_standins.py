@@ -7,13 +7,14 @@ import math
 import socket
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 import zenoh
 from rosbags.typesys import Stores, get_typestore
+from ruamel.yaml import YAML
 
 from crowdbot import cli
 from crowdbot.core.live.ros2_keys import Ros2Topic, hash_in
@@ -28,8 +29,9 @@ JAZZY: Any = get_typestore(Stores.ROS2_JAZZY)
 def _over_rosbridge(port: int, planner: PurePursuit) -> None:
     with _connected(port) as client:
         for topic in (*HEARS, "/crowdbot/status"):
-            _say(client, "subscribe", topic)
-        _say(client, "advertise", "/cmd_vel", type="geometry_msgs/Twist")
+            _say(client, "subscribe", planner.topic(topic) if topic in HEARS else topic)
+        command = planner.topic("/cmd_vel")
+        _say(client, "advertise", command, type="geometry_msgs/Twist")
         for frame in client:
             message = json.loads(frame)
             topic, body = message.get("topic"), message.get("msg")
@@ -43,15 +45,15 @@ def _over_rosbridge(port: int, planner: PurePursuit) -> None:
                     at, turn = t["transform"]["translation"], t["transform"]["rotation"]
                     frames = t["header"]["frame_id"], t["child_frame_id"]
                     planner.on_tf(*frames, at["x"], at["y"], turn["z"], turn["w"])
-            elif topic == "/odom":
+            elif topic == planner.topic("/odom"):
                 planner.on_odom(body["twist"]["twist"]["linear"]["x"])
-            elif topic == "/scan":
+            elif topic == planner.topic("/scan"):
                 planner.on_scan([math.inf if r is None else r for r in body["ranges"]])
             elif topic == "/clock":
                 planner.seen.add("/clock")
                 v, w = planner.command()
                 twist = {"linear": {"x": v}, "angular": {"z": w}}
-                _say(client, "publish", "/cmd_vel", msg=twist)
+                _say(client, "publish", command, msg=twist)
             elif topic == "/crowdbot/status" and body["state"] in ("arrived", "timeout"):
                 return
 
@@ -125,9 +127,10 @@ class _OverZenoh:
 
 
 def _serve(
-    out: Path, capsys: pytest.CaptureFixture[str], name: str, port: int, *more: str
-) -> dict[str, Any]:
-    argv = [*SHORT, "--out", str(out), "--record", "used"]
+    out: Path, capsys: pytest.CaptureFixture[str], name: str, port: int, *more: str,
+    what: Sequence[str] = SHORT,
+) -> dict[str, Any]:  # fmt: skip
+    argv = [*what, "--out", str(out), "--record", "used"]
     code = cli.main(["serve", *argv, "--port", str(port), "--json", "--name", name, *more])
     shown = capsys.readouterr()
     assert code == 0, shown.err
@@ -159,3 +162,84 @@ def test_both_drive_to_the_goal(tmp_path: Path, capsys: pytest.CaptureFixture[st
         assert planner.seen == set(HEARS)
         assert (run["status"], run["live"]["missed_steps"]) == ("arrived", 0)
         assert _way(run) > 1.0
+
+
+def _two_robots(folder: Path) -> str:
+    """The short way with two robots beside each other, without people."""
+    world = YAML(typ="safe").load(Path(SHORT[0]).read_text())
+    scenario = world["scenario"]
+    del scenario["crowd"]
+    one = scenario["robots"].pop("robot")
+    for name, y in (("a", 1), ("b", -1)):
+        task = {**one["task"], "start": ["1.5 m", f"{y} m", "0 deg"]}
+        scenario["robots"][name] = {**one, "task": task}
+    file = folder / "two.yaml"
+    file.write_text(json.dumps(world))
+    return str(file)
+
+
+def test_two_clients_drive_two_robots_to_the_goal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    port, what = _free_port(), [_two_robots(tmp_path)]
+    planners = [PurePursuit(aside=1.0, robot="a"), PurePursuit(aside=-1.0, robot="b")]
+    threads = [
+        threading.Thread(target=_over_rosbridge, args=(port, planner), daemon=True)
+        for planner in planners
+    ]
+    for thread in threads:
+        thread.start()
+    run = _serve(tmp_path, capsys, "two", port, what=what)
+    for thread in threads:
+        thread.join(600.0)
+    assert (run["status"], run["live"]["missed_steps"]) == ("arrived", 0)
+    for planner in planners:
+        assert planner.seen == set(HEARS)
+        with Recording(Path(run["directory"]) / "run.mcap") as recording:
+            robot = recording.trajectories(planner.robot).robot
+        assert robot is not None
+        assert robot.x[-1] - robot.x[0] > 1.0
+
+
+def _constant(port: int, speeds: dict[str, float]) -> None:
+    """One client that drives each of its robots with a constant speed."""
+    with _connected(port) as client:
+        for topic in ("/clock", "/crowdbot/status"):
+            _say(client, "subscribe", topic)
+        for robot in speeds:
+            _say(client, "advertise", f"/{robot}/cmd_vel")
+        for frame in client:
+            message = json.loads(frame)
+            if message.get("topic") == "/clock":
+                for robot, v in speeds.items():
+                    _say(client, "publish", f"/{robot}/cmd_vel", msg={"linear": {"x": v}})
+            elif message["op"] == "publish" and message["msg"]["state"] == "timeout":
+                return
+
+
+def test_robots_driven_from_outside_go_as_those_driven_inside(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    port, speeds = _free_port(), {"a": 0.3, "b": 0.2}
+    limits = [x for r in speeds for x in ("--set", f"robots.{r}.task.time_limit=1.5")]
+    what = [_two_robots(tmp_path), *limits]
+    thread = threading.Thread(target=_constant, args=(port, speeds), daemon=True)
+    thread.start()
+    outside = _serve(tmp_path, capsys, "two", port, what=what)
+    thread.join(600.0)
+    file = tmp_path / "constant.py"
+    file.write_text(
+        "class Constant:\n"
+        "    needs = ()\n"
+        "    def __init__(self, v=0.0): self.v = v\n"
+        "    def reset(self, task, limits, sensors, seed): pass\n"
+        "    def step(self, obs): return (self.v, 0.0)\n"
+    )
+    planner = ["--planner", ",".join(f"{robot}={file}:Constant" for robot in speeds)]
+    for robot, v in speeds.items():
+        planner += ["--planner-set", f"{robot}.v={v}"]
+    argv = [*what, *planner, "--out", str(tmp_path / "inside"), "--no-references", "--json"]
+    assert cli.main(["simulate", *argv]) == 0
+    inside = json.loads(capsys.readouterr().out)
+    assert outside["hashes"] == inside["hashes"]
+    assert (outside["live"]["steps"], outside["live"]["missed_steps"]) == (24, 0)

@@ -1,4 +1,4 @@
-"""``crowdbot serve``: let external programs drive the robot of a run."""
+"""``crowdbot serve``: let external programs drive the robots of a run."""
 
 from __future__ import annotations
 
@@ -46,10 +46,11 @@ from crowdbot.cli.shared.run_arguments import (
     ScenarioArgument,
     SpecArgument,
 )
+from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
     from crowdbot.cli.serving.serve_options import Listen
-    from crowdbot.core.live.planner import Manner
+    from crowdbot.core.live.manner import Manner
     from crowdbot.core.planning.resolve import PlannerChoice
     from crowdbot.core.registry.registry import Registry
     from crowdbot.core.runs.run import Request, Run
@@ -90,7 +91,7 @@ def serve(
     no_plugins: NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
-    """Serve one scenario as a rosbridge server: an external program drives the robot.
+    """Serve one scenario as a rosbridge server: external programs drive its robots.
 
     Example: crowdbot serve challenge-2020 in-d0125-slow-c01-r02 --port 9090
     """
@@ -143,12 +144,12 @@ def _what(
     registry: Registry, spec: str, scenario: str | None, overrides: list[str] | None
 ) -> _What:
     from crowdbot.core.scenarios.library import open_spec, pick
-    from crowdbot.core.scenarios.one_robot import check_one_robot
 
     expansion = open_spec(spec, registry, overrides or ())
     whole = scenario is None and not expansion.single
     chosen = expansion.scenarios[0] if whole else pick(expansion, scenario)
-    check_one_robot(chosen, "'crowdbot serve'")  # before anyone is asked to connect
+    if not chosen.robots:  # before anyone is asked to connect
+        raise InputError(f"{chosen.id} has no robot, and 'crowdbot serve' drives robots")
     first = expansion.scenarios.index(chosen)
     return _What(registry=registry, expansion=expansion, first=first)
 
@@ -158,11 +159,11 @@ def _serve(what: _What, how: _Serving, manner: Manner, listen: Listen) -> Run:
     from crowdbot.cli.shared.one_run import import_simulate, interruptible
 
     import_simulate()
-    from crowdbot.core.live.serve import LiveServe, serve_runs
+    from crowdbot.core.live.serve import LiveServe, live_robots, serve_runs
     from crowdbot.core.live.session import LiveSession
 
     with interruptible() as stop:
-        session = LiveSession(interrupted=stop)
+        session = LiveSession(interrupted=stop, robots=live_robots(what.expansion.scenarios))
         with listening(session, manner, listen) as doors:
             service = LiveServe(
                 session=session,

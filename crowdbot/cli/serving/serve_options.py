@@ -15,7 +15,7 @@ from crowdbot.errors import MissingLibraryError, UsageError
 
 if TYPE_CHECKING:
     from crowdbot.core.live.door import Door
-    from crowdbot.core.live.planner import Manner
+    from crowdbot.core.live.manner import Manner
     from crowdbot.core.live.services import Service
     from crowdbot.core.live.session import LiveSession
     from crowdbot.core.recording.watcher import Watcher
@@ -54,7 +54,7 @@ def manner_of(
     Raises:
         UsageError: two options contradict each other, or a number is out of range.
     """
-    from crowdbot.core.live.planner import Manner
+    from crowdbot.core.live.manner import Manner
 
     external = clock is ClockChoice.external
     if external and rate is not None:
@@ -107,7 +107,7 @@ def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
         stamped=listen.stamped,
         external_clock=manner.external_clock,
     )
-    _say(f"rosbridge: connected to {listen.connect}; waiting for commands on /cmd_vel")
+    _say(f"rosbridge: connected to {listen.connect}; waiting for commands on {_topics(session)}")
     return door
 
 
@@ -120,6 +120,10 @@ def _foxglove(session: LiveSession, manner: Manner, listen: Listen, port: int) -
     door = FoxgloveDoor(session, listen.host, port, _services(session), manner.epoch)
     _say(f"foxglove: ws://{listen.host}:{door.port}")
     return door
+
+
+def _topics(session: LiveSession) -> str:
+    return ", ".join(session.commands)
 
 
 def _is_this_machine(host: str) -> bool:
@@ -170,7 +174,8 @@ def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
     )
     shown = f"[{listen.host}]" if ":" in listen.host else listen.host
     query = f"/?token={token}" if token else ""
-    _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for a client that drives /cmd_vel")
+    who = "clients that drive" if len(session.robots) > 1 else "a client that drives"
+    _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for {who} {_topics(session)}")
     return server
 
 

@@ -12,7 +12,7 @@ from typing import Any, cast
 from crowdbot.core.live.commands import twist
 from crowdbot.core.live.foxglove_parameters import parameters, set_parameters
 from crowdbot.core.live.message import LiveMessage, Offer
-from crowdbot.core.live.robot_topics import robot_topic
+from crowdbot.core.live.robot_topics import namespaces, robot_topic
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
@@ -25,7 +25,6 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 
-COMMAND = "/cmd_vel"
 #: What a spectator sees and a planner does not: people, and where each robot really is.
 SEEN = (
     Offer(str(Topic.PEOPLE_MARKER), MARKER),
@@ -38,7 +37,7 @@ _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 class FoxgloveDoor:
     """A live connection for Foxglove.
 
-    What it publishes on ``/cmd_vel`` drives, as from any client.
+    What it publishes on ``/cmd_vel``, or ``/NAME/cmd_vel``, drives, as from any client.
     """
 
     def __init__(
@@ -65,7 +64,7 @@ class FoxgloveDoor:
         self._context = foxglove.Context()
         self._channels: dict[str, Any] = {}
         self._latest: dict[str, LiveMessage] = {}
-        self._clients: dict[tuple[int, int], str] = {}
+        self._clients: dict[tuple[int, int], tuple[str, str]] = {}  # -> robot, format
         self._lock = threading.Lock()
         try:
             self._server = foxglove.start_server(
@@ -130,7 +129,8 @@ class FoxgloveDoor:
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
         """A run begins whose robots and people are shown, as a watcher shows them."""
         agents = shared.agents
-        self._poses = {robot_topic(str(Topic.POSE), name, robots): name for name in robots}
+        spaces = namespaces(robots)
+        self._poses = {robot_topic(str(Topic.POSE), s): name for name, s in spaces.items()}
         self._make_channels([Offer(topic, _POSE) for topic in self._poses])
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
@@ -199,23 +199,27 @@ class FoxgloveDoor:
 
     def on_client_advertise(self, client: Any, channel: Any) -> None:
         """Register a client's topic."""
-        if channel.topic == COMMAND:
-            self._clients[client.id, channel.id] = f"{channel.encoding} {channel.schema_name}"
-            self._session.drive(self)
+        robot = self._session.commands.get(channel.topic)
+        if robot is not None:
+            about = f"{channel.encoding} {channel.schema_name}"
+            self._clients[client.id, channel.id] = robot, about
+            self._session.drive(self, robot)
 
     def on_client_unadvertise(self, client: Any, client_channel_id: int) -> None:
         """Remove a client's topic, or a client that is gone."""
-        if self._clients.pop((client.id, client_channel_id), None) and not self._clients:
-            self._session.leave(self)
+        robot, _ = self._clients.pop((client.id, client_channel_id), (None, ""))
+        if robot is not None and all(robot != other for other, _ in self._clients.values()):
+            self._session.leave(self, robot)
 
     def on_message_data(self, client: Any, client_channel_id: int, data: bytes) -> None:
         """Take a command in JSON or CDR; ignore everything else."""
-        about = self._clients.get((client.id, client_channel_id))
-        if about is None:
+        known = self._clients.get((client.id, client_channel_id))
+        if known is None:
             return
+        robot, about = known
         encoding, _, kind = about.partition(" ")
         with suppress(Exception):  # third-party decoders with untrusted input
-            self._session.command(self, *_command(encoding, kind, data))
+            self._session.command(self, *_command(encoding, kind, data), robot)
 
 
 def _command(encoding: str, kind: str, data: bytes) -> tuple[Command, int | None]:

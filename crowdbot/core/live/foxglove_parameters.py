@@ -21,7 +21,7 @@ def parameters(session: LiveSession, names: Iterable[str] = ()) -> list[Any]:
         "seed": session.seed,
         "paused": session.paused,
         "state": session.state,
-        "robot": session.robot,
+        "robot": ", ".join(robot.name for robot in session.here),
     }
     wanted = list(names) or list(values)
     return [Parameter(name, value=values[name]) for name in wanted if name in values]

@@ -12,6 +12,8 @@ from crowdbot.core.planning.planner import Observation
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
 from crowdbot.core.recording.camera import CameraMessages
+from crowdbot.core.recording.header import RecordingHeader, with_frames
+from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.core.recording.scenery import BASE
 from crowdbot.core.recording.topics import SensorTopic, Topic, is_odometry, sensor_topics
 from crowdbot.core.sensing.depth_mm import depth_mm
@@ -34,18 +36,33 @@ class Observed:
     """
 
     def __init__(
-        self, sensors: Mapping[str, SensorInfo], model: RobotModel, *, epoch: int = 0
+        self,
+        sensors: Mapping[str, SensorInfo],
+        model: RobotModel,
+        *,
+        epoch: int = 0,
+        namespace: str = "",
     ) -> None:
-        """Prepare the messages. ``epoch``: ns added to all stamps."""
+        """Prepare the messages.
+
+        Args:
+            epoch: ns added to all stamps.
+            namespace: prefix of the frames.
+        """
+        sensors = with_frames(
+            RecordingHeader(scenario="", sensors=sensors, namespace=namespace)
+        ).sensors
+        odom, base = (in_namespace(namespace, frame) for frame in ("odom", BASE))
         self._sensors, self._epoch = dict(sensors), epoch
         cameras = {n: i for n, i in sensors.items() if i.camera is not None}
         self._cameras = {n: CameraMessages(n, i) for n, i in cameras.items()}
-        self._topics = sensor_topics({n: i for n, i in sensors.items() if n not in cameras})
+        ranging = {n: i for n, i in sensors.items() if n not in cameras}
+        self._topics = sensor_topics(ranging, namespace)
         self._names = {n: _names(n, t, self._topics) for n, t in self._topics.items()}
         self._wheels = _Wheels(model)
         self._odometry = any(is_odometry(i) for i in sensors.values())
-        self._tf = template.transform("odom", BASE)
-        self._odom, self._clock = template.odometry(BASE), template.clock()
+        self._frame, self._tf = odom, template.transform(odom, base)
+        self._odom, self._clock = template.odometry(base, odom), template.clock()
         self._told: dict[str, float] = {}
 
     def offers(self) -> list[Offer]:
@@ -94,7 +111,7 @@ class Observed:
         if wanted(JOINTS):
             yield told(JOINTS, ns, self._wheels.message(ns))
         if wanted(OBSERVATION):
-            yield told(OBSERVATION, ns, _observation(ns, obs))
+            yield told(OBSERVATION, ns, _observation(ns, obs, self._frame))
         if wanted(Topic.CLOCK):
             data = self._clock.fill(template.stamp(ns))
             yield LiveMessage(str(Topic.CLOCK), self._clock.msgtype, ns, data)
@@ -180,7 +197,7 @@ class _Wheels:
         )
 
 
-def _observation(ns: int, obs: Observation) -> Any:
+def _observation(ns: int, obs: Observation, frame: str) -> Any:
     """Return all numbers of an observation exactly; images have their own topics."""
     readings = [
         ros.new(
@@ -195,7 +212,7 @@ def _observation(ns: int, obs: Observation) -> Any:
     v, w = obs.twist
     return ros.new(
         "crowdbot_msgs/Observation",
-        header=ros.header(ns, "odom"),
+        header=ros.header(ns, frame),
         t=obs.t,
         pose=np.array(obs.pose, np.float64),
         twist=np.array([v, w, obs.vy], np.float64),

@@ -1,10 +1,28 @@
-"""Topics of a live run that belong to one robot."""
+"""Topics of a live run that belong to one robot: plain for the only one, ``/NAME/…`` of several."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
+
+from crowdbot.core.recording.topics import Topic
+
+STATUS, COMMAND = "/crowdbot/status", str(Topic.COMMAND)
+#: Topics that all robots share, as in recordings.
+_SHARED = frozenset(
+    {STATUS, Topic.TF, Topic.TF_STATIC, Topic.CLOCK, Topic.MAP, Topic.WALLS}
+)  # fmt: skip
 
 
-def robot_topic(topic: str, robot: str, robots: Collection[str]) -> str:
-    """The name of a robot's topic: below the robot's name where there are several."""
-    return f"/{robot}{topic}" if len(robots) > 1 else topic
+def namespaces(robots: Collection[str]) -> dict[str, str]:
+    """Return the namespace of each robot of a scenario: its name, or empty for the only one."""
+    return {name: name if len(robots) > 1 else "" for name in robots}
+
+
+def robot_topic(topic: str, namespace: str) -> str:
+    """Return the name of a robot's topic."""
+    return f"/{namespace}{topic}" if namespace and topic not in _SHARED else topic
+
+
+def command_topics(names: Iterable[str]) -> dict[str, str]:
+    """Return the topics of commands: topic -> namespace of the robot."""
+    return {robot_topic(COMMAND, name): name for name in names}

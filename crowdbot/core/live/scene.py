@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from crowdbot.core.recording.header import (
     RobotHeader,
     limit_numbers,
     sensor_message,
+    with_frames,
 )
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.robots.urdf_export import to_urdf
@@ -30,6 +31,7 @@ class LiveScene:
 
     Attributes:
         name: name of the robot.
+        namespace: prefix of its topics and frames; empty for the only robot.
         sensors: sensors of the planner.
     """
 
@@ -38,8 +40,7 @@ class LiveScene:
     parts: EnvironmentParts
     model: RobotModel
     sensors: Mapping[str, SensorInfo]
-    goal: tuple[float, float] = (0.0, 0.0)
-    messages: tuple[LiveMessage, ...] = field(default=())
+    namespace: str = ""
 
 
 def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
@@ -69,7 +70,11 @@ def _header(scene: LiveScene, task: Task) -> RecordingHeader:
         limits=model.limits,
         footprint=model.footprint,
     )
-    return RecordingHeader(scenario=scene.scenario, robot=robot, sensors=scene.sensors)
+    return with_frames(
+        RecordingHeader(
+            scenario=scene.scenario, robot=robot, sensors=scene.sensors, namespace=scene.namespace
+        )
+    )
 
 
 def _description(scene: LiveScene) -> str:

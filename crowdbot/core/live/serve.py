@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 
 from crowdbot.core.live.door import Door
-from crowdbot.core.live.planner import LivePlanner, Manner, status
+from crowdbot.core.live.live_robot import LiveRobot
+from crowdbot.core.live.manner import Manner
+from crowdbot.core.live.planner import LivePlanner
+from crowdbot.core.live.robot_topics import namespaces
 from crowdbot.core.live.scene import LiveScene
 from crowdbot.core.live.session import LiveSession, State
+from crowdbot.core.live.steps import LiveSteps, status
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.record_parts import LivePart
 from crowdbot.core.runs.run import Request, Run
-from crowdbot.core.scenarios.one_robot import check_one_robot
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -101,27 +105,31 @@ def _quick_switches() -> Iterator[None]:
 
 def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     """Run once; return None if a client requested another run before its end."""
+    from crowdbot.core.sim.preflight import preflight
     from crowdbot.core.sim.simulate import make_run
 
-    session = service.session
-    scene: list[LiveScene] = []
+    session, manner, robots = service.session, service.manner, tuple(scenario.robots)
+    scenes: dict[str, LiveScene] = {}
+    steps = LiveSteps(session, service.doors, manner, robots)
     choice = live_choice(
-        service.name, service.manner, lambda: LivePlanner(session, service.doors, scene[0], manner)
+        service.name, manner, robots, lambda robot: LivePlanner(steps, scenes[robot])
     )
-    manner = service.manner
     request = service.request(scenario, choice, session.seed)
     stop = lambda: session.must_stop  # noqa: E731
     request = replace(
-        request, options=replace(request.options, force=True), stop=stop, watchers=service.watchers
+        request,
+        options=replace(request.options, force=True),
+        stop=stop,
+        watchers=service.watchers,
+        on_begin=steps.begin_run if len(robots) > 1 else None,
     )
-    built = _built(request)
-    scene.append(_scene(request, built))
-    session.robot = scene[0].name
-    session.begin(scenario.id, session.seed)
+    builts = preflight(request)
+    scenes |= _scenes(request, builts)
+    session.begin(scenario.id, session.seed, robots)
     state: State = "ended"
     try:
         prepared = prepare(scenario, request.registry, references=request.options.references)
-        run = make_run(request, prepared, builts={built.name: built})
+        run = make_run(request, prepared, builts=builts)
         state = Ending(run.status)
     except Interrupted:
         if session.interrupted():
@@ -136,8 +144,16 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     return run
 
 
-def live_choice(name: str, manner: Manner, build: Callable[[], LivePlanner]) -> PlannerChoice:
+def live_choice(
+    name: str, manner: Manner, robots: Sequence[str], build: Callable[[str], LivePlanner]
+) -> PlannerChoice:
     """Return a planner choice that listens to external commands.
+
+    Args:
+        name: the planner's name.
+        manner: timing of the steps.
+        robots: names of the robots.
+        build: function that builds the planner of a robot.
 
     Raises:
         InputError: the name is not valid for a folder.
@@ -145,35 +161,41 @@ def live_choice(name: str, manner: Manner, build: Callable[[], LivePlanner]) -> 
     if not name or name.startswith(".") or set(name) & set("/\\\0"):
         raise InputError(f"'{name}' cannot be the name of a planner, which a folder has")
     spec = {k: v for k, v in asdict(manner).items() if k != "wait"}
-    return PlannerChoice(
+    choice = PlannerChoice(
         name=name,
         spec_dump={"kind": "live", **spec},
-        build=build,
+        build=partial(build, next(iter(robots), "")),
         pinned=False,
         needs=None,
         label=name,
         origin="a live connection",
         patience=math.inf,
     )
+    if len(robots) < 2:
+        return choice
+    return replace(choice, fleet={r: replace(choice, build=partial(build, r)) for r in robots})
 
 
-def _built(request: Request) -> BuiltRun:
-    """Build the run of the only robot; clients get the data of this robot."""
-    from crowdbot.core.sim.preflight import preflight
-
-    check_one_robot(request.scenario, "'crowdbot serve'")
-    (built,) = preflight(request).values()
-    return built
+def live_robots(scenarios: Iterable[Scenario]) -> dict[str, LiveRobot]:
+    """Return the robots of scenarios for a session, by the namespace of their topics."""
+    spaces = (space for each in scenarios for space in namespaces(each.robots).values())
+    return {space: LiveRobot() for space in spaces}
 
 
-def _scene(request: Request, built: BuiltRun) -> LiveScene:
-    return LiveScene(
-        scenario=request.scenario.id,
-        name=built.name,
-        parts=built.parts,
-        model=built.model,
-        sensors={n: built.infos[n] for n in built.visible},
-    )
+def _scenes(request: Request, builts: Mapping[str, BuiltRun]) -> dict[str, LiveScene]:
+    """Return the data of each robot that clients get."""
+    spaces = namespaces(builts)
+    return {
+        name: LiveScene(
+            scenario=request.scenario.id,
+            name=name,
+            namespace=spaces[name],
+            parts=built.parts,
+            model=built.model,
+            sensors={n: built.infos[n] for n in built.visible},
+        )
+        for name, built in builts.items()
+    }
 
 
 def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:

@@ -8,10 +8,13 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from crowdbot.core.live.counts import LiveCounts
+from crowdbot.core.live.live_robot import Asked, LiveRobot
+from crowdbot.core.live.robot_topics import command_topics, namespaces
 from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.motion import Command
 
@@ -24,33 +27,6 @@ _ROUNDING = 1_000
 
 
 @dataclass
-class LiveCounts:
-    """Counters of a run.
-
-    Attributes:
-        steps: planner steps so far.
-        missed: steps without a new command in time.
-        refused: commands that were not finite, came from a client that does not drive, or were for
-            another step.
-        lag, most_lag: delay of the simulation behind its clock, s.
-    """
-
-    steps: int = 0
-    missed: int = 0
-    refused: int = 0
-    lag: float = 0.0
-    most_lag: float = 0.0
-
-
-@dataclass
-class _Asked:
-    """The step that waits for its command."""
-
-    ns: int
-    answer: Command | None = None
-
-
-@dataclass
 class LiveSession:
     """State shared by the simulation and its connections.
 
@@ -58,8 +34,8 @@ class LiveSession:
         interrupted: True if the user stopped the run.
         counts: counters of the current run.
         state, scenario, run, seed, t: facts about it.
-        robot, pose, twist: its robot's state: name of the robot; x, y, yaw and v, w, vy by
-            odometry.
+        robots: the robots of all scenarios, by the namespace of their topics, which is empty for
+            the only robot of a scenario.
         scenarios: ids of the available scenarios; ``wanted`` is the requested one.
     """
 
@@ -70,16 +46,10 @@ class LiveSession:
     run: int = 0
     seed: int = 0
     t: float = 0.0
-    robot: str = ""
-    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    robots: Mapping[str, LiveRobot] = field(default_factory=lambda: {"": LiveRobot()})
     scenarios: Sequence[str] = ()
     wanted: str = ""
     _changed: threading.Condition = field(default_factory=threading.Condition)
-    _driver: Hashable | None = None
-    _asked: _Asked | None = None
-    _latest: Command | None = None
-    _fresh: bool = False
     _paused: bool = False
     _steps: int = 0
     _clock: float = -math.inf
@@ -87,15 +57,20 @@ class LiveSession:
     _listeners: bool = False
 
     # ------------------------------------------------------------------ the simulation asks
-    def begin(self, scenario: str, seed: int) -> None:
-        """Start a run."""
+    def begin(self, scenario: str, seed: int, robots: Sequence[str]) -> None:
+        """Start a run of robots, given by name."""
         with self._changed:
             self.scenario, self.seed, self.t = scenario, seed, 0.0
             if self.run:  # requests from before the first run are kept
-                self._latest, self._fresh, self._clock = None, False, -math.inf
+                self._clock = -math.inf
+                for robot in self.robots.values():
+                    robot.latest, robot.fresh = None, False
             self.run += 1
             self.counts, self.state = LiveCounts(), "waiting"
-            self._asked = None
+            for robot in self.robots.values():
+                robot.name, robot.asked = "", None
+            for name, space in namespaces(robots).items():
+                self.robots[space].name = name
             self._request = ""
 
     def finish(self, state: State) -> None:
@@ -109,41 +84,47 @@ class LiveSession:
         """Return True if the run has to stop early."""
         return bool(self._request) or self.interrupted()
 
-    def ask(self, ns: int) -> None:
-        """From now on, commands are for the step at ``ns``."""
+    def ask(self, ns: int, robots: Sequence[str] = ("",)) -> None:
+        """From now on, commands for robots, given by namespace, are for the step at ``ns``."""
         with self._changed:
-            self._asked, self._listeners = _Asked(ns), False
+            self._listeners = False
+            for robot in robots:
+                self.robots[robot].asked = Asked(ns)
 
-    def answer(self, budget: float, listened: Callable[[], None]) -> Command | None:
+    def answer(
+        self, budget: float, listened: Callable[[], None], robot: str = ""
+    ) -> Command | None:
         """Wait for the command of the current step; return None if there is none in time.
 
         Args:
             budget: s to wait.
             listened: callback for new subscribers during the wait.
+            robot: namespace of the robot.
         """
         until = time.monotonic() + budget
         while True:
             with self._changed:
-                asked = self._asked
+                asked = self.robots[robot].asked
                 assert asked is not None
                 self._wait(lambda: asked.answer is not None or self._listeners, until)  # noqa: B023
                 if asked.answer is not None or not self._listeners:
-                    self._asked = None
+                    self.robots[robot].asked = None
                     return asked.answer
                 self._listeners = False
             listened()
 
     def wait_for_driver(self, patience: float) -> bool:
-        """Wait for a driving client, at most this many seconds; return True if there is one."""
+        """Wait until each robot is driven, at most this many seconds; return True if so."""
         with self._changed:
-            self._wait(lambda: self._driver is not None, time.monotonic() + patience)
-            return self._driver is not None
+            self._wait(lambda: self.driven, time.monotonic() + patience)
+            return self.driven
 
-    def newest(self) -> tuple[Command | None, bool]:
-        """Return the latest command, and True if it is new since the last call."""
+    def newest(self, robot: str = "") -> tuple[Command | None, bool]:
+        """Return a robot's latest command, and True if it is new since the last call."""
         with self._changed:
-            fresh, self._fresh = self._fresh, False
-            return self._latest, fresh
+            one = self.robots[robot]
+            fresh, one.fresh = one.fresh, False
+            return one.latest, fresh
 
     def wait_while_paused(self) -> None:
         """Return when the next step may be taken."""
@@ -184,53 +165,75 @@ class LiveSession:
             self._changed.wait(min(left, _LOOK))
 
     # ------------------------------------------------------------------ connections tell
-    def drive(self, who: Hashable) -> bool:
-        """Return True if this client may drive; the first client keeps control until it leaves."""
-        with self._changed:
-            if self._driver is None:
-                self._driver = who
-                self._changed.notify_all()
-            return self._driver == who
+    @property
+    def commands(self) -> dict[str, str]:
+        """Return the topics of commands: topic -> namespace of the robot."""
+        return command_topics(self.robots)
 
-    def leave(self, who: Hashable) -> None:
-        """Handle a client that left or stopped driving."""
+    def drive(self, who: Hashable, robot: str = "") -> bool:
+        """Return True if this client may drive a robot; the first one does until it leaves."""
         with self._changed:
-            if self._driver == who:
-                self._driver = None
+            one = self.robots[robot]
+            if one.driver is None:
+                one.driver = who
                 self._changed.notify_all()
+            return one.driver == who
+
+    def leave(self, who: Hashable, robot: str | None = None) -> None:
+        """Handle a client that stopped driving a robot; without one, a client that left."""
+        with self._changed:
+            for one in self.robots.values() if robot is None else [self.robots[robot]]:
+                if one.driver == who:
+                    one.driver = None
+            self._changed.notify_all()
+
+    @property
+    def here(self) -> list[LiveRobot]:
+        """Return the robots of the current run."""
+        return [robot for robot in self.robots.values() if robot.name]
 
     @property
     def driven(self) -> bool:
-        """Return True if a client drives."""
-        return self._driver is not None
+        """Return True if a client drives each robot of the run."""
+        return all(robot.driver is not None for robot in self.here or self.robots.values())
 
-    def command(self, who: Hashable, command: Command, stamp: int | None = None) -> str:
+    def is_driven(self, robot: str) -> bool:
+        """Return True if a client drives this robot."""
+        return self.robots[robot].driver is not None
+
+    def command(
+        self, who: Hashable, command: Command, stamp: int | None = None, robot: str = ""
+    ) -> str:
         """Take a client's command.
 
         Args:
             who: the client.
             command: m/s, rad/s.
             stamp: stamp of the message, ns; None or 0 if it has none.
+            robot: namespace of the robot.
 
         Returns:
             Why the command is refused; empty if accepted.
         """
-        why = self._taken(who, command, stamp)
+        why = self._taken(who, command, stamp, robot)
         if why:
             with self._changed:
                 self.counts.refused += 1
         return why
 
-    def _taken(self, who: Hashable, command: Command, stamp: int | None) -> str:
+    def _taken(self, who: Hashable, command: Command, stamp: int | None, robot: str) -> str:
         if not all(math.isfinite(x) for x in command):
             return "a command must be finite"
-        if not self.drive(who):
+        if self.run and not self.robots[robot].name:
+            return "the run has no robot with this topic"
+        if not self.drive(who, robot):
             return "another client drives; its commands count until it leaves"
         with self._changed:
-            asked = self._asked
+            one = self.robots[robot]
+            asked = one.asked
             if asked is not None and stamp and stamp < asked.ns - _ROUNDING:
                 return "the command's stamp is older than the step that waits for one"
-            self._latest, self._fresh = command, True
+            one.latest, one.fresh = command, True
             if asked is not None and asked.answer is None:
                 asked.answer = command
             self._changed.notify_all()

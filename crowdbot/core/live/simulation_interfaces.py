@@ -12,6 +12,7 @@ from crowdbot.core.live.services import Service, Values, steps_taken, whole
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.simulation_types import PACKAGE, SERVICES
 from crowdbot.core.recording.messages import half_turn
+from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.errors import InputError
 
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = 0, 1, 2, 3, 4
@@ -75,20 +76,21 @@ def _course(session: LiveSession) -> dict[str, Call]:
 
 
 def _entities(session: LiveSession) -> dict[str, Call]:
-    """Return the services for entities: the robot's own knowledge, and no data about people."""
+    """Return the services for entities: the robots' own knowledge, and no data about people."""
 
     async def entities(values: Values) -> Values:
         return {**_result(OK), "entities": _found(session, values)}
 
     async def states(values: Values) -> Values:
         found = _found(session, values)
-        return {**_result(OK), "entities": found, "states": [_entity_state(session) for _ in found]}
+        states = [_entity_state(session, name) for name in found]
+        return {**_result(OK), "entities": found, "states": states}
 
     async def entity_state(values: Values) -> Values:
         name = values.get("entity", "")
-        if name != session.robot:
+        if name not in [robot.name for robot in session.here]:
             return _result(NOT_FOUND, f"no entity '{str(name)[:80]}'; people are not told")
-        return {**_result(OK), "state": _entity_state(session)}
+        return {**_result(OK), "state": _entity_state(session, str(name))}
 
     return {
         "GetEntities": entities,
@@ -116,7 +118,7 @@ def _found(session: LiveSession, values: Values) -> list[str]:
     if not isinstance(pattern, str) or len(pattern) > _LONGEST_FILTER:
         raise InputError("'filter' must be a text of at most 100 characters")
     try:
-        return [session.robot] if re.search(pattern, session.robot) else []
+        return [robot.name for robot in session.here if re.search(pattern, robot.name)]
     except re.error as error:
         raise InputError(f"'filter' is not a regular expression: {error}") from error
 
@@ -189,15 +191,19 @@ def _world(scenario: str) -> Values:
     }
 
 
-def _entity_state(session: LiveSession) -> Values:
+def _entity_state(session: LiveSession, name: str) -> Values:
     """Return pose and twist by odometry in the frame ``odom``; accelerations are unknown."""
-    x, y, yaw = session.pose
-    v, w, vy = session.twist
+    space, robot = next((s, r) for s, r in session.robots.items() if r.name == name)
+    x, y, yaw = robot.pose
+    v, w, vy = robot.twist
     z, turn = half_turn(yaw)
     sec, nanosec = divmod(round(session.t * 1e9), 10**9)
     nothing = {"x": 0.0, "y": 0.0, "z": 0.0}
     return {
-        "header": {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": "odom"},
+        "header": {
+            "stamp": {"sec": sec, "nanosec": nanosec},
+            "frame_id": in_namespace(space, "odom"),
+        },
         "pose": {
             "position": {"x": x, "y": y, "z": 0.0},
             "orientation": {"x": 0.0, "y": 0.0, "z": z, "w": turn},

@@ -6,6 +6,7 @@ import itertools
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -30,7 +31,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 
-COMMAND, CLOCK = "/cmd_vel", "/clock"
+CLOCK = "/clock"
 TWIST, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 _NODE = "crowdbot"
@@ -96,19 +97,21 @@ class ZenohDoor:
         self._entities = itertools.count(10)
         self._publishers: dict[str, _Publisher] = {}
         self._lock = threading.Lock()
-        self._drivers: set[str] = set()
+        self._drivers: dict[str, set[str]] = {robot: set() for robot in session.robots}
         live = self._zenoh.liveliness()
         self._kept: list[Any] = [live.declare_token(node_token(network.domain, self._name, _NODE))]
-        self._hear(COMMAND, TWIST, self._on_twist)
-        self._hear(COMMAND, STAMPED, self._on_stamped)
+        for name, robot in session.commands.items():
+            self._hear(name, TWIST, partial(self._on_twist, robot))
+            self._hear(name, STAMPED, partial(self._on_stamped, robot))
         if external_clock:
             self._hear(CLOCK, _CLOCK_TYPE, self._on_clock)
         self._servers = ZenohServices(self._zenoh)
         for name, service in services.items():
             topic = self._servers.serve(name, service, network.domain, network.distro)
             self._say_there(topic, SERVER)
-        fits = drivers_of(network.domain, COMMAND)
-        self._kept.append(live.declare_subscriber(fits, self._on_driver, history=True))
+        for name, robot in session.commands.items():
+            fits, came = drivers_of(network.domain, name), partial(self._on_driver, robot)
+            self._kept.append(live.declare_subscriber(fits, came, history=True))
 
     # ---------------------------------------------------------------- the simulation's thread
     def open(self, offers: Sequence[Offer]) -> None:
@@ -182,33 +185,33 @@ class ZenohDoor:
                 found.put(found.latest, self._network.distro)
         self._session.listened()
 
-    def _on_driver(self, sample: Any) -> None:
+    def _on_driver(self, robot: str, sample: Any) -> None:
         """Handle a command publisher that came or left."""
         import zenoh
 
         key = str(sample.key_expr)
         if sample.kind == zenoh.SampleKind.PUT:
-            self._drivers.add(key)
-            self._session.drive(self)
+            self._drivers[robot].add(key)
+            self._session.drive(self, robot)
         else:
-            self._drivers.discard(key)
-            if not self._drivers:
-                self._session.leave(self)
+            self._drivers[robot].discard(key)
+            if not self._drivers[robot]:
+                self._session.leave(self, robot)
 
-    def _on_twist(self, sample: Any) -> None:
+    def _on_twist(self, robot: str, sample: Any) -> None:
         message = _read(sample, TWIST)
         if message is not None:
-            self._command(message, None)
+            self._command(robot, message, None)
 
-    def _on_stamped(self, sample: Any) -> None:
+    def _on_stamped(self, robot: str, sample: Any) -> None:
         message = _read(sample, STAMPED)
         if message is not None:
             stamp = message.header.stamp
-            self._command(message.twist, stamp.sec * 10**9 + stamp.nanosec)
+            self._command(robot, message.twist, stamp.sec * 10**9 + stamp.nanosec)
 
-    def _command(self, twist: Any, stamp: int | None) -> None:
+    def _command(self, robot: str, twist: Any, stamp: int | None) -> None:
         command = Command(twist.linear.x, twist.angular.z, twist.linear.y)
-        self._session.command(self, command, stamp)
+        self._session.command(self, command, stamp, robot)
 
     def _on_clock(self, sample: Any) -> None:
         message = _read(sample, _CLOCK_TYPE)

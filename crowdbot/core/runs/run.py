@@ -9,6 +9,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.watcher import Watcher
@@ -27,6 +28,9 @@ from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.axis_words import AxisWords
 from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import InputError
+
+#: Is given a function that returns what all robots see, by name.
+OnBegin = Callable[[Callable[[], Mapping[str, Observation]]], None]
 
 
 @dataclass(frozen=True)
@@ -152,6 +156,8 @@ class Request:
         stop: asked several times a simulated second; True ends the run as interrupted.
         on_hang: called when a planner cannot be interrupted; should end the process.
         watchers: show the run, not its references, while it goes on.
+        on_begin: called when a recording of robots begins, with a function that returns what the
+            planners of all robots that go on see at the present step; to be called within a step.
     """
 
     scenario: Scenario
@@ -169,6 +175,7 @@ class Request:
     stop: Callable[[], bool] = lambda: False
     on_hang: Callable[[], object] | None = None
     watchers: Sequence[Watcher] = ()
+    on_begin: OnBegin | None = None
 
     @property
     def pinned(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -33,7 +33,6 @@ def record_robots(
     setup: RunSetup,
     builts: Mapping[str, BuiltRun],
     hosts: Mapping[str, PlannerHost] | None = None,
-    on_begin: Callable[[Callable[[], Mapping[str, Observation]]], None] | None = None,
 ) -> Outcome:
     """Simulate the scenario's robots, each with its planner; people too if there are any.
 
@@ -41,8 +40,6 @@ def record_robots(
         setup: what to record, and where.
         builts: from `build_runs`, of all robots of the scenario; used up by this.
         hosts: ask planners that have been reset, by robot; None builds those that ``setup`` chose.
-        on_begin: is given a function that returns what the planners of all robots that go on see
-            at the present step, to be called within a step.
 
     Raises:
         InputError: a robot would start in a wall, an obstacle, a person or another robot.
@@ -71,7 +68,7 @@ def record_robots(
         blocks = build_diagram(robots, engine, logs.people, seed=setup.seed)
         return run(
             blocks, stage=setup.stage, progress=setup.progress, stop=setup.stop,
-            on_begin=lambda root: on_begin and on_begin(partial(_seen, blocks, root)),
+            on_begin=lambda root: setup.on_begin and setup.on_begin(partial(_seen, blocks, root)),
         )  # fmt: skip
 
 

@@ -80,6 +80,7 @@ def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
         progress=request.progress,
         stop=request.stop,
         on_hang=request.on_hang,
+        on_begin=request.on_begin,
         options=replace(request.options, record="none"),
         hashes=provenance.recording_hashes(reference.identity),
     )

@@ -24,6 +24,7 @@ from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
+from crowdbot.core.runs.run import OnBegin
 from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.crowd_only import run_crowd
@@ -33,7 +34,10 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSetup:
-    """The setup of one recording; ``hashes`` identify its run in its header."""
+    """The setup of one recording; ``hashes`` identify its run in its header.
+
+    ``on_begin`` is as in `Request`.
+    """
 
     scenario: Scenario
     agents: Realisation
@@ -48,6 +52,7 @@ class RunSetup:
     options: RunOptions = USUAL
     hashes: Mapping[str, str] = field(default_factory=dict)
     watchers: Sequence[Watcher] = ()
+    on_begin: OnBegin | None = None
 
 
 def record_crowd(setup: RunSetup, duration: float) -> Outcome:

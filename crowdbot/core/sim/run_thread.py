@@ -122,7 +122,7 @@ def _simulate(exchange: Exchange, setup: RunSetup, builts: Mapping[str, BuiltRun
         for name, built in builts.items()
     }
     try:
-        exchange.put(record_robots(setup, builts, hosts, exchange.begin))
+        exchange.put(record_robots(setup, builts, hosts))
     except BaseException as error:  # raised again where the session is stepped
         exchange.put(error)
     finally:

@@ -150,6 +150,7 @@ class Session:
             progress=None,
             stop=lambda: exchange.closed,
             on_hang=None,
+            on_begin=exchange.begin,
         )
         self._thread = start_run(exchange, setup, builts)
         return self._take()

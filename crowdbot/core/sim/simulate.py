@@ -270,4 +270,5 @@ def _setup(request: Request, prepared: Prepared, folder: Path, identity: RunIden
         on_hang=request.on_hang,
         hashes=provenance.recording_hashes(identity),
         watchers=request.watchers,
+        on_begin=request.on_begin,
     )

@@ -18,8 +18,15 @@ _NEAR, _SPEED = 0.6, 0.5  # m, m/s
 
 @dataclass
 class PurePursuit:
-    """Follows the middle of the free floor of the map to its far end."""
+    """Follows the middle of the free floor of the map to its far end.
 
+    Attributes:
+        aside: distance from the middle to the left, m.
+        robot: name of the robot, which its topics and frames begin with; empty for the only one.
+    """
+
+    aside: float = 0.0
+    robot: str = ""
     lane: float | None = None
     pose: tuple[float, float, float] | None = None
     speed: float = 0.0
@@ -28,10 +35,16 @@ class PurePursuit:
 
     def on_map(self, bottom: float, height: int, cell: float) -> None:
         self.seen.add("/map")
-        self.lane = bottom + 0.5 * height * cell
+        self.lane = bottom + 0.5 * height * cell + self.aside
+
+    def topic(self, name: str) -> str:
+        """Name of a topic: with the robot's name, unless all robots share it."""
+        shared = name in ("/map", "/tf", "/clock") or not self.robot
+        return name if shared else f"/{self.robot}{name}"
 
     def on_tf(self, parent: str, child: str, x: float, y: float, z: float, w: float) -> None:
-        if (parent, child) == ("odom", "base_footprint"):
+        before = f"{self.robot}/" if self.robot else ""
+        if (parent, child) == (f"{before}odom", f"{before}base_footprint"):
             self.seen.add("/tf")
             self.pose = x, y, 2.0 * math.atan2(z, w)
 

@@ -14,6 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from crowdbot.core.live.foxglove_door import FoxgloveDoor
 from crowdbot.core.live.foxglove_parameters import set_parameters
+from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
@@ -27,8 +28,9 @@ TWIST = {"linear": {"x": 0.25, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0
 
 
 @contextmanager
-def _both() -> Iterator[tuple[FoxgloveDoor, LiveSession, ClientConnection]]:
-    session = LiveSession()
+def _both(*robots: str) -> Iterator[tuple[FoxgloveDoor, LiveSession, ClientConnection]]:
+    """A door and a client; ``robots``: names of several robots."""
+    session = LiveSession(robots={name: LiveRobot(name) for name in robots or ("",)})
     door = FoxgloveDoor(session, "127.0.0.1", 0, services(session))
     try:
         door.open(
@@ -186,3 +188,45 @@ def test_a_spectator_sees_people_and_the_true_pose() -> None:
         data = _data(socket, 1)[13:]
         message = ros.from_cdr(data, "visualization_msgs/msg/MarkerArray")
         assert len(message.markers) == 1 + int(np.isfinite(run.agents[0, 0]).sum())
+
+
+def _advertised(number: int, topic: str) -> dict[str, Any]:
+    kind = "geometry_msgs/msg/Twist"
+    return {"id": number, "topic": topic, "encoding": "json", "schemaName": kind}
+
+
+def test_each_of_two_robots_is_driven_on_its_own_topic() -> None:
+    with _both("a", "b") as (_, session, socket):
+        session.ask(0, ["a", "b"])
+        topics = ("/a/cmd_vel", "/b/cmd_vel", "/cmd_vel")
+        channels = [_advertised(k, topic) for k, topic in enumerate(topics, 1)]
+        socket.send(json.dumps({"op": "advertise", "channels": channels}))
+        until(lambda: session.driven)
+        for number, v in ((3, 0.9), (2, 0.2), (1, 0.1)):
+            data = json.dumps({"linear": {"x": v}}).encode()
+            socket.send(struct.pack("<BI", 1, number) + data)
+        assert session.answer(AT_MOST, lambda: None, "a") == Command(0.1, 0.0)
+        assert session.answer(AT_MOST, lambda: None, "b") == Command(0.2, 0.0)
+        socket.send(json.dumps({"op": "unadvertise", "channelIds": [2]}))
+        until(lambda: not session.is_driven("b"))
+        assert session.is_driven("a")
+
+
+def test_the_true_pose_of_each_of_two_robots_is_shown() -> None:
+    header = header_of(random_run())
+    with _both("a", "b") as (door, _, socket):
+        door.begin(header, {"a": header, "b": header})
+        topics = {"/a/robot/pose": (1.0, 2.0), "/b/robot/pose": (3.0, 4.0)}
+        ids: dict[str, int] = {}
+        while not set(topics) <= set(ids):
+            ids |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
+        for number, topic in enumerate(topics):
+            _subscribe(socket, number, ids[topic])
+        until(lambda: all(door.wants(topic) for topic in topics))
+        door.sample(0.5, {"a": (1.0, 2.0, 0.0), "b": (3.0, 4.0, 0.0)}, None)
+        seen = {}
+        for _ in topics:
+            frame = _data(socket, 1)
+            pose = ros.from_cdr(frame[13:], "geometry_msgs/msg/PoseStamped").pose.position
+            seen[list(topics)[struct.unpack_from("<I", frame, 1)[0]]] = (pose.x, pose.y)
+        assert seen == topics

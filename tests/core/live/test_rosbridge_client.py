@@ -13,6 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.server import ServerConnection, serve
 
+from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.rosbridge.client import RosbridgeClient
 from crowdbot.core.live.session import LiveSession
@@ -56,7 +57,8 @@ class Others:
 
 @contextmanager
 def _connected(**more: Any) -> Iterator[tuple[RosbridgeClient, LiveSession, Others]]:
-    others, session = Others(), LiveSession()
+    robots = {name: LiveRobot() for name in more.pop("robots", ("",))}
+    others, session = Others(), LiveSession(robots=robots)
     with serve(others, "127.0.0.1", 0, compression=None) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
@@ -88,6 +90,18 @@ def test_it_advertises_listens_and_is_driven() -> None:
             "/map": "rosgraph_msgs/msg/Clock",
             "/clock": "rosgraph_msgs/msg/Clock",
         }
+
+
+def test_it_listens_to_the_commands_of_each_robot() -> None:
+    with _connected(robots=("a", "b")) as (_, session, others):
+        until(lambda: session.driven and len(others.said("subscribe")) == 2)
+        session.ask(0, ["a", "b"])
+        for name, v in (("b", 0.2), ("a", 0.1)):
+            answer = {"op": "publish", "topic": f"/{name}/cmd_vel", "msg": {"linear": {"x": v}}}
+            others.sockets[0].send(json.dumps(answer))
+        assert session.answer(30.0, lambda: None, "a") == Command(0.1, 0.0)
+        assert session.answer(30.0, lambda: None, "b") == Command(0.2, 0.0)
+        assert others.said("subscribe") == ["/a/cmd_vel", "/b/cmd_vel"]
 
 
 def test_ros_1_types_and_stamped_commands() -> None:

@@ -7,6 +7,7 @@ import threading
 
 import pytest
 
+from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.types.motion import Command
 
@@ -69,6 +70,37 @@ def test_the_first_who_drives_drives_until_he_leaves() -> None:
     session.leave("a")
     assert session.command("b", GO) == ""
     assert session.answer(1.0, _nobody) == GO
+
+
+def _two() -> LiveSession:
+    session = LiveSession(robots={"": LiveRobot(), "a": LiveRobot(), "b": LiveRobot()})
+    session.begin("hall", 0, ["a", "b"])
+    return session
+
+
+def test_each_robot_has_its_driver_and_its_commands() -> None:
+    session = _two()
+    assert session.commands == {"/cmd_vel": "", "/a/cmd_vel": "a", "/b/cmd_vel": "b"}
+    session.ask(0, ["a", "b"])
+    assert session.command("one", GO, robot="a") == ""
+    assert not session.driven
+    assert "another" in session.command("two", GO, robot="a")
+    assert session.command("two", Command(0.1, 0.0), robot="b") == ""
+    assert session.driven
+    assert session.answer(1.0, _nobody, "b") == Command(0.1, 0.0)
+    assert session.answer(1.0, _nobody, "a") == GO
+    assert session.newest("a") == (GO, True)
+    assert "no robot" in session.command("one", GO)
+    session.leave("one")
+    assert (session.is_driven("a"), session.is_driven("b")) == (False, True)
+
+
+def test_a_run_begins_when_all_its_robots_have_drivers() -> None:
+    session = _two()
+    session.drive("one", "a")
+    assert not session.wait_for_driver(0.01)
+    session.drive("one", "b")
+    assert session.wait_for_driver(60.0)
 
 
 def test_who_begins_to_listen_is_told_while_a_step_waits() -> None:

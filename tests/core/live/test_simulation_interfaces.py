@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.simulation_interfaces import simulation_services
 from crowdbot.core.types.ending import Ending
@@ -65,17 +66,28 @@ def test_features_are_listed() -> None:
 
 
 def test_entities_are_the_robot_alone() -> None:
-    session = LiveSession(robot="robot")
+    robot = LiveRobot(name="robot")
+    session = LiveSession(robots={"": robot})
     assert _call(session, "/get_entities")["entities"] == ["robot"]
     assert _call(session, "/get_entities", {"filters": {"filter": "^rob"}})["entities"] == ["robot"]
     assert _call(session, "/get_entities", {"filters": {"filter": "x"}})["entities"] == []
     assert _code(_call(session, "/get_entities", {"filters": {"filter": "("}})) == 4
-    session.pose, session.twist, session.t = (1.0, 2.0, 0.0), (0.5, 0.1, 0.0), 1.5
+    robot.pose, robot.twist, session.t = (1.0, 2.0, 0.0), (0.5, 0.1, 0.0), 1.5
     answer = _call(session, "/get_entity_state", {"entity": "robot"})
     assert answer["state"]["pose"]["position"] == {"x": 1.0, "y": 2.0, "z": 0.0}
     assert answer["state"]["header"]["stamp"] == {"sec": 1, "nanosec": 500_000_000}
     assert _code(_call(session, "/get_entity_state", {"entity": "person"})) == 2
     assert _code(_call(session, "/spawn_entity", {"name": "x"})) == 0
+
+
+def test_entities_are_all_robots_of_the_run() -> None:
+    robots = {"": LiveRobot(), "a": LiveRobot(name="a"), "b": LiveRobot(name="b", pose=(3, 0, 0))}
+    session = LiveSession(robots=robots)
+    assert _call(session, "/get_entities")["entities"] == ["a", "b"]
+    state = _call(session, "/get_entity_state", {"entity": "b"})["state"]
+    assert state["header"]["frame_id"] == "b/odom"
+    assert state["pose"]["position"]["x"] == 3
+    assert _code(_call(session, "/get_entity_state", {"entity": ""})) == 2
 
 
 def test_worlds_are_the_scenarios() -> None:
@@ -91,7 +103,7 @@ def test_worlds_are_the_scenarios() -> None:
 
 
 def test_states_are_listed_for_who_fits_the_filter() -> None:
-    session = LiveSession(robot="robot", t=1.5, pose=(1.0, 2.0, 0.0))
+    session = LiveSession(robots={"": LiveRobot(name="robot", pose=(1.0, 2.0, 0.0))}, t=1.5)
     found = _call(session, "/get_entities_states")
     assert found["entities"] == ["robot"]
     (state,) = found["states"]
@@ -105,7 +117,7 @@ def test_states_are_listed_for_who_fits_the_filter() -> None:
     "name", ["/spawn_entity", "/delete_entity", "/set_entity_state", "/unload_world"]
 )
 def test_what_a_scenario_decides_cannot_be_changed(name: str) -> None:
-    session = LiveSession(robot="robot")
+    session = LiveSession(robots={"": LiveRobot(name="robot")})
     answer = _call(session, name, {"entity": "robot"})
     assert _code(answer) == 0
     assert answer["result"]["error_message"]

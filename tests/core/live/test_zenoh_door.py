@@ -17,6 +17,7 @@ import pytest
 import zenoh
 from rosbags.typesys import Stores, get_typestore
 
+from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.message import Offer, told
 from crowdbot.core.live.ros2_keys import Ros2Topic, attachment, hash_in, in_distro
 from crowdbot.core.live.session import LiveSession
@@ -42,7 +43,8 @@ def _endpoint() -> str:
 @contextmanager
 def _both(endpoint: str = "", **more: Any) -> Iterator[tuple[ZenohDoor, LiveSession, Any]]:
     """A door that is the router, and a plain session of zenoh that connects to it."""
-    session, endpoint = LiveSession(), endpoint or _endpoint()
+    robots = {name: LiveRobot() for name in more.pop("robots", ("",))}
+    session, endpoint = LiveSession(robots=robots), endpoint or _endpoint()
     network = Network(endpoint=endpoint, router=True)
     door = ZenohDoor(session, network, **{"external_clock": False, **more})
     config = zenoh.Config()
@@ -169,6 +171,24 @@ def test_lockstep_over_zenoh(stamped: bool) -> None:
         until(lambda: not session.driven)
 
 
+def test_each_of_two_robots_is_driven_on_its_own_topic() -> None:
+    kind = "geometry_msgs/msg/Twist"
+    types = JAZZY.types
+    vector = types["geometry_msgs/msg/Vector3"]
+    with _both(robots=("a", "b")) as (_, session, other):
+        session.ask(0, ["a", "b"])
+        command = Ros2Topic("/b/cmd_vel", kind, hash_in(kind, "jazzy"))
+        token = other.liveliness().declare_token(command.token(0, "me", 11, "MP", "driver"))
+        until(lambda: session.is_driven("b"))
+        assert not session.is_driven("a")
+        twist = types[kind](vector(0.25, 0.0, 0.0), vector(0.0, 0.0, 0.5))
+        other.put(command.key(0), bytes(JAZZY.serialize_cdr(twist, kind)))
+        assert session.answer(30.0, lambda: None, "b") == Command(0.25, 0.5)
+        assert session.answer(0.01, lambda: None, "a") is None
+        token.undeclare()
+        until(lambda: not session.is_driven("b"))
+
+
 def test_garbage_is_not_a_command() -> None:
     with _both() as (_, session, other):
         session.ask(0)
@@ -179,8 +199,9 @@ def test_garbage_is_not_a_command() -> None:
         done = threading.Event()
         threading.Timer(0.3, done.set).start()
         done.wait()
-        assert session._asked is not None
-        assert session._asked.answer is None or session._asked.answer == Command(0.0, 0.0)
+        asked = session.robots[""].asked
+        assert asked is not None
+        assert asked.answer is None or asked.answer == Command(0.0, 0.0)
 
 
 def test_the_clock_may_come_from_outside() -> None:

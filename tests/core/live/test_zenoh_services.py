@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.ros2_keys import SERVER, Ros2Topic, attachment, read_attachment
 from crowdbot.core.live.service_types import ServiceType, service_type
 from crowdbot.core.live.services import services
@@ -80,7 +81,7 @@ def _ask(other: Any, service: Any, name: str, data: bytes, told: bytes | None) -
 
 
 def test_a_client_of_ros_2_gets_its_answer() -> None:
-    session = LiveSession(scenarios=["one", "two"], robot="robot")
+    session = LiveSession(scenarios=["one", "two"], robots={"": LiveRobot("robot")})
     offered = _all(session)
     with _both(services=offered) as (_, _, other):
         who = attachment(41, 5, b"g" * 16)

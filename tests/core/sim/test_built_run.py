@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from crowdbot.api import registry
-from crowdbot.core.live.planner import Manner
+from crowdbot.core.live.manner import Manner
 from crowdbot.core.live.serve import LiveServe, serve_runs
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.planning.planner import Observation

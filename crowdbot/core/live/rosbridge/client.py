@@ -1,4 +1,4 @@
-"""A client of an existing rosbridge server, through which ROS nodes drive the robot."""
+"""A client of an existing rosbridge server, through which ROS nodes drive robots."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from crowdbot.errors import InputError
 if TYPE_CHECKING:
     from websockets.asyncio.client import ClientConnection
 
-COMMAND, CLOCK = "/cmd_vel", "/clock"
+CLOCK = "/clock"
 #: Images are not sent over a text connection.
 _LEFT_OUT = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2")
 _AGAIN, _FIRST, _LARGEST = 0.5, 20.0, 2**20  # s, s, bytes
@@ -123,7 +123,8 @@ class RosbridgeClient:
         self._introduce()
         self._connected.set()
         self._ready.set()
-        self._session.drive(self)
+        for robot in self._session.robots:
+            self._session.drive(self, robot)
         self._session.listened()
         writer = asyncio.create_task(self._write(socket))
         try:
@@ -140,7 +141,8 @@ class RosbridgeClient:
     def _introduce(self) -> None:
         """Advertise again, since the server forgets disconnected clients."""
         kind = "TwistStamped" if self._stamped else "Twist"
-        self._subscribe(COMMAND, f"geometry_msgs/msg/{kind}")
+        for topic in self._session.commands:
+            self._subscribe(topic, f"geometry_msgs/msg/{kind}")
         if self._external_clock:
             self._subscribe(CLOCK, "rosgraph_msgs/msg/Clock")
         self._advertise(self._offers.values())
@@ -174,9 +176,10 @@ class RosbridgeClient:
     def _take(self, message: dict[str, Any]) -> None:
         if message["op"] != "publish":
             return
-        if message.get("topic") == COMMAND:
+        robot = self._session.commands.get(str(message.get("topic")))
+        if robot is not None:
             command, stamp = twist(message.get("msg"))
-            self._session.command(self, command, stamp)
+            self._session.command(self, command, stamp, robot)
         elif message.get("topic") == CLOCK and self._external_clock:
             body = message.get("msg")
             ns = time_ns(body.get("clock")) if isinstance(body, dict) else None

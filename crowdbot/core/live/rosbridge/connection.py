@@ -19,7 +19,7 @@ from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
 
-COMMAND, CLOCK = "/cmd_vel", "/clock"
+CLOCK = "/clock"
 _LEVELS = {"none": -1, "error": 0, "warning": 1, "info": 2}
 #: Limits of subscriptions, topics and parallel service calls per client.
 _MOST_TOPICS, _MOST_CALLS = 1000, 64
@@ -132,20 +132,23 @@ class Connection:
         topic = _topic(message)
         self._room(self._advertised)
         self._advertised[topic] = self._advertised.get(topic, 0) + 1
-        if topic == COMMAND and not self._hub.session.drive(self):
+        robot = self._hub.session.commands.get(topic)
+        if robot is not None and not self._hub.session.drive(self, robot):
             self._tell("warning", "another client drives; its commands count until it leaves")
 
     def _unadvertise(self, message: Mapping[str, Any]) -> None:
         topic = _topic(message)
         self._advertised.pop(topic, None)
-        if topic == COMMAND:
-            self._hub.session.leave(self)
+        robot = self._hub.session.commands.get(topic)
+        if robot is not None:
+            self._hub.session.leave(self, robot)
 
     def _publish(self, message: Mapping[str, Any]) -> None:
         topic = _topic(message)
-        if topic == COMMAND:
+        robot = self._hub.session.commands.get(topic)
+        if robot is not None:
             command, stamp = twist(message.get("msg"))
-            why = self._hub.session.command(self, command, stamp)
+            why = self._hub.session.command(self, command, stamp, robot)
             if why:
                 self._tell("warning", why, message.get("id"))
         elif topic == CLOCK and self._hub.external_clock:

@@ -13,7 +13,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.errors import InputError
 
 NODE = "/crowdbot"
-_TWIST = "geometry_msgs/msg/Twist"
+TWIST = "geometry_msgs/msg/Twist"
 
 
 @dataclass
@@ -33,7 +33,7 @@ class RosapiWorld:
     services: dict[str, Service] = field(default_factory=dict)
     parameters: dict[str, Any] = field(default_factory=lambda: {"/use_sim_time": "true"})
     now: Callable[[], int] = lambda: 0
-    taken: Mapping[str, str] = field(default_factory=lambda: {"/cmd_vel": _TWIST})
+    taken: Mapping[str, str] = field(default_factory=lambda: {"/cmd_vel": TWIST})
 
     def topics(self) -> dict[str, str]:
         """Return name -> type, in the spelling of the clients' ROS version."""

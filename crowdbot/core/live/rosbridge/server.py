@@ -19,7 +19,7 @@ from crowdbot.core.live.plain import Ros
 from crowdbot.core.live.rosbridge.connection import Connection
 from crowdbot.core.live.rosbridge.feed import Wishes
 from crowdbot.core.live.rosbridge.frames import Frame, encoded
-from crowdbot.core.live.rosbridge.rosapi import RosapiWorld, rosapi
+from crowdbot.core.live.rosbridge.rosapi import TWIST, RosapiWorld, rosapi
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
@@ -82,6 +82,7 @@ class RosbridgeServer:
         self.session, self.ros, self.external_clock = session, ros, external_clock
         self._address, self._resend = address, resend
         self._world = RosapiWorld(ros=ros, services=dict(services))
+        self._world.taken = dict.fromkeys(session.commands, TWIST)
         self._world.services |= rosapi(self._world)
         self._world.now = lambda: self._now
         if external_clock:
