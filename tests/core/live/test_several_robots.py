@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -139,6 +140,15 @@ def test_calibration_runs_are_driven_as_well(tmp_path: Path) -> None:
     assert run.record.live.missed_steps == 0
     assert "robot_alone" in run.record.references
     assert len(driver.opened) == 2
+
+
+def test_real_time_keeps_one_pace_for_all_robots(tmp_path: Path) -> None:
+    live, driver = _live(tmp_path, {"a": 0.4, "b": 0.2})
+    run = serve_runs(replace(live, manner=Manner(rate=1.0, wait=0.0)))
+    assert run.record.live is not None
+    assert run.record.live.steps == len(driver.on("/clock")) == len(driver.on("/b/odom"))
+    assert run.record.live.missed_steps == 0
+    assert _way(run, "a") > _way(run, "b") > 0.0
 
 
 def test_a_robot_that_has_ended_is_not_asked(tmp_path: Path) -> None:
