@@ -26,7 +26,7 @@ SECTIONS = (
     "Worked example",
     "Source",
 )
-#: How runs are combined, if not by the mean of their scores.
+#: Combination of runs, if it is not the mean of their scores.
 OPTIONAL = "Many runs"
 #: Rows of the table at the top.
 HEAD = ("symbol", "category", "unit", "better", "range", "sampling", "needs")

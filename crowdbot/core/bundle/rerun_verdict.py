@@ -24,7 +24,7 @@ Outcome = Literal[
 #: Verdicts with which a bundle is accepted.
 FINE: tuple[Outcome, ...] = ("verified", "within tolerance", "not re-run")
 
-#: How a run that was made again relates to what the bundle claims.
+#: Relation of a repeated run to the claim of the bundle.
 #:
 #: ``identical``: the trajectory is the same, bit by bit.
 #: ``different``: it is not the same, although processor and software are.

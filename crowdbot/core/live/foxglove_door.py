@@ -25,7 +25,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError
 
-#: What a spectator sees and a planner does not: people, and where each robot really is.
+#: Data for spectators, hidden from planners: people, and the true pose of each robot.
 SEEN = (
     Offer(str(Topic.PEOPLE_MARKER), MARKER),
     Offer(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),

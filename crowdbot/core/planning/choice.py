@@ -13,7 +13,7 @@ from crowdbot.dsl.spec.component_specs import PlannerRole
 if TYPE_CHECKING:
     from crowdbot.core.planning.planner import Planner
 
-#: Where a planner runs, as named in records.
+#: Names of the planner's place in records.
 OWN: Final = "own"
 IN_PROCESS: Final = "in_process"
 #: Largest address space of a planner's own process, bytes.

@@ -95,7 +95,7 @@ class StreamDraw:
         yield from self.placed(area, [unit], Occupancy([], occupancy.ground))
 
     def check_entrance(self, area: Area, occupancy: Occupancy) -> None:
-        """Refuse an area to come in at in which walls leave no room for the largest body."""
+        """Refuse an entrance area in which walls leave no room for the largest body."""
         radius = float(np.max(self.radius, initial=0.0))
         if not any(occupancy.ground.is_free(*at, radius) for at in places_in(area, radius)):
             raise InputError(

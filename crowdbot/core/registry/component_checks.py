@@ -21,7 +21,7 @@ from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.errors import PluginError
 
 NAME = re.compile(r"[a-z][a-z0-9_]*")
-#: What follows the plugin's name and a dot in a kind.
+#: Part of a kind after the plugin's name and a dot.
 _AFTER_DOT = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from crowdbot.dsl.spec.component import Component
 from crowdbot.errors import PluginError, did_you_mean, nearest
 
-#: How the names of modules end that build components; nothing is looked for in them.
+#: Suffix of modules that build components; they are not searched.
 BUILD = "_build"
 
 

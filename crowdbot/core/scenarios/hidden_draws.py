@@ -267,7 +267,7 @@ def _copy(path: Path, text: str) -> Iterator[Path]:
 
 
 def _why(secret: Secret, content: dict[str, Any]) -> str:
-    """Return if secret, commitment or document was changed."""
+    """Return the reason why secret, commitment or document do not fit."""
     if commitment_of(secret.document, secret.seed, secret.salt) != secret.commitment:
         return "seed, salt or document in the secret are not those of its commitment"
     changed = list(changes(flatten(secret.document), flatten(content)))

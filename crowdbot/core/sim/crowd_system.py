@@ -33,7 +33,7 @@ from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
 
-#: What of a robot's contacts other blocks are told: force x and y, torque, number of contacts.
+#: Contact output for other blocks, per robot: force x and y, torque, number of contacts.
 _NEWS = (s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE, s.CONTACTS)
 
 

@@ -21,7 +21,7 @@ from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
 
-#: What the robots that go on see at one step of their planners, by name.
+#: Observations of the robots that go on, at one step of their planners, by name.
 Seen = Mapping[str, Observation]
 
 

@@ -12,7 +12,7 @@ from crowdbot.core.support.arguments import path_of
 from crowdbot.core.types.motion import Command
 from crowdbot.errors import InputError, kind_of
 
-#: What a session takes as a command: v, w, and vy for a robot that can move sideways; m/s, rad/s.
+#: Command of a session: v, w, and vy for a robot that can move sideways; m/s, rad/s.
 CommandLike = Command | tuple[float, ...] | Sequence[float]
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core.trajectories.own_recordings import Samples
 
-#: When the robot arrived, s; None: it did not; ``"derived"``: from its goal.
+#: Arrival time of the robot, s; None: it did not arrive; ``"derived"``: from its goal.
 GoalTime = float | Literal["derived"] | None
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 

@@ -71,9 +71,9 @@ class Ending(StrEnum):
         return self.name.lower().replace("_", " ")
 
 
-#: How a complete run may have ended.
+#: Endings of complete runs.
 COMPLETE = tuple(ending for ending in Ending if ending.complete)
-#: The same, and the attempt that left no run: what tables of attempts count.
+#: Endings of complete runs and of attempts that left no run, for tables of attempts.
 ATTEMPTED = (*COMPLETE, Ending.NO_RUN)
 
 

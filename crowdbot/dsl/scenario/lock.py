@@ -96,7 +96,7 @@ class LockFiles:
 
     def __init__(self, document: Path, spec: str) -> None:
         self.lock_path = document.with_suffix(".lock.json")
-        #: Where tables belong that no other suite has.
+        #: File of tables that no other suite has.
         self.own_agents_path = document.with_suffix(".agents.csv")
         self.spec = spec
 

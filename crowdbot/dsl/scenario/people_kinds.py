@@ -13,7 +13,7 @@ from crowdbot.dsl.spec.quantities import NonNegativeLength, PositiveLength, Posi
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.spec.unions import AnyOf
 
-#: What a person looks like to sensors.
+#: Appearance of a person for sensors.
 AppearanceName = Literal["adult", "child", "elderly", "wheelchair_user", "stroller", "suitcase"]
 #: Draws from a normal distribution farther than this many standard deviations are drawn again.
 WIDEST = 2.5
@@ -89,7 +89,7 @@ class UsualBody:
     pace: float
 
 
-#: Where these come from: docs/reference/people.md.
+#: Sources: docs/reference/people.md.
 USUAL_BODIES: dict[AppearanceName, UsualBody] = {
     "adult": UsualBody((1.70, 0.09), (75.0, 13.0), None, 1.0),
     "child": UsualBody((1.27, 0.06), (25.5, 4.0), 0.20, 1.0),

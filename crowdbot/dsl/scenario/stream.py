@@ -32,7 +32,7 @@ from crowdbot.dsl.spec.spec import Spec
 FieldPath = tuple[str | int, ...]
 #: Finds the area of a place; None for a name that does not exist.
 AreaOf = Callable[[Place], Area | None]
-#: What people of a stream do at its end.
+#: Behaviour of people at the end of a stream.
 StreamEnd = Literal["return", "leave", "stop"]
 
 

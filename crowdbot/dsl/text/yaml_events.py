@@ -11,8 +11,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-#: Where the two may differ: line ends other than line feeds, tabs, byte order marks, directives,
-#: and starts of block scalars, explicit keys, anchors, aliases, tags, or JSON-like keys.
+#: Text in which the two may differ: line ends other than line feeds, tabs, byte order marks,
+#: directives, starts of block scalars, explicit keys, anchors, aliases, tags, or JSON-like keys.
 _UNLIKE = re.compile(
     r"""[\t\r\x85\u2028\u2029\ufeff]|^%|(?:^|[^\w.)])(?:[?|>!]|[&*]\S)|["']:\S""", re.MULTILINE
 )
