@@ -80,8 +80,10 @@ class Checkout:
             raise SystemExit(f"{self.path}: the campaign failed\n{done.stdout}")
 
     def has_floors(self) -> bool:
-        """Whether it runs floors and ceilings besides; an older checkout knows none."""
-        return "floors:" in (self.path / "crowdbot" / "cli" / "campaign.py").read_text()
+        """Return True if it also runs floors and ceilings; an older checkout knows none."""
+        places = ("campaign.py", "commands/campaign.py")
+        files = [self.path / "crowdbot" / "cli" / place for place in places]
+        return any("floors:" in file.read_text() for file in files if file.is_file())
 
     def measure(self, out: Path, *options: str) -> Measured:
         """Run one campaign, and say what it took."""
