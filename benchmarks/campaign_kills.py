@@ -114,7 +114,8 @@ def _stamps(out: Path) -> dict[str, tuple[int, int]]:
     """Complete run -> its record's inode and time of writing: who makes it again changes them."""
     found = {}
     for name in outcome(out):
-        state = (out / name / "run.json").stat()
+        (record,) = out.glob(f"challenge-2020*/{name}/run.json")
+        state = record.stat()
         found[name] = state.st_ino, state.st_mtime_ns
     return found
 
@@ -151,7 +152,7 @@ def kill_parts(
 
 def _told(out: Path, planners: bool, code: int) -> list[str]:
     """What a campaign with kills does not say as it should."""
-    records = [json.loads(f.read_text()) for f in out.glob("challenge-2020/*/*/*/run.json")]
+    records = [json.loads(f.read_text()) for f in out.glob("challenge-2020*/*/*/*/run.json")]
     failed = [r for r in records if r["status"] == "planner_failed"]
     mute = [r["reason"] for r in failed if "SIGKILL" not in r["reason"]]
     wrong = [f"reason of a killed planner: {reason}" for reason in mute]
@@ -239,12 +240,12 @@ def _start(
 def outcome(out: Path) -> Runs:
     """Run -> trajectory hash and scores."""
     found = {}
-    for file in sorted(out.glob("challenge-2020/*/*/*/run.json")):
+    for file in sorted(out.glob("challenge-2020*/*/*/*/run.json")):
         if file.parent.name.endswith(".partial"):
             continue
         lines = (file.parent / "scores.csv").read_text().splitlines()
         scores = "\n".join(line for line in lines if "planner_time" not in line)
-        name = file.parent.relative_to(out).as_posix()
+        name = "/".join(file.parent.relative_to(out).parts[1:])  # --set changes the first folder
         found[name] = (json.loads(file.read_text())["hashes"]["trajectory"], scores)
     return found
 

@@ -14,6 +14,7 @@ from crowdbot.core.support.arguments import expect, number_of, path_of, texts_of
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.dsl.suite.settings import setting_texts
+from crowdbot.dsl.suite.suite_entry import SuiteEntry
 from crowdbot.errors import InputError, kind_of
 
 if TYPE_CHECKING:
@@ -167,7 +168,7 @@ def simulate(
         planner_settings=planner_settings,
         seed=seed,
         out=None if out is None else path_of("out", out),
-        suite=suite,
+        entry=SuiteEntry(suite=suite),
         options=RunOptions(
             record=record,
             replay=replay,
@@ -271,18 +272,20 @@ def score(
     )
 
 
-def results(root: str | Path = "runs") -> Results:
+def results(root: str | Path = "runs", *, altered: bool = False) -> Results:
     """Return all runs, scores and failures below a folder, as written by a campaign.
 
     Args:
         root: root of the run directories.
+        altered: True to include runs of scenarios that ``set`` changed.
 
     Raises:
         InputError: there is no such folder, or a run in it is damaged.
     """
     from crowdbot.core.results.results import Results as AllResults
 
-    return AllResults.open(root)
+    found = AllResults.open(root)
+    return found if altered else found.without_altered()
 
 
 def _check_recorded(

@@ -17,6 +17,7 @@ from urllib.parse import quote
 
 import typer
 
+from crowdbot.cli.shared.open_results import Altered, open_results
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
@@ -67,6 +68,7 @@ def report(
             "--no-replay-links", help="Leave out links to replays, for a page that is moved."
         ),
     ] = False,
+    altered: Altered = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="What was written, as JSON.")] = False,
@@ -80,7 +82,7 @@ def report(
     from crowdbot.core.results.results import Results
 
     check_ending(out, ".html")
-    results = _chosen(Results.open(root), suite, planner or [], root)
+    results = _chosen(open_results(root, altered), suite, planner or [], root)
     links = {} if no_replay_links else _replays(results, root, out)
     results, known = _with_reference(results, Results.open(reference) if reference else None)
     findings = confounds(results, accept or ())

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from crowdbot.cli.output.results_lines import line_of, print_lines
+from crowdbot.cli.shared.open_results import Altered, open_results
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.text import plural
 
@@ -71,6 +72,7 @@ def show(
     worst: Annotated[
         int, typer.Option(min=0, metavar="N", help="The N worst runs by --metric instead.")
     ] = 0,
+    altered: Altered = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
@@ -80,12 +82,11 @@ def show(
     """
     if context.invoked_subcommand is not None:
         return
-    from crowdbot.core.results.results import Results
     from crowdbot.core.results.rows import named_metrics
     from crowdbot.core.statistics.groups import by_group
     from crowdbot.errors import UsageError
 
-    found = _with_scales(_only(Results.open(out), planner, status))
+    found = _with_scales(_only(open_results(out, altered), planner, status))
     if worst:
         if metric is None:
             raise UsageError("--worst needs --metric NAME")
@@ -109,18 +110,18 @@ def export(
     csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write CSV.")] = None,
     parquet: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Parquet.")] = None,
     table: Annotated[Literal["scores", "runs"], typer.Option(help="Which table.")] = "scores",
+    altered: Altered = False,
 ) -> None:
     """Write all scores, or all runs, as one table.
 
     Example: crowdbot results export --runs runs --csv scores.csv
     """
     from crowdbot.core.results import tables
-    from crowdbot.core.results.results import Results
     from crowdbot.errors import UsageError
 
     if csv is None and parquet is None:
         raise UsageError("write --csv FILE or --parquet FILE")
-    found = Results.open(out)
+    found = open_results(out, altered)
     lines = (
         tables.score_lines(found.runs, found.scores)
         if table == "scores"
@@ -167,6 +168,7 @@ def atlas(
         typer.Option(metavar="NAME", help="A planner that others ought to beat; repeatable."),
     ] = None,
     md: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Markdown.")] = None,
+    altered: Altered = False,
     as_json: _Json = False,
 ) -> None:
     """Show what drives each metric, and which metrics are redundant.
@@ -174,11 +176,10 @@ def atlas(
     Example: crowdbot results atlas --runs runs --floor goal_seek --md atlas.md
     """
     from crowdbot.cli.output.atlas_page import atlas_page
-    from crowdbot.core.results.results import Results
     from crowdbot.core.statistics import atlas as entries_of
     from crowdbot.core.support.atomic_write import atomic_write
 
-    entries = entries_of(_with_scales(Results.open(out)), floor or ())
+    entries = entries_of(_with_scales(open_results(out, altered)), floor or ())
     if md is not None:
         atomic_write(md, atlas_page(entries))
     if as_json:

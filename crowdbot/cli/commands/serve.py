@@ -194,10 +194,7 @@ def _request(
         registry=what.registry,
         seed=seed,
         out=how.out,
-        suite=expansion.folder,
-        axes=expansion.axes.get(scenario.id, {}),
-        words=expansion.words_of(scenario.id),
-        position=expansion.scenarios.index(scenario),
+        entry=expansion.entry(scenario),
         options=RunOptions(
             record=how.record.value, references=how.references, metrics=expansion.metrics
         ),

@@ -97,7 +97,7 @@ def simulate(
                 planner_settings=planner_set or (),
                 seed=seed,
                 out=out,
-                suite=expansion.folder,
+                entry=expansion.entry(chosen),
                 options=RunOptions(
                     record=record.value,
                     references=references,
@@ -106,9 +106,6 @@ def simulate(
                     step_budget=step_budget,
                     place=planner_place(in_process, planner_memory),
                 ),
-                axes=expansion.axes.get(chosen.id, {}),
-                words=expansion.words_of(chosen.id),
-                position=expansion.scenarios.index(chosen),
                 progress=progress,
                 stop=stop,
                 on_hang=end_hung_process,

@@ -108,12 +108,9 @@ def _request(job: Job) -> Request:
         registry=registry,
         seed=job.seed,
         out=out,
-        suite=job.suite,
         options=replace(job.options, metrics=expansion.metrics),
         references_finished=True,
-        axes=expansion.axes.get(scenario.id, {}),
-        words=expansion.words_of(scenario.id),
-        position=job.index,
+        entry=expansion.entry(scenario),
     )
     if job.options.retry_failed and job.kind == "run" and not job.options.force:
         there = RunRecord.find(request.directory)

@@ -133,7 +133,6 @@ class _PlanBuilder:
         )
 
     def add(self, suite: SelectedSuite) -> None:
-        position = {s.id: i for i, s in enumerate(suite.expansion.scenarios)}
         everything = [
             prepare(
                 scenario,
@@ -144,19 +143,17 @@ class _PlanBuilder:
             for scenario in suite.scenarios
         ]
         wanted = self._campaign.sample
-        chosen = everything if wanted is None else sample(everything, wanted, suite.name)
-        few = [id(one) for one in sample(chosen, FLOOR_SCENARIOS, suite.name)]
+        chosen = everything if wanted is None else sample(everything, wanted, suite.expansion.suite)
+        few = [id(one) for one in sample(chosen, FLOOR_SCENARIOS, suite.expansion.suite)]
         for one in chosen:
             planners = [e for e in self._planners if not e.sampled or id(one) in few]
-            place = position[one.run.scenario.id]
-            for entry, request in self._requests(suite, one, place, planners):
+            for entry, request in self._requests(suite, one, planners):
                 self._add(suite, one, entry, request)
 
     def _requests(
         self,
         suite: SelectedSuite,
         prepared: Prepared,
-        position: int,
         planners: Sequence[PlannerEntry],
     ) -> Iterator[tuple[PlannerEntry, Request]]:
         scenario = prepared.run.scenario
@@ -170,11 +167,8 @@ class _PlanBuilder:
                     registry=self._registry,
                     seed=seed,
                     out=self._out,
-                    suite=suite.name,
+                    entry=suite.expansion.entry(scenario),
                     options=self._campaign.options,
-                    axes=suite.expansion.axes.get(scenario.id, {}),
-                    words=suite.expansion.words_of(scenario.id),
-                    position=position,
                 )
                 yield entry, request
 
@@ -197,8 +191,8 @@ class _PlanBuilder:
                 label=entry.choice.label,
                 status="" if record is None else record.status,
                 directory=request.directory,
-                axes=dict(request.axes),
-                position=request.position,
+                axes=dict(request.entry.axes),
+                position=request.entry.position,
                 record=record,
             )
         )
@@ -257,9 +251,9 @@ class _PlanBuilder:
             key=key,
             kind=kind,
             source=suite.source,
-            suite=request.suite,
+            suite=request.entry.suite,
             scenario=request.scenario.id,
-            index=request.position,
+            index=request.entry.position,
             spec_hash=trial.spec,
             planner=entry.text,
             settings=entry.settings,

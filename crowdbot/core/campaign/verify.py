@@ -142,8 +142,7 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
             registry=setup.registry,
             seed=claimed.entry.seed,
             out=Path(folder),
-            suite=setup.expansion.folder,
-            words=setup.expansion.words_of(scenario.id),
+            entry=setup.expansion.entry(scenario),
             options=RunOptions(
                 record="none",
                 replay=False,

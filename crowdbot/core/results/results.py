@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -12,6 +12,7 @@ from crowdbot.core.results.tables import run_lines, score_lines
 from crowdbot.core.scoring.score_scale import Scales
 from crowdbot.core.support.arguments import path_of
 from crowdbot.core.support.data_frame import to_arrow, to_pandas
+from crowdbot.dsl.suite.suite_entry import altered_digest
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,6 +53,17 @@ class Results:
         from crowdbot.core.results.store import read_rows  # statistics need no database
 
         return cls(**read_rows(path_of("root", root))._asdict())
+
+    def without_altered(self) -> Results:
+        """Return the results without runs and failures of scenarios that ``--set`` changed."""
+        runs = tuple(run for run in self.runs if not run.changes)
+        ids = {run.run_id for run in runs}
+        return replace(
+            self,
+            runs=runs,
+            scores=tuple(s for s in self.scores if s.run_id in ids),
+            failures=tuple(f for f in self.failures if not altered_digest(f.scenario)),
+        )
 
     def to_pandas(self, table: Table = "scores") -> pd.DataFrame:
         """Return one row per score, with suite, scenario, planner, seed and axes of its run.

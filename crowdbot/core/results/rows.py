@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from crowdbot.core.runs.run_record import RunRecord
+from crowdbot.dsl.suite.suite_entry import altered_digest, altered_suffix
 
 #: Known scores of an attempt without a run: its robot did not arrive.
 WITHOUT_RUN: Mapping[str, float] = {
@@ -40,13 +41,18 @@ class RunRow:
 
     @property
     def suite(self) -> str:
-        """The suite."""
-        return self.record.suite
+        """The suite; runs of altered scenarios are a suite of their own."""
+        return self.record.suite + altered_suffix(self.record.altered)
 
     @property
     def scenario(self) -> str:
         """Id of the scenario."""
         return self.record.scenario
+
+    @property
+    def changes(self) -> str:
+        """Changes to the scenario, from ``--set``, in words; empty if there are none."""
+        return ", ".join(self.record.altered) or altered_digest(self.record.scenario)
 
     @property
     def planner(self) -> str:

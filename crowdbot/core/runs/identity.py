@@ -152,7 +152,7 @@ def run_identity(request: Request, run: Trial) -> RunIdentity:
     """Everything that decides what happens in a run."""
     return RunIdentity(
         scenario=run.scenario.id,
-        suite=request.suite,
+        suite=request.entry.suite,
         planner=planner_part(request.choice),
         **_budget(request),
         seed=request.seed,

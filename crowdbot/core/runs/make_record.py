@@ -58,9 +58,10 @@ def make_record(
     return RunRecord(
         run_id=identity.id(),
         **{**decided, "hashes": hashes},
-        axes=dict(request.axes),
-        axis_words={axis: list(words) for axis, words in request.words.items()},
-        position=request.position,
+        axes=dict(request.entry.axes),
+        axis_words={axis: list(words) for axis, words in request.entry.words.items()},
+        position=request.entry.position,
+        altered=list(request.entry.altered),
         pinned=request.pinned,
         privileged=request.choice.privileged,
         role=request.choice.role,

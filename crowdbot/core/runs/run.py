@@ -25,7 +25,7 @@ from crowdbot.core.support.arguments import path_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.axis_words import AxisWords
+from crowdbot.dsl.suite.suite_entry import IN_NO_SUITE, SuiteEntry
 from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import InputError
 
@@ -145,11 +145,8 @@ class Request:
     Attributes:
         seed: seed of sensor noise and planner.
         out: root of the run directories.
-        suite: first folder below it.
+        entry: the scenario's place in its suite.
         options: how.
-        axes: axis of the suite -> label, in the suite's order.
-        words: axis -> what it varies and the value here, in words.
-        position: of the scenario in its suite.
         references_finished: the caller has made the references; those in which the planner failed
             are not tried again.
         progress: called several times a simulated second.
@@ -165,11 +162,8 @@ class Request:
     registry: Registry
     seed: int
     out: Path
-    suite: str = "scenarios"
+    entry: SuiteEntry = IN_NO_SUITE
     options: RunOptions = USUAL
-    axes: Mapping[str, str] = field(default_factory=dict)
-    words: Mapping[str, AxisWords] = field(default_factory=dict)
-    position: int = 0
     references_finished: bool = False
     progress: Callable[[Progress], None] | None = None
     stop: Callable[[], bool] = lambda: False
@@ -189,10 +183,11 @@ class Request:
         Raises:
             InputError: a name leads out of the root, or is reserved by crowdbot.
         """
-        for name in (self.suite, self.scenario.id, self.choice.label):
+        suite = self.entry.folder
+        for name in (suite, self.scenario.id, self.choice.label):
             if why := path_problem(name):
                 raise InputError(f"no folder can be called '{name[:80]}': it {why}")
-        return self.out / self.suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
+        return self.out / suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
 
 
 def read_references(paths: Mapping[str, Path]) -> References:

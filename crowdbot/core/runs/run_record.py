@@ -106,6 +106,7 @@ class RunRecord(_Record, RunIdentity):
     axes: dict[str, str] = Field(default_factory=dict)
     axis_words: dict[str, Annotated[list[str], Len(2, 2)]] = Field(default_factory=dict)
     position: Count = 0
+    altered: list[str] = Field(default_factory=list)
     agents: Literal["locked", "drawn", "none"] = "none"
     pinned: bool
     privileged: bool

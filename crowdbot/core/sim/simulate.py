@@ -47,7 +47,7 @@ from crowdbot.core.sim.references import check_interrupted, make_references, par
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.support.arguments import expect, expect_function, whole_number_of
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.axis_words import AxisWords
+from crowdbot.dsl.suite.suite_entry import IN_NO_SUITE, SuiteEntry
 from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import InputError
 
@@ -60,11 +60,8 @@ def simulate(
     planner_settings: Sequence[str] | Mapping[str, object] = (),
     seed: int = 0,
     out: Path | None = None,
-    suite: str = "scenarios",
+    entry: SuiteEntry = IN_NO_SUITE,
     options: RunOptions = USUAL,
-    axes: Mapping[str, str] | None = None,
-    words: Mapping[str, AxisWords] | None = None,
-    position: int = 0,
     progress: Callable[[Progress], None] | None = None,
     stop: Callable[[], bool] = lambda: False,
     on_hang: Callable[[], object] | None = None,
@@ -80,7 +77,7 @@ def simulate(
         seed: run seed: sensor noise and planner.
         out: root of the run directories; None uses a temporary one that lives as long as the
             result.
-        suite, options, axes, words, position: as in `Request`.
+        entry, options: as in `Request`.
         progress, stop, on_hang, watchers: as in `Request`.
 
     Raises:
@@ -92,7 +89,7 @@ def simulate(
         Interrupted: ``stop`` returned True; a ``.partial`` directory is left.
     """
     seed = whole_number_of("seed", seed)
-    _check_suite(suite)
+    _check_suite(entry.suite)
     _check_callbacks(progress, stop)
     choice = choose_planner(planner, registry, planner_settings, options.place)
     if options.metrics is not None:
@@ -107,11 +104,8 @@ def simulate(
         registry=registry,
         seed=seed,
         out=out,
-        suite=suite,
+        entry=entry,
         options=replace(options, force=options.force or not choice.repeatable),
-        axes=axes or {},
-        words=words or {},
-        position=position,
         progress=progress,
         stop=stop,
         on_hang=on_hang,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from crowdbot.dsl.suite.include import Loader
 from crowdbot.dsl.suite.installed import Installed
 from crowdbot.dsl.suite.matrix import DRAW, combinations
 from crowdbot.dsl.suite.suite import ParsedSuite, read_suite
+from crowdbot.dsl.suite.suite_entry import SuiteEntry, digest_of
 from crowdbot.dsl.text.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.text.finder import Finder, Roots
 from crowdbot.dsl.text.merge import Merged, merge, nest, undot
@@ -36,7 +37,7 @@ _GO_ON = frozenset(
 _ENOUGH = 50_000
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Expansion:
     """The contents of a document.
 
@@ -49,6 +50,7 @@ class Expansion:
             scenarios are marked; a revealed seed has been checked.
         run_seeds: seeds of the runs that a bundle consists of.
         words: axis -> label -> readable names of the quantity and the value.
+        altered: the ``key=value`` texts that ``--set`` applied to each scenario.
     """
 
     suite_id: str
@@ -60,11 +62,16 @@ class Expansion:
     commitment: str = ""
     run_seeds: tuple[int, ...] = (0,)
     words: dict[str, dict[str, AxisWords]] = field(default_factory=dict, repr=False)
+    altered: tuple[str, ...] = ()
 
     def words_of(self, scenario: str) -> dict[str, AxisWords]:
         """Return axis -> readable names of a scenario's label; axes without names are left out."""
         labels = self.axes.get(scenario, {})
         return {a: self.words[a][x] for a, x in labels.items() if x in self.words.get(a, {})}
+
+    @cached_property
+    def _positions(self) -> dict[str, int]:
+        return {scenario.id: i for i, scenario in enumerate(self.scenarios)}
 
     @property
     def single(self) -> bool:
@@ -73,9 +80,24 @@ class Expansion:
         return ids == [self.suite_id]
 
     @property
-    def folder(self) -> str:
-        """Return the folder of its runs; all documents with a single scenario share one."""
+    def suite(self) -> str:
+        """Return the suite's name in records; all documents with a single scenario share one."""
         return "scenarios" if self.single else self.suite_id
+
+    @property
+    def folder(self) -> str:
+        """Return the folder of its runs."""
+        return SuiteEntry(suite=self.suite, altered=self.altered).folder
+
+    def entry(self, scenario: Scenario) -> SuiteEntry:
+        """Return a scenario's place in this suite."""
+        return SuiteEntry(
+            suite=self.suite,
+            axes=self.axes.get(scenario.id, {}),
+            words=self.words_of(scenario.id),
+            position=self._positions[scenario.id],
+            altered=self.altered,
+        )
 
 
 def load_document(
@@ -170,7 +192,8 @@ class _Expander:
         self._errors: dict[tuple[str, Mark, str], _Folded] = {}
         self._problems = list(suite.problems)
         self._set = _parse_overrides(overrides, self._problems)
-        self._suffix = "+" + _digest(overrides) if overrides else ""
+        self._altered = tuple(overrides)
+        self._suffix = "+" + digest_of(overrides) if overrides else ""
         self._set_in: dict[int, Node] = {}
         self._merged: Merged = {}
         self._data: dict[Node, Any] = {}
@@ -205,6 +228,7 @@ class _Expander:
             suite.commitment,
             suite.run_seeds,
             axis_words(suite.base, suite.axes, self._set),
+            self._altered,
         )
 
     def _unusable(self, bare: _Bare) -> str:
@@ -405,10 +429,6 @@ def _parse_overrides(overrides: Sequence[str], problems: list[Diagnostic]) -> No
         entry = Entry(Mark(source, 0, 0, len(key)), node)
         tree = merge(tree, undot(Node(entry.key, {key: entry}, implied=True), problems))
     return tree
-
-
-def _digest(overrides: Sequence[str]) -> str:
-    return hashlib.sha256("\n".join(overrides).encode()).hexdigest()[:4]
 
 
 def _sorted(problems: Sequence[Diagnostic]) -> list[Diagnostic]:

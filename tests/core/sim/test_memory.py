@@ -18,6 +18,7 @@ from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.sim.references import make_reference
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.sim.weak_callback import weak_callback
+from crowdbot.dsl.suite.suite_entry import SuiteEntry
 from crowdbot.testing.tiny import tiny_scenario
 from tests.core.sim import fleets
 from tests.core.sim.sim_worlds import registry, scenario
@@ -83,7 +84,12 @@ def test_so_is_a_run_for_comparison(tmp_path: Path) -> None:
     world = scenario("robots.robot.task.time_limit=0.125")
     choice = choose_planner("goal_seek", registry())
     request = Request(
-        scenario=world, choice=choice, registry=registry(), seed=0, out=tmp_path, suite="tiny"
+        scenario=world,
+        choice=choice,
+        registry=registry(),
+        seed=0,
+        out=tmp_path,
+        entry=SuiteEntry(suite="tiny"),
     )
     prepared = prepare(world, registry())
     made = [make_reference(request, one) for one in references_of(request, prepared)]

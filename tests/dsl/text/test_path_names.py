@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.runs.run import Request
 from crowdbot.core.scenarios.library import open_spec
+from crowdbot.dsl.suite.suite_entry import SuiteEntry
 from crowdbot.dsl.text.path_names import LONGEST, path_problem
 from crowdbot.errors import InputError, SpecError
 from tests.core.bundle.made_up_runs import registry
@@ -101,7 +102,12 @@ def test_no_run_is_written_there(tmp_path: Path, suite: str) -> None:
     def directory(suite: str, name: str) -> Path:
         named = scenario.model_copy(update={"id": name})
         return Request(
-            scenario=named, choice=choice, registry=registry(), seed=0, out=tmp_path, suite=suite
+            scenario=named,
+            choice=choice,
+            registry=registry(),
+            seed=0,
+            out=tmp_path,
+            entry=SuiteEntry(suite=suite),
         ).directory
 
     assert directory("tiny", "fine") == tmp_path / "tiny/fine/stand_still/seed-0"

@@ -1,0 +1,41 @@
+"""Opens the results below a folder for commands, without runs of altered scenarios."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.core.support.text import plural
+
+if TYPE_CHECKING:
+    from crowdbot.core.results.results import Results
+
+Altered = Annotated[
+    bool,
+    typer.Option("--altered", help="Include runs of scenarios that --set changed, as own suites."),
+]
+#: Number of changes that are named.
+_SHOWN = 3
+
+
+def open_results(root: Path, altered: bool) -> Results:
+    """Return all results; those of altered scenarios only if asked for, else stderr tells them.
+
+    Raises:
+        InputError: there is no such folder.
+    """
+    from crowdbot.core.results.results import Results
+
+    found = Results.open(root)
+    kept = found.without_altered()
+    if altered or len(kept.runs) == len(found.runs):
+        return found if altered else kept
+    changes = dict.fromkeys(run.changes for run in found.runs if run.changes)
+    named = "; ".join(list(changes)[:_SHOWN]) + ("; …" if len(changes) > _SHOWN else "")
+    lost = plural(len(found.runs) - len(kept.runs), "run")
+    message = f"{lost} of altered scenarios left out ({named}): --altered includes them"
+    print(message, file=sys.stderr)
+    return kept

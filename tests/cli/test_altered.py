@@ -1,0 +1,95 @@
+"""Runs of scenarios that ``--set`` changed: a folder of their own, left out of results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+import crowdbot
+from crowdbot import cli
+from tests.core.results.made_up_record import made_up_record
+
+SCENARIO = """
+crowdbot: 1
+scenario:
+  id: alone
+  environment:
+    kind: corridor
+    length: 12 m
+    width: 8 m
+    zones: {all: {x: [0 m, 12 m], y: [-4 m, 4 m]}, end: {x: [10 m, 12 m], y: [-2 m, 2 m]}}
+  robots:
+    robot:
+      model: {kind: turtlebot2}
+      task: {start: [2 m, 0 m, 0 deg], goal: {zone: end}, time_limit: 1 s}
+"""
+SHORT = "robots.robot.task.time_limit=0.25 s"
+
+
+Tell = Callable[..., tuple[str, str]]
+
+
+@pytest.fixture
+def told(capsys: pytest.CaptureFixture[str]) -> Tell:
+    """A function that returns output and messages of a command that ends well."""
+
+    def tell(*words: str) -> tuple[str, str]:
+        capsys.readouterr()
+        assert cli.main(list(words)) == 0
+        return tuple(capsys.readouterr())
+
+    return tell
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run as written, and one of an altered scenario."""
+    folder = tmp_path_factory.mktemp("altered")
+    (folder / "alone.yaml").write_text(SCENARIO)
+    for more in ((), ("--set", SHORT)):
+        words = ("simulate", str(folder / "alone.yaml"), "--planner", "goal_seek", *more)
+        out = ("--out", str(folder / "runs"), "--quiet", "--no-references")
+        assert cli.main([*words, *out]) == 0
+    return folder / "runs"
+
+
+def planners(lines: str) -> Sequence[object]:
+    return [line["n"] + line["failed"] for line in json.loads(lines) if line["metric"] == "success"]
+
+
+def test_the_folder_says_what_was_altered(root: Path) -> None:
+    assert sorted(p.name for p in root.iterdir()) == ["scenarios", "scenarios+time_limit=0.25_s"]
+
+
+def test_results_leave_them_out_and_say_so(root: Path, told: Tell) -> None:
+    out, message = told("results", "--runs", str(root), "--metric", "success", "--json")
+    assert planners(out) == [1]
+    assert f"1 run of altered scenarios left out ({SHORT})" in message
+    out, message = told(
+        "results", "--runs", str(root), "--metric", "success", "--json", "--altered"
+    )
+    assert planners(out) == [2]
+    assert "left out" not in message
+
+
+def test_report_needs_no_choice_of_suite(root: Path, tmp_path: Path, told: Tell) -> None:
+    told("report", str(root), "--out", str(tmp_path / "report.html"))
+
+
+def test_python_leaves_them_out_too(root: Path) -> None:
+    assert len(crowdbot.results(root).runs) == 1
+    both = crowdbot.results(root, altered=True)
+    assert [run.suite for run in both.runs] == ["scenarios", "scenarios+time_limit=0.25_s"]
+
+
+def test_runs_of_earlier_versions_are_told_by_their_id() -> None:
+    from crowdbot.core.results.results import Results
+    from crowdbot.core.results.rows import RunRow
+
+    ids = ("s0", "s0+1f3a", "s0+calibrated", "s0+calibrated+1f3a")
+    rows = [RunRow(record=made_up_record(scenario=s, run_id=s), directory=s) for s in ids]
+    kept = Results(runs=tuple(rows)).without_altered().runs
+    assert [row.scenario for row in kept] == ["s0", "s0+calibrated"]
