@@ -39,7 +39,8 @@ def told(capsys: pytest.CaptureFixture[str]) -> Tell:
     def tell(*words: str) -> tuple[str, str]:
         capsys.readouterr()
         assert cli.main(list(words)) == 0
-        return tuple(capsys.readouterr())
+        said = capsys.readouterr()
+        return said.out, said.err
 
     return tell
 
