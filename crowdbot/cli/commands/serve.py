@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from crowdbot.cli.serving.serve_arguments import (
+    AllowOrigin,
     Budget,
     Clock,
     ClockChoice,
@@ -71,6 +72,7 @@ def serve(
     domain: Domain = 0,
     distro: Distro = DistroChoice.jazzy,
     foxglove: Foxglove = None,
+    allow_origin: AllowOrigin = None,
     meshcat: MeshcatPort = None,
     rate: Rate = None,
     clock: Clock = ClockChoice.internal,
@@ -104,6 +106,7 @@ def serve(
     listen = Listen(
         host=host, port=port, token=token, ros=ros, connect=connect, stamped=stamped,
         zenoh=zenoh, zenoh_router=zenoh_router, domain=domain, distro=distro, foxglove=foxglove,
+        origins=tuple(allow_origin or ()),
     )  # fmt: skip
     with stdout_to_stderr():
         registry = installed(plugin, no_plugins)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import threading
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.serving.serve_arguments import AllowOrigin
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
@@ -50,6 +52,7 @@ def view(
         int | None,
         typer.Option(min=0, max=65535, metavar="PORT", help="Play a run in Foxglove; 0: any port."),
     ] = None,
+    allow_origin: AllowOrigin = None,
     as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
 ) -> None:
     """Draw a scenario from above; find the replay page of a run, or compare runs on one page.
@@ -63,7 +66,7 @@ def view(
     Example: crowdbot view runs/a/dwa/seed-0 runs/a/stop_and_go/seed-0 --out compare.html
     """
     if foxglove is not None:
-        _play(Path(spec), foxglove)
+        _play(Path(spec), foxglove, allow_origin or ())
         return
     facts: dict[str, str] = {}
     if Path(spec).is_dir():
@@ -85,7 +88,7 @@ def view(
         typer.launch(str(path.resolve()))
 
 
-def _play(run: Path, port: int) -> None:
+def _play(run: Path, port: int, origins: Sequence[str]) -> None:
     """Serve a run's recording to Foxglove until Ctrl-C."""
     from crowdbot.cli.serving.serve_options import needs
     from crowdbot.core.runs.run_directory import RECORDING
@@ -94,9 +97,11 @@ def _play(run: Path, port: int) -> None:
     if not recording.is_file():
         raise InputError(f"{run}: --foxglove plays a run, or its recording; there is none")
     needs("live", "foxglove")
+    from crowdbot.core.live.admission import Admission
     from crowdbot.core.live.foxglove_playback import FoxglovePlayback
 
-    player = FoxglovePlayback(recording, "127.0.0.1", port)
+    admission = Admission(server="foxglove", origins=origins)
+    player = FoxglovePlayback(recording, "127.0.0.1", port, admission)
     typer.echo(f"foxglove: ws://127.0.0.1:{player.port}; Ctrl-C ends it", err=True)
     with suppress(KeyboardInterrupt):
         threading.Event().wait()

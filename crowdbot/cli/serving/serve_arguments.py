@@ -61,6 +61,13 @@ Foxglove = Annotated[
     int | None,
     typer.Option(min=0, max=65535, metavar="PORT", help="A live view for Foxglove as well."),
 ]
+AllowOrigin = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="ORIGIN",
+        help="Admit pages of this website, such as https://app.foxglove.dev; repeatable.",
+    ),
+]
 Rate = Annotated[
     float | None,
     typer.Option(metavar="FACTOR", help="Keep to real time, times FACTOR; else lockstep."),

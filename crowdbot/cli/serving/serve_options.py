@@ -37,6 +37,7 @@ class Listen:
     domain: int = 0
     distro: DistroChoice = DistroChoice.jazzy
     foxglove: int | None = None
+    origins: Sequence[str] = ()
 
 
 def manner_of(
@@ -113,11 +114,13 @@ def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
 
 def _foxglove(session: LiveSession, manner: Manner, listen: Listen, port: int) -> Door:
     needs("live", "foxglove")
+    from crowdbot.core.live.admission import Admission
     from crowdbot.core.live.foxglove_door import FoxgloveDoor
 
     if not _is_this_machine(listen.host):
         raise UsageError("--foxglove knows no token: it listens on this machine only")
-    door = FoxgloveDoor(session, listen.host, port, _services(session), manner.epoch)
+    admission = Admission(server="foxglove", origins=listen.origins)
+    door = FoxgloveDoor(session, listen.host, port, _services(session), manner.epoch, admission)
     _say(f"foxglove: ws://{listen.host}:{door.port}")
     return door
 
@@ -127,7 +130,7 @@ def _topics(session: LiveSession) -> str:
 
 
 def _is_this_machine(host: str) -> bool:
-    from crowdbot.core.live.rosbridge.server import is_loopback
+    from crowdbot.core.live.admission import is_loopback
 
     return is_loopback(host)
 
@@ -154,7 +157,8 @@ def _zenoh(session: LiveSession, manner: Manner, endpoint: str, listen: Listen) 
 
 
 def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
-    from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer, is_loopback
+    from crowdbot.core.live.admission import is_loopback
+    from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 
     needs("live", "websockets", "cbor2")
     token = listen.token or ""
@@ -166,7 +170,7 @@ def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
         )
     server = RosbridgeServer(
         session,
-        Address(host=listen.host, port=listen.port, token=token),
+        Address(host=listen.host, port=listen.port, token=token, origins=listen.origins),
         _services(session),
         ros=1 if listen.ros == 1 else 2,
         resend=manner.lockstep,

@@ -9,7 +9,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any, cast
 
+from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.commands import twist
+from crowdbot.core.live.foxglove_gate import FoxgloveGate
 from crowdbot.core.live.foxglove_parameters import parameters, set_parameters
 from crowdbot.core.live.message import LiveMessage, Offer
 from crowdbot.core.live.robot_topics import namespaces, robot_topic
@@ -31,6 +33,8 @@ SEEN = (
     Offer(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
 )
 _POSE = "geometry_msgs/msg/PoseStamped"
+#: Largest command and request of a client, bytes; largest number of its command topics.
+_COMMAND, _REQUEST, _MOST_TOPICS = 4096, 64 << 10, 16
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
@@ -47,8 +51,11 @@ class FoxgloveDoor:
         port: int,
         services: Mapping[str, Service],
         epoch: int = 0,
+        admission: Admission | None = None,
     ) -> None:
         """Start listening; ``epoch``: ns added to all stamps.
+
+        Websites are admitted by ``admission``, by default none of others.
 
         Raises:
             InputError: the address is not available.
@@ -66,29 +73,28 @@ class FoxgloveDoor:
         self._latest: dict[str, LiveMessage] = {}
         self._clients: dict[tuple[int, int], tuple[str, str]] = {}  # -> robot, format
         self._lock = threading.Lock()
-        try:
-            self._server = foxglove.start_server(
-                name="crowdbot",
-                host=host,
-                port=port,
-                capabilities=[
-                    Capability.ClientPublish,
-                    Capability.Services,
-                    Capability.Time,
-                    Capability.Parameters,
-                ],
-                server_listener=cast(Any, self),
-                supported_encodings=["cdr", "json"],
-                services=[_offered(name, service) for name, service in services.items()],
-                context=self._context,
-            )
-        except RuntimeError as error:
-            raise InputError(f"{host}:{port}: cannot listen there: {error}") from error
+        start = lambda address: foxglove.start_server(  # noqa: E731
+            name="crowdbot",
+            host=address,
+            port=0,
+            capabilities=[
+                Capability.ClientPublish,
+                Capability.Services,
+                Capability.Time,
+                Capability.Parameters,
+            ],
+            server_listener=cast(Any, self),
+            supported_encodings=["cdr", "json"],
+            services=[_offered(name, service) for name, service in services.items()],
+            context=self._context,
+        )
+        self._gate = FoxgloveGate(host, port, start, admission or Admission(server="foxglove"))
+        self._server = self._gate.server
 
     @property
     def port(self) -> int:
         """Return the port in use."""
-        return int(self._server.port)
+        return self._gate.port
 
     # ---------------------------------------------------------------- the simulation's thread
     def open(self, offers: Sequence[Offer]) -> None:
@@ -157,7 +163,7 @@ class FoxgloveDoor:
 
     def close(self) -> None:
         """Close all connections."""
-        self._server.stop()
+        self._gate.close()
 
     # ------------------------------------------------------------------ the server's threads
     def on_subscribe(self, client: Any, channel: Any) -> None:
@@ -200,26 +206,39 @@ class FoxgloveDoor:
     def on_client_advertise(self, client: Any, channel: Any) -> None:
         """Register a client's topic."""
         robot = self._session.commands.get(channel.topic)
-        if robot is not None:
-            about = f"{channel.encoding} {channel.schema_name}"
-            self._clients[client.id, channel.id] = robot, about
-            self._session.drive(self, robot)
+        if robot is None:
+            return
+        if sum(owner == client.id for owner, _ in list(self._clients)) >= _MOST_TOPICS:
+            self._warn(f"at most {_MOST_TOPICS} topics for a client; {channel.topic} is ignored")
+            return
+        about = f"{channel.encoding} {channel.schema_name}"
+        self._clients[client.id, channel.id] = robot, about
+        if not self._session.drive((self, client.id), robot):
+            self._warn("another client drives; its commands count until it leaves")
+
+    def _warn(self, text: str) -> None:
+        from foxglove.websocket import StatusLevel
+
+        self._server.publish_status(text, StatusLevel.Warning)
 
     def on_client_unadvertise(self, client: Any, client_channel_id: int) -> None:
         """Remove a client's topic, or a client that is gone."""
         robot, _ = self._clients.pop((client.id, client_channel_id), (None, ""))
-        if robot is not None and all(robot != other for other, _ in self._clients.values()):
-            self._session.leave(self, robot)
+        mine = [
+            other for (owner, _), (other, _) in list(self._clients.items()) if owner == client.id
+        ]
+        if robot is not None and robot not in mine:
+            self._session.leave((self, client.id), robot)
 
     def on_message_data(self, client: Any, client_channel_id: int, data: bytes) -> None:
         """Take a command in JSON or CDR; ignore everything else."""
         known = self._clients.get((client.id, client_channel_id))
-        if known is None:
+        if known is None or len(data) > _COMMAND:
             return
         robot, about = known
         encoding, _, kind = about.partition(" ")
         with suppress(Exception):  # third-party decoders with untrusted input
-            self._session.command(self, *_command(encoding, kind, data), robot)
+            self._session.command((self, client.id), *_command(encoding, kind, data), robot)
 
 
 def _command(encoding: str, kind: str, data: bytes) -> tuple[Command, int | None]:
@@ -254,11 +273,13 @@ def _offered(name: str, service: Service) -> Any:
     def call(request: Any) -> bytes:
         answer: dict[str, Any]
         try:
+            if len(request.payload) > _REQUEST:
+                raise InputError(f"a request has at most {_REQUEST} bytes")
             values = json.loads(request.payload or b"{}")
             if not isinstance(values, dict):
                 raise InputError("a request is an object")
             answer = asyncio.run(_awaited(service, values))
-        except (InputError, ValueError) as error:
+        except (InputError, ValueError, RecursionError) as error:
             answer = {"success": False, "message": str(error)}
         return json.dumps(answer).encode()
 

@@ -10,6 +10,8 @@ from typing import Any, cast
 
 from mcap.reader import SeekingReader
 
+from crowdbot.core.live.admission import Admission
+from crowdbot.core.live.foxglove_gate import FoxgloveGate
 from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.recording.reading.contents import contents
 from crowdbot.errors import InputError
@@ -23,7 +25,9 @@ _SLOWEST, _FASTEST = 0.01, 100.0
 class FoxglovePlayback:
     """Serves one recording; Foxglove's own controls set position and speed."""
 
-    def __init__(self, path: Path, host: str, port: int) -> None:
+    def __init__(
+        self, path: Path, host: str, port: int, admission: Admission | None = None
+    ) -> None:
         """Index the file and start listening.
 
         Raises:
@@ -44,25 +48,24 @@ class FoxglovePlayback:
         self._changed = threading.Condition()
         self._now, self._speed, self._playing, self._stopped = 0, 1.0, False, False
         self._sought = True
-        try:
-            self._server = foxglove.start_server(
-                name=f"crowdbot: {path}",
-                host=host,
-                port=port,
-                capabilities=[Capability.PlaybackControl, Capability.Time],
-                playback_time_range=(0, self._end),
-                server_listener=cast(Any, self),
-                context=self._context,
-            )
-        except RuntimeError as error:
-            raise InputError(f"{host}:{port}: cannot listen there: {error}") from error
+        start = lambda address: foxglove.start_server(  # noqa: E731
+            name=f"crowdbot: {path}",
+            host=address,
+            port=0,
+            capabilities=[Capability.PlaybackControl, Capability.Time],
+            playback_time_range=(0, self._end),
+            server_listener=cast(Any, self),
+            context=self._context,
+        )
+        self._gate = FoxgloveGate(host, port, start, admission or Admission(server="foxglove"))
+        self._server = self._gate.server
         self._thread = threading.Thread(target=self._run, name="playback", daemon=True)
         self._thread.start()
 
     @property
     def port(self) -> int:
         """Return the port in use."""
-        return int(self._server.port)
+        return self._gate.port
 
     def close(self) -> None:
         """Close all connections."""
@@ -70,7 +73,7 @@ class FoxglovePlayback:
             self._stopped = True
             self._changed.notify_all()
         self._thread.join()
-        self._server.stop()
+        self._gate.close()
 
     def _prepare(self, few: set[str]) -> None:
         """Create the file's channels, and load the messages of topics with few."""

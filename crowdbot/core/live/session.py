@@ -53,6 +53,7 @@ class LiveSession:
     _paused: bool = False
     _steps: int = 0
     _clock: float = -math.inf
+    _clock_keeper: Hashable | None = None
     _request: Request = ""
     _listeners: bool = False
 
@@ -185,7 +186,19 @@ class LiveSession:
             for one in self.robots.values() if robot is None else [self.robots[robot]]:
                 if one.driver == who:
                     one.driver = None
+            if robot is None and self._clock_keeper == who:
+                self._clock_keeper = None
             self._changed.notify_all()
+
+    def leave_clock(self, who: Hashable) -> None:
+        """Handle a client that stopped keeping the clock."""
+        with self._changed:
+            if self._clock_keeper == who:
+                self._clock_keeper = None
+
+    def drives(self, who: Hashable) -> bool:
+        """Return True if this client drives a robot, or keeps the clock."""
+        return self._clock_keeper == who or any(r.driver == who for r in self.robots.values())
 
     @property
     def here(self) -> list[LiveRobot]:
@@ -217,9 +230,13 @@ class LiveSession:
         """
         why = self._taken(who, command, stamp, robot)
         if why:
-            with self._changed:
-                self.counts.refused += 1
+            self.refuse()
         return why
+
+    def refuse(self) -> None:
+        """Count a refused command."""
+        with self._changed:
+            self.counts.refused += 1
 
     def _taken(self, who: Hashable, command: Command, stamp: int | None, robot: str) -> str:
         if not all(math.isfinite(x) for x in command):
@@ -245,12 +262,21 @@ class LiveSession:
             self._listeners = True
             self._changed.notify_all()
 
-    def clock(self, t: float) -> None:
-        """Set the external clock to ``t``, s; it never goes back."""
+    def clock(self, t: float, who: Hashable) -> bool:
+        """Set the external clock to ``t``, s; it never goes back.
+
+        Returns:
+            False if another client keeps the clock: the first one does until it leaves.
+        """
         with self._changed:
+            if self._clock_keeper is None:
+                self._clock_keeper = who
+            if self._clock_keeper != who:
+                return False
             if t > self._clock and math.isfinite(t):
                 self._clock = t
                 self._changed.notify_all()
+        return True
 
     def pause(self, wanted: bool) -> None:
         """Pause the run before its next step, or resume it."""

@@ -26,6 +26,7 @@ from crowdbot.core.live.ros2_keys import (
 )
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.live.zenoh_publishers import ZenohPublishers
 from crowdbot.core.live.zenoh_services import ZenohServices
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.types.motion import Command
@@ -97,7 +98,8 @@ class ZenohDoor:
         self._entities = itertools.count(10)
         self._publishers: dict[str, _Publisher] = {}
         self._lock = threading.Lock()
-        self._drivers: dict[str, set[str]] = {robot: set() for robot in session.robots}
+        self._drivers = {robot: ZenohPublishers() for robot in session.robots}
+        self._clocks = ZenohPublishers()
         live = self._zenoh.liveliness()
         self._kept: list[Any] = [live.declare_token(node_token(network.domain, self._name, _NODE))]
         for name, robot in session.commands.items():
@@ -105,6 +107,8 @@ class ZenohDoor:
             self._hear(name, STAMPED, partial(self._on_stamped, robot))
         if external_clock:
             self._hear(CLOCK, _CLOCK_TYPE, self._on_clock)
+            fits = drivers_of(network.domain, CLOCK)
+            self._kept.append(live.declare_subscriber(fits, self._on_keeper, history=True))
         self._servers = ZenohServices(self._zenoh)
         for name, service in services.items():
             topic = self._servers.serve(name, service, network.domain, network.distro)
@@ -191,32 +195,43 @@ class ZenohDoor:
 
         key = str(sample.key_expr)
         if sample.kind == zenoh.SampleKind.PUT:
-            self._drivers[robot].add(key)
+            self._drivers[robot].came(key)
             self._session.drive(self, robot)
-        else:
-            self._drivers[robot].discard(key)
-            if not self._drivers[robot]:
-                self._session.leave(self, robot)
+        elif self._drivers[robot].left(key):
+            self._session.leave(self, robot)
+
+    def _on_keeper(self, sample: Any) -> None:
+        """Handle a clock publisher that came or left."""
+        import zenoh
+
+        key = str(sample.key_expr)
+        if sample.kind == zenoh.SampleKind.PUT:
+            self._clocks.came(key)
+        elif self._clocks.left(key):
+            self._session.leave_clock(self)
 
     def _on_twist(self, robot: str, sample: Any) -> None:
         message = _read(sample, TWIST)
         if message is not None:
-            self._command(robot, message, None)
+            self._command(robot, sample, message, None)
 
     def _on_stamped(self, robot: str, sample: Any) -> None:
         message = _read(sample, STAMPED)
         if message is not None:
             stamp = message.header.stamp
-            self._command(robot, message.twist, stamp.sec * 10**9 + stamp.nanosec)
+            self._command(robot, sample, message.twist, stamp.sec * 10**9 + stamp.nanosec)
 
-    def _command(self, robot: str, twist: Any, stamp: int | None) -> None:
+    def _command(self, robot: str, sample: Any, twist: Any, stamp: int | None) -> None:
+        if not self._drivers[robot].may(sample):
+            self._session.refuse()
+            return
         command = Command(twist.linear.x, twist.angular.z, twist.linear.y)
         self._session.command(self, command, stamp, robot)
 
     def _on_clock(self, sample: Any) -> None:
         message = _read(sample, _CLOCK_TYPE)
-        if message is not None:
-            self._session.clock(message.clock.sec + message.clock.nanosec / 1e9)
+        if message is not None and self._clocks.may(sample):
+            self._session.clock(message.clock.sec + message.clock.nanosec / 1e9, self)
 
 
 def _read(sample: Any, msgtype: str) -> Any | None:

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.live.message import LiveMessage
+from crowdbot.core.live.rosbridge.bad_frame import BadFrame
 from crowdbot.core.live.rosbridge.feed import Feed, Wishes, wishes
 from crowdbot.core.live.rosbridge.fragments import Joiner, split
-from crowdbot.core.live.rosbridge.frames import BadFrame
 from crowdbot.core.live.rosbridge.outbox import Outbox
 from tests.core.live.live_cases import clock
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,8 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
+from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.foxglove_door import FoxgloveDoor
 from crowdbot.core.live.foxglove_parameters import set_parameters
 from crowdbot.core.live.live_robot import LiveRobot
@@ -124,6 +127,58 @@ def test_services_reset_and_pause() -> None:
             assert json.loads(answer[17:])["success"]
         assert session.paused
         assert session.take_request() == "reset"
+
+
+def _connect(door: FoxgloveDoor, **more: Any) -> ClientConnection:
+    speaks: Any = ["foxglove.sdk.v1"]
+    uri = f"ws://127.0.0.1:{door.port}"
+    made: ClientConnection = connect(
+        uri, subprotocols=speaks, compression=None, close_timeout=0.5, **more
+    )
+    return made
+
+
+@pytest.mark.parametrize("headers", [{"origin": "http://evil.test"}, {"host": "evil.test"}])
+def test_foreign_websites_are_refused(headers: dict[str, str]) -> None:
+    with _both() as (door, _, _):
+        host = headers.get("host")
+        more: dict[str, Any] = {"origin": headers["origin"]} if host is None else {}
+        uri = f"ws://{host or '127.0.0.1'}:{door.port}"
+        speaks: Any = ["foxglove.sdk.v1"]
+        raw = socket.create_connection(("127.0.0.1", door.port))
+        with pytest.raises(InvalidStatus, match="403"), raw:
+            connect(uri, sock=raw, subprotocols=speaks, **more)
+
+
+def test_websites_of_this_machine_and_named_ones_are_admitted() -> None:
+    session = LiveSession()
+    admission = Admission(server="foxglove", origins=["https://app.test"])
+    door = FoxgloveDoor(session, "127.0.0.1", 0, {}, admission=admission)
+    try:
+        for origin in ("http://localhost:8080", "https://app.test"):
+            with _connect(door, origin=origin) as viewer:
+                assert _hear(viewer, "serverInfo")
+    finally:
+        door.close()
+
+
+def test_the_first_of_two_viewers_drives_until_it_leaves() -> None:
+    channel = _advertised(1, "/cmd_vel")
+    with _both() as (door, session, first):
+        first.send(json.dumps({"op": "advertise", "channels": [channel]}))
+        until(lambda: session.driven)
+        with _connect(door) as second:
+            second.send(json.dumps({"op": "advertise", "channels": [channel]}))
+            head = struct.pack("<BI", 1, 1)
+            second.send(head + json.dumps({"linear": {"x": 0.9}}).encode())
+            until(lambda: session.counts.refused == 1)
+            assert session.newest() == (None, False)
+            first.send(head + json.dumps({"linear": {"x": 0.1}}).encode())
+            until(lambda: session.newest()[0] == Command(0.1, 0.0))
+            first.close()
+            until(lambda: not session.driven)
+            second.send(head + json.dumps({"linear": {"x": 0.9}}).encode())
+            until(lambda: session.newest()[0] == Command(0.9, 0.0))
 
 
 def test_an_address_that_is_taken_is_told() -> None:

@@ -120,14 +120,14 @@ def test_who_begins_to_listen_is_told_while_a_step_waits() -> None:
 def test_the_clock_outside_never_goes_back() -> None:
     session = LiveSession()
     for t in (0.1, 0.1, 0.05, math.nan, 0.2, -1.0):
-        session.clock(t)
+        session.clock(t, 1)
     session.wait_for_clock(0.2)
     waiting = threading.Thread(target=session.wait_for_clock, args=(0.3,))
     waiting.start()
-    session.clock(0.1)
+    session.clock(0.1, 1)
     waiting.join(0.2)
     assert waiting.is_alive()
-    session.clock(0.3)
+    session.clock(0.3, 1)
     waiting.join(30.0)
     assert not waiting.is_alive()
 
@@ -167,3 +167,15 @@ def test_a_request_ends_every_wait() -> None:
     assert session.take_request() == "next"
     assert session.seed == 7
     assert not session.must_stop
+
+
+def test_the_first_client_keeps_the_clock_until_it_leaves() -> None:
+    session = LiveSession()
+    assert session.clock(0.1, "a")
+    assert not session.clock(1e9, "b")
+    session.wait_for_clock(0.1)
+    assert session.drives("a")
+    session.leave("b")
+    assert not session.clock(1e9, "b")
+    session.leave("a")
+    assert session.clock(0.2, "b")

@@ -19,7 +19,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.message import Offer, told
-from crowdbot.core.live.ros2_keys import Ros2Topic, attachment, hash_in, in_distro
+from crowdbot.core.live.ros2_keys import Ros2Topic, attachment, gid_of, hash_in, in_distro
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.zenoh_door import Network, ZenohDoor
 from crowdbot.core.recording import messages as ros
@@ -187,6 +187,35 @@ def test_each_of_two_robots_is_driven_on_its_own_topic() -> None:
         assert session.answer(0.01, lambda: None, "a") is None
         token.undeclare()
         until(lambda: not session.is_driven("b"))
+
+
+def test_the_first_of_two_publishers_drives_until_it_leaves() -> None:
+    kind = "geometry_msgs/msg/Twist"
+    vector = JAZZY.types["geometry_msgs/msg/Vector3"]
+    with _both() as (_, session, other):
+        command = Ros2Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
+        texts = [command.token(0, "me", number, "MP", "driver") for number in (11, 12)]
+        tokens = [other.liveliness().declare_token(text) for text in texts]
+        until(lambda: session.driven)
+
+        def put(number: int, v: float) -> None:
+            twist = JAZZY.types[kind](vector(v, 0.0, 0.0), vector(0.0, 0.0, 0.0))
+            about = attachment(1, 0, gid_of(texts[number]))
+            data = bytes(JAZZY.serialize_cdr(twist, kind))
+            other.put(command.key(0), data, attachment=about)
+
+        put(0, 0.1)
+        until(lambda: session.newest()[0] == Command(0.1, 0.0))
+        put(1, 0.9)
+        until(lambda: session.counts.refused == 1)
+        assert session.newest()[0] == Command(0.1, 0.0)
+        tokens[0].undeclare()
+
+        def second_drives() -> bool:
+            put(1, 0.9)
+            return session.newest()[0] == Command(0.9, 0.0)
+
+        until(second_drives)
 
 
 def test_garbage_is_not_a_command() -> None:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.core.live.commands import time_ns, twist
 from crowdbot.core.live.message import LiveMessage, Offer
 from crowdbot.core.live.plain import Ros, ros_type
-from crowdbot.core.live.rosbridge.frames import BadFrame, encoded, parse
+from crowdbot.core.live.rosbridge.bad_frame import BadFrame
+from crowdbot.core.live.rosbridge.frames import encoded, parse
 from crowdbot.core.live.rosbridge.outbox import Outbox
 from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
@@ -184,4 +185,4 @@ class RosbridgeClient:
             body = message.get("msg")
             ns = time_ns(body.get("clock")) if isinstance(body, dict) else None
             if ns is not None:
-                self._session.clock(ns / 1e9)
+                self._session.clock(ns / 1e9, self)

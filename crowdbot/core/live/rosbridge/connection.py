@@ -11,10 +11,12 @@ from typing import Any, Protocol
 
 from crowdbot.core.live.commands import time_ns, twist
 from crowdbot.core.live.message import LiveMessage
+from crowdbot.core.live.rosbridge.bad_frame import BadFrame
 from crowdbot.core.live.rosbridge.feed import Feed, Wishes, wishes
 from crowdbot.core.live.rosbridge.fragments import Joiner, split
-from crowdbot.core.live.rosbridge.frames import BadFrame, Frame, parse
+from crowdbot.core.live.rosbridge.frames import Frame, parse
 from crowdbot.core.live.rosbridge.outbox import Outbox
+from crowdbot.core.live.rosbridge.pace import Pace, cost_of
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
@@ -24,7 +26,7 @@ _LEVELS = {"none": -1, "error": 0, "warning": 1, "info": 2}
 #: Limits of subscriptions, topics and parallel service calls per client.
 _MOST_TOPICS, _MOST_CALLS = 1000, 64
 #: Largest rate of messages per client; above it, messages wait in the socket.
-_PER_SECOND, _BURST, _BYTES = 5000.0, 5000.0, 2000.0
+_PER_SECOND, _BURST = 5000.0, 5000.0
 
 
 class Hub(Protocol):
@@ -32,6 +34,7 @@ class Hub(Protocol):
 
     session: LiveSession
     external_clock: bool
+    pace: Pace
 
     @property
     def services(self) -> Mapping[str, Service]:
@@ -63,7 +66,7 @@ class Connection:
         self._level = _LEVELS["error"]
         self._advertised = dict[str, int]()
         self._calls = set[asyncio.Task[None]]()
-        self._tokens, self._filled = _BURST, time.monotonic()
+        self._own_pace = Pace(_PER_SECOND, _BURST)
         self._ops: dict[str, Callable[[Mapping[str, Any]], None]] = {
             "subscribe": self._subscribe,
             "unsubscribe": self._unsubscribe,
@@ -80,16 +83,12 @@ class Connection:
     # ------------------------------------------------------------------------- incoming
     async def take(self, frame: Frame) -> None:
         """Handle a frame; never raises."""
-        await self._pace(len(frame))
+        wait = self._own_pace.take(cost_of(frame))
+        if not self._hub.session.drives(self):  # spectators share what drivers leave
+            wait = max(wait, self._hub.pace.take(cost_of(frame)))
+        if wait > 0.0:
+            await asyncio.sleep(wait)
         self._do(frame)
-
-    async def _pace(self, size: int) -> None:
-        now = time.monotonic()
-        self._tokens = min(_BURST, self._tokens + (now - self._filled) * _PER_SECOND)
-        self._filled = now
-        self._tokens -= 1.0 + size / _BYTES
-        if self._tokens < 0.0:
-            await asyncio.sleep(-self._tokens / _PER_SECOND)
 
     def _do(self, frame: Frame) -> None:
         message: dict[str, Any] = {}
@@ -156,7 +155,8 @@ class Connection:
             ns = time_ns(body.get("clock")) if isinstance(body, Mapping) else None
             if ns is None:
                 raise BadFrame("a clock is a rosgraph_msgs/Clock")
-            self._hub.session.clock(ns / 1e9)
+            if not self._hub.session.clock(ns / 1e9, self):
+                self._tell("warning", "another client keeps the clock until it leaves")
 
     def _fragment(self, message: Mapping[str, Any]) -> None:
         whole = self._joiner.add(message)
@@ -203,8 +203,11 @@ class Connection:
     def _pass_on(self, message: LiveMessage, wish: Wishes) -> None:
         frame = self._hub.encoded(message, wish)
         if wish.fragment and isinstance(frame, str):
-            for piece in split(frame, wish.fragment, next(self._numbers)):
-                self._outbox.put(piece)
+            try:
+                for piece in split(frame, wish.fragment, next(self._numbers)):
+                    self._outbox.put(piece)
+            except BadFrame as error:
+                self._tell("error", f"{message.topic}: {error}")
         else:
             self._outbox.put(frame, message.topic, wish.queue)
 

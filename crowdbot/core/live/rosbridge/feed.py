@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from typing import Any, cast, get_args
 
 from crowdbot.core.live.message import LiveMessage
-from crowdbot.core.live.rosbridge.frames import BadFrame, Form
+from crowdbot.core.live.rosbridge.bad_frame import BadFrame
+from crowdbot.core.live.rosbridge.frames import Form
 
 _LONGEST_THROTTLE = 3_600_000
+#: Largest number of subscriptions of one client to one topic, and largest queue.
+_MOST_IDS, _MOST_QUEUED = 64, 10_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +39,8 @@ def wishes(message: Mapping[str, Any]) -> tuple[Wishes, str]:
         BadFrame: a field is invalid.
     """
     throttle = _number(message, "throttle_rate", _LONGEST_THROTTLE)
-    queue, fragment = _number(message, "queue_length", 10**6), _number(message, "fragment_size")
+    queue, fragment = _number(message, "queue_length"), _number(message, "fragment_size")
+    queue = min(queue, _MOST_QUEUED)
     form = message.get("compression") or "none"
     if form in get_args(Form):
         pieces = fragment if form == "none" else 0
@@ -71,7 +75,13 @@ class Feed:
         self.wishes = Wishes()
 
     def subscribe(self, name: str, wishes: Wishes) -> None:
-        """Add or replace one subscription."""
+        """Add or replace one subscription.
+
+        Raises:
+            BadFrame: the client has too many to this topic.
+        """
+        if name not in self._by_id and len(self._by_id) >= _MOST_IDS:
+            raise BadFrame(f"at most {_MOST_IDS} subscriptions to one topic")
         self._by_id[name] = wishes
         self._merge()
 

@@ -7,10 +7,12 @@ from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from crowdbot.core.live.rosbridge.frames import BadFrame
+from crowdbot.core.live.rosbridge.bad_frame import BadFrame
 
-#: Limits for fragmented messages: fragments, characters, and open messages.
+#: Limits for fragmented messages from clients: fragments, characters, and open messages.
 _MOST_PIECES, _MOST_CHARACTERS, _MOST_OPEN = 4096, 2**20, 8
+#: Largest number of fragments of a message to a client.
+MOST_SENT = 256
 
 
 def split(text: str, size: int, number: int) -> Iterator[str]:
@@ -19,11 +21,19 @@ def split(text: str, size: int, number: int) -> Iterator[str]:
     Args:
         size: > 0.
         number: number of the message, unique among pending ones.
+
+    Raises:
+        BadFrame: it would be more than `MOST_SENT` messages.
     """
     if len(text) <= size:
         yield text
         return
     total = -(-len(text) // size)
+    if total > MOST_SENT:
+        raise BadFrame(
+            f"{len(text)} characters are more than {MOST_SENT} fragments of {size}; "
+            "ask for a larger 'fragment_size'"
+        )
     for k in range(total):
         piece = {
             "op": "fragment", "id": str(number), "data": text[k * size : (k + 1) * size],
@@ -37,6 +47,7 @@ class Joiner:
 
     def __init__(self) -> None:
         self._open = OrderedDict[str, dict[int, str]]()
+        self._sizes = dict[str, int]()
 
     def add(self, message: Mapping[str, Any]) -> str | None:
         """Add a fragment; return the whole text after the last one.
@@ -53,18 +64,23 @@ class Joiner:
         assert isinstance(total, int)
         if not 0 <= number < total <= _MOST_PIECES:
             raise BadFrame(f"fragment {number} of {total}")
-        pieces = self._open.setdefault(str(name), {})
-        self._open.move_to_end(str(name))
-        pieces[number] = str(data)
-        if sum(map(len, pieces.values())) > _MOST_CHARACTERS:
-            del self._open[str(name)]
+        key, text = str(name)[:256], str(data)
+        pieces = self._open.setdefault(key, {})
+        self._open.move_to_end(key)
+        self._sizes[key] = self._sizes.get(key, 0) + len(text) - len(pieces.get(number, ""))
+        pieces[number] = text
+        if self._sizes[key] > _MOST_CHARACTERS:
+            self._drop(key)
             raise BadFrame("the message in fragments is too long")
         while len(self._open) > _MOST_OPEN:
-            self._open.popitem(last=False)
+            self._drop(next(iter(self._open)))
         if len(pieces) < total:
             return None
-        del self._open[str(name)]
+        self._drop(key)
         return "".join(pieces[k] for k in sorted(pieces))
+
+    def _drop(self, key: str) -> None:
+        del self._open[key], self._sizes[key]
 
 
 def _is_count(value: object) -> bool:

@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 
 from crowdbot.core.live.message import LiveMessage
 from crowdbot.core.live.plain import Ros, json_array, to_plain
+from crowdbot.core.live.rosbridge.bad_frame import BadFrame
+from crowdbot.core.live.rosbridge.cbor_frames import read_cbor
 
 Form = Literal["none", "cbor", "cbor-raw"]
 Frame = str | bytes
 #: Tags of typed arrays in CBOR (RFC 8746), little-endian, by numpy's kind and size.
 _TAGS = {"u1": 64, "i1": 72, "u2": 69, "u4": 70, "u8": 71, "i2": 77, "i4": 78, "i8": 79,
          "f4": 85, "f8": 86}  # fmt: skip
-
-
-class BadFrame(Exception):  # noqa: N818 - what a client sent, not what we did
-    """A client's frame is not a message of the protocol."""
 
 
 def parse(frame: Frame) -> dict[str, Any]:
@@ -30,7 +28,7 @@ def parse(frame: Frame) -> dict[str, Any]:
         BadFrame: it is not one: neither JSON (text) nor CBOR (binary), or without ``op``.
     """
     try:
-        message = json.loads(frame) if isinstance(frame, str) else _cbor(frame)
+        message = json.loads(frame) if isinstance(frame, str) else read_cbor(frame)
     except BadFrame:
         raise
     except Exception as error:  # third-party decoders with untrusted input
@@ -38,12 +36,6 @@ def parse(frame: Frame) -> dict[str, Any]:
     if not isinstance(message, dict) or not isinstance(message.get("op"), str):
         raise BadFrame("a message is an object with 'op'")
     return message
-
-
-def _cbor(data: bytes) -> Any:
-    import cbor2
-
-    return cbor2.loads(data)
 
 
 def encoded(message: LiveMessage, form: Form, ros: Ros) -> Frame:

@@ -14,11 +14,13 @@ from http import HTTPStatus
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
+from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.message import LiveMessage, Offer
 from crowdbot.core.live.plain import Ros
 from crowdbot.core.live.rosbridge.connection import Connection
 from crowdbot.core.live.rosbridge.feed import Wishes
 from crowdbot.core.live.rosbridge.frames import Frame, encoded
+from crowdbot.core.live.rosbridge.pace import Pace
 from crowdbot.core.live.rosbridge.rosapi import TWIST, RosapiWorld, rosapi
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
@@ -28,16 +30,12 @@ if TYPE_CHECKING:
     from websockets.asyncio.server import Server, ServerConnection
     from websockets.http11 import Request, Response
 
-_LOOPBACK = ("localhost", "127.0.0.1", "::1")
 #: Largest frame from a client, and largest amount between two reads, bytes.
 _LARGEST, _WAITING = 2**20, 16
 _MOST_CLIENTS = 200
+#: Largest rate of messages of all clients that do not drive.
+_SPECTATORS = 10_000.0
 _FAREWELL = 1.0  # s
-
-
-def is_loopback(host: str) -> bool:
-    """Return True if a name or address is this machine's own."""
-    return host in _LOOPBACK or host.startswith("127.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,11 +45,13 @@ class Address:
     Attributes:
         port: 0: any free port.
         token: token for clients; empty: none.
+        origins: foreign websites that are admitted.
     """
 
     host: str = "127.0.0.1"
     port: int = 9090
     token: str = ""
+    origins: Sequence[str] = ()
 
 
 class RosbridgeServer:
@@ -81,6 +81,8 @@ class RosbridgeServer:
         """
         self.session, self.ros, self.external_clock = session, ros, external_clock
         self._address, self._resend = address, resend
+        self._admission = Admission(server="rosbridge", origins=address.origins)
+        self.pace = Pace(_SPECTATORS, _SPECTATORS)
         self._world = RosapiWorld(ros=ros, services=dict(services))
         self._world.taken = dict.fromkeys(session.commands, TWIST)
         self._world.services |= rosapi(self._world)
@@ -218,10 +220,9 @@ class RosbridgeServer:
             if not any(fits):
                 return connection.respond(HTTPStatus.UNAUTHORIZED, "a token is wanted\n")
             return None
-        origin = request.headers.get("Origin")
-        if origin is not None and not is_loopback(urlsplit(origin).hostname or ""):
-            return connection.respond(HTTPStatus.FORBIDDEN, "not from that website\n")
-        return None
+        headers = {name: request.headers.get_all(name) for name in ("host", "origin")}
+        problem = self._admission.problem(headers)
+        return connection.respond(HTTPStatus.FORBIDDEN, f"{problem}\n") if problem else None
 
     async def _serve(self, socket: ServerConnection) -> None:
         from websockets.exceptions import ConnectionClosed

@@ -1,0 +1,81 @@
+"""Admission to a live server: websites of others are refused, since a browser visits any."""
+
+from __future__ import annotations
+
+import ipaddress
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from urllib.parse import urlsplit
+
+from crowdbot.errors import printable
+
+#: Largest number of refused websites that are named on stderr.
+_NAMED = 20
+
+
+def is_loopback(host: str) -> bool:
+    """Return True if a host is this machine: localhost, or a loopback address."""
+    name = host.lower()
+    if name.startswith("[") and name.endswith("]"):
+        name = name[1:-1]
+    try:
+        address = ipaddress.ip_address(name)
+    except ValueError:
+        return name in ("localhost", "localhost.")
+    mapped = getattr(address, "ipv4_mapped", None)
+    return (mapped or address).is_loopback
+
+
+@dataclass(kw_only=True)
+class Admission:
+    """The rule for clients of one server.
+
+    A browser sends the website of a page as ``Origin``, and the name by which it reached the
+    server as ``Host``, which is a foreign name after DNS rebinding. Programs send no ``Origin``.
+
+    Attributes:
+        server: name of the server for messages.
+        origins: websites that are admitted, such as ``https://app.foxglove.dev``.
+    """
+
+    server: str
+    origins: Sequence[str] = ()
+    _refused: set[str] = field(default_factory=set)
+
+    def problem(self, headers: Mapping[str, Sequence[str]]) -> str:
+        """Return why a request is refused; empty if it is admitted.
+
+        Args:
+            headers: name in lower case -> all its values.
+        """
+        hosts, origins = headers.get("host", ()), headers.get("origin", ())
+        if len(hosts) > 1 or len(origins) > 1:
+            return "a header is there twice"
+        if origins and not self._fits(origins[0]):
+            self._say(origins[0])
+            return f"not from that website; --allow-origin {printable(origins[0])[:200]} admits it"
+        if hosts and not is_loopback(_name(f"//{hosts[0]}")):
+            return "not by that name: 'localhost' and loopback addresses are served"
+        return ""
+
+    def _fits(self, origin: str) -> bool:
+        if origin.rstrip("/") in (o.rstrip("/") for o in self.origins):
+            return True
+        return is_loopback(_name(origin))
+
+    def _say(self, origin: str) -> None:
+        """Name a refused website once; the user may have opened it."""
+        shown = printable(origin)[:200]
+        if shown not in self._refused and len(self._refused) < _NAMED:
+            self._refused.add(shown)
+            text = f"{self.server}: refused a page of {shown}; --allow-origin {shown} admits it"
+            print(text, file=sys.stderr, flush=True)
+
+
+def _name(url: str) -> str:
+    """Return the host's name in a URL; empty if there is none."""
+    try:
+        return urlsplit(url).hostname or ""
+    except ValueError:
+        return ""
