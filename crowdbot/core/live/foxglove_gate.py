@@ -122,7 +122,7 @@ class FoxgloveGate:
 async def _pass_on(
     reader: asyncio.StreamReader, writer: asyncio.StreamWriter, rate: float = 0.0
 ) -> None:
-    """Pass bytes on until the end; with a ``rate``, at most so many per second after a burst."""
+    """Pass bytes on until the end; with a ``rate``, at most this many per second after a burst."""
     now = asyncio.get_running_loop().time
     left, filled = float(_BURST), now()
     while data := await reader.read(_CHUNK):
