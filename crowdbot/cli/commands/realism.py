@@ -112,7 +112,7 @@ def _simulated(
 
 def _of_runs(path: Path, beside: RealismReference) -> Realism:
     """Measure the people in finished runs, all runs together."""
-    from crowdbot.core.realism.measure import measure_tracks
+    from crowdbot.core.realism.measure import measure_met
     from crowdbot.core.realism.recordings import read_runs
 
     files = sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
@@ -121,7 +121,7 @@ def _of_runs(path: Path, beside: RealismReference) -> Realism:
     tracks, without = read_runs(files)
     if without:
         typer.echo(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
-    return measure_tracks(str(path), [tracks], beside)
+    return measure_met(str(path), [tracks], beside)
 
 
 def _json(found: Sequence[Realism]) -> str:
@@ -134,5 +134,7 @@ def _text(one: Realism) -> str:
     head = ["", "this crowd", "recorded", "avoid nobody"]
     return (
         f"crowd: {one.line}\nindex {one.index:.2f} (0: ghosts, 1: people), "
-        f"score {one.low:.3f} to {one.high:.3f} over draws\n" + table([head, *rows(one)])
+        f"score {one.low:.3f} to {one.high:.3f} over draws\n"
+        + (f"covers {one.coverage}\n" if one.coverage else "")
+        + table([head, *rows(one)])
     )

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from crowdbot.core.realism.bins import FEATURES
-from crowdbot.core.realism.compare import Beside, RealismScore, beside, compared_cells
+from crowdbot.core.realism.bins import FEATURES, LEAST_SAMPLES
+from crowdbot.core.realism.compare import Beside, RealismScore, beside
 from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel
 from crowdbot.core.realism.reference import RealismReference
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.realism.tracks import Tracks
+from crowdbot.errors import InputError
 
 #: Seeds of the corridors: the index varies by 0.022 for one, by 0.006 for the mean of sixteen.
 SEEDS = tuple(range(1, 17))
+#: Least share of the reference's cells with which runs have an index.
+LEAST_COVERAGE = 0.25
 #: Additional parts besides the five features, from 0 to 1.
 DIAGRAM, LANES, PAIRS = "fundamental_diagram", "lanes", "pair_correlation"
 
@@ -35,7 +38,8 @@ class Realism:
         cells: (flow, density) -> mean of the five features.
         beside: errors in their own units.
         statistics: statistics of the crowd in all draws.
-        reference: the reference of the comparison.
+        reference: the reference of the comparison, with the cells that count.
+        of_cells: number of cells that the reference has in all; 0 if all count.
     """
 
     name: str
@@ -50,6 +54,16 @@ class Realism:
     beside: Beside
     statistics: Statistics
     reference: RealismReference
+    of_cells: int = 0
+
+    @property
+    def coverage(self) -> str:
+        """Cells that count, if not all of the reference do; else empty."""
+        names = ", ".join(f"{flow} {density}" for flow, density in self.reference.cells)
+        count = len(self.reference.cells)
+        if not self.of_cells or count == self.of_cells:
+            return ""
+        return f"{count} of {self.of_cells} conditions (people/m²): {names}"
 
     @property
     def line(self) -> str:
@@ -70,6 +84,7 @@ class Realism:
             "ceiling": _rounded(self.ceiling),
             "floor": _rounded(self.floor),
             "parts": {name: _rounded(v) for name, v in self.parts.items()},
+            "coverage": [len(self.reference.cells), self.of_cells or len(self.reference.cells)],
             "cells": {"/".join(cell): _rounded(v) for cell, v in self.cells.items()},
             "beside": {
                 "fundamental_diagram_error": _rounded(b.diagram_error),
@@ -83,14 +98,14 @@ class Realism:
                     _rounded(self.statistics.lanes.get(c, np.nan)),
                     _rounded(self.reference.whole.lanes[c]),
                 ]
-                for c in compared_cells(self.reference.whole)
+                for c in self.reference.cells
             },
             "nearest_m": {
                 "/".join(c): [
                     [_rounded(v) for v in s.nearest[c]] if c in s.nearest else None
                     for s in (self.statistics, self.reference.whole)
                 ]
-                for c in compared_cells(self.reference.whole)
+                for c in self.reference.cells
             },
             "fundamental_diagram": {
                 flow: [[_rounded(v) for v in row] for row in rows]
@@ -153,6 +168,28 @@ def measure_tracks(
     )
 
 
+def measure_met(
+    name: str, draws: Sequence[Sequence[Tracks]], reference: RealismReference
+) -> Realism:
+    """Compare tracks of people who were not put into the recorded conditions, such as of runs.
+
+    Only the cells with enough samples of these people count, for floor and ceiling too.
+
+    Raises:
+        InputError: there are enough samples in less than a quarter of the reference's cells.
+    """
+    whole = statistics_of([t for tracks in draws for t in tracks])
+    met = [cell for cell in reference.cells if whole.count(cell) >= LEAST_SAMPLES]
+    if not met or len(met) < LEAST_COVERAGE * len(reference.cells):
+        raise InputError(
+            f"{name}: too few people for an index: {len(met)} of {len(reference.cells)} conditions "
+            f"of the recordings have {LEAST_SAMPLES} samples (0.3 to 2.4 people per m²); "
+            "measure the suite or the crowd instead of the runs"
+        )
+    found = measure_tracks(name, draws, reference.within(met))
+    return replace(found, of_cells=len(reference.cells))
+
+
 def _parts(scores: Sequence[RealismScore]) -> dict[str, float]:
     return {f: float(np.mean([s.parts[f] for s in scores])) for f in FEATURES}
 
@@ -169,4 +206,13 @@ def _rounded(value: float) -> float | None:
     return round(float(value), 4) if np.isfinite(value) else None
 
 
-__all__ = ["DIAGRAM", "LANES", "PAIRS", "SEEDS", "Realism", "measure", "measure_tracks"]
+__all__ = [
+    "DIAGRAM",
+    "LANES",
+    "PAIRS",
+    "SEEDS",
+    "Realism",
+    "measure",
+    "measure_met",
+    "measure_tracks",
+]

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.realism.bins import EDGES, FEATURES, FLOWS, PAIR_EDGES, UNITS
-from crowdbot.core.realism.compare import compared_cells
 from crowdbot.core.realism.measure import Realism
 from crowdbot.core.realism.tables import rows
 from crowdbot.core.support.html_page import render_page
@@ -41,6 +40,7 @@ def _section(found: Realism) -> dict[str, Any]:
         "range": f"{found.low:.3f} to {found.high:.3f}",
         "floor": f"{found.floor:.3f}",
         "ceiling": f"{found.ceiling:.3f}",
+        "coverage": found.coverage,
         "rows": rows(found),
         "figures": [
             ("Fundamental diagram", [_diagram(found, flow) for flow in FLOWS]),
@@ -52,7 +52,7 @@ def _section(found: Realism) -> dict[str, Any]:
 
 
 def _cells(found: Realism) -> list[tuple[str, str]]:
-    return compared_cells(found.reference.whole)
+    return found.reference.cells
 
 
 def _histogram(found: Realism, feature: str, cell: tuple[str, str]) -> dict[str, str]:

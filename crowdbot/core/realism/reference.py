@@ -14,7 +14,7 @@ from crowdbot.core.realism.compare import RealismScore, compared_cells, score
 from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel, avoid_nobody, ghosts
 from crowdbot.core.realism.recordings import read_tracks
-from crowdbot.core.realism.statistics import Statistics, statistics_of
+from crowdbot.core.realism.statistics import Cell, Statistics, statistics_of
 from crowdbot.core.realism.tracks import Tracks
 from crowdbot.errors import InputError
 
@@ -61,6 +61,21 @@ class RealismReference:
         """Return (score - floor)/(ceiling - floor): 0 for ghosts, 1 for recorded people."""
         low, high = self.floor.score, self.ceiling.score
         return (value - low) / (high - low) if high > low else float("nan")
+
+    @property
+    def cells(self) -> list[Cell]:
+        """The cells that count."""
+        return compared_cells(self.whole)
+
+    def within(self, cells: Sequence[Cell]) -> RealismReference:
+        """Return the same recordings, of which only some cells count, floor and ceiling too."""
+        first, second = (half.within(cells) for half in self.halves)
+        return replace(
+            self,
+            halves=(first, second),
+            whole=self.whole.within(cells),
+            floors={name: floor.within(cells) for name, floor in self.floors.items()},
+        )
 
     def as_json(self) -> dict[str, Any]:
         """Return data that `from_json` reads."""

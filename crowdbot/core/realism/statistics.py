@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -66,6 +66,17 @@ class Statistics:
         """Number of samples of a cell."""
         found = self.histograms.get(cell)
         return 0 if found is None else int(np.sum(found["speed"]))
+
+    def within(self, cells: Iterable[Cell]) -> Statistics:
+        """Return the statistics of some cells only."""
+        kept = set(cells)
+        return replace(
+            self,
+            **{
+                name: {c: v for c, v in getattr(self, name).items() if c in kept}
+                for name in ("histograms", "lanes", "nearest", "pairs", "people")
+            },
+        )
 
     def as_json(self) -> dict[str, Any]:
         """Return rounded numbers that `from_json` reads; histograms as shares of 10 000."""

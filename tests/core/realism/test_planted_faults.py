@@ -11,12 +11,13 @@ import pytest
 
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.realism.corridor import Corridor, simulate
-from crowdbot.core.realism.measure import DIAGRAM, LANES, Realism, measure_tracks
+from crowdbot.core.realism.measure import DIAGRAM, LANES, Realism, measure_met, measure_tracks
 from crowdbot.core.realism.model import CrowdModel, ghosts, model_of
 from crowdbot.core.realism.reference import shipped
 from crowdbot.core.realism.tracks import Tracks
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.named_crowds import open_crowd
+from crowdbot.errors import InputError
 
 pytestmark = pytest.mark.slow
 PLACES = [
@@ -111,3 +112,20 @@ def test_two_draws_are_close_and_one_is_repeatable() -> None:
         cell = place.flow, f"{place.density:g}"
         assert other.cells[cell] == pytest.approx(own.cells[cell], abs=0.08), cell
     assert own.parts["speed"] > 0.4
+
+
+def test_runs_are_compared_in_the_densities_that_they_meet() -> None:
+    tracks, _ = usual()
+    sparse = [t for t, place in zip(tracks, PLACES, strict=True) if place.density < 1.0]
+    found = measure_met("runs", [sparse], shipped())
+    assert 0.5 < found.index < 1.2, "densities without people are no mismatch"
+    assert measured(sparse).index < found.index - 0.3
+    assert found.coverage.startswith(f"{len(found.cells)} of 8 conditions")
+    blind = [simulate(CrowdModel(policy=ghosts), place) for place in PLACES if place.density < 1.0]
+    assert measure_met("runs", [blind], shipped()).index < found.index - 0.3
+
+
+def test_runs_that_meet_too_little_have_no_index() -> None:
+    thin = simulate(model(), replace(PLACES[0], density=0.1))
+    with pytest.raises(InputError, match="too few people for an index: [01] of 8 conditions"):
+        measure_met("runs", [[thin]], shipped())
