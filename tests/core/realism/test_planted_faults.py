@@ -127,5 +127,5 @@ def test_runs_are_compared_in_the_densities_that_they_meet() -> None:
 
 def test_runs_that_meet_too_little_have_no_index() -> None:
     thin = simulate(model(), replace(PLACES[0], density=0.1))
-    with pytest.raises(InputError, match="too few people for an index: [01] of 8 conditions"):
+    with pytest.raises(InputError, match=r"too few people for an index: [01] of 8 conditions"):
         measure_met("runs", [[thin]], shipped())
