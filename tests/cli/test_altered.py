@@ -10,6 +10,8 @@ import pytest
 
 import crowdbot
 from crowdbot import cli
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import RunRow
 from tests.core.results.made_up_record import made_up_record
 
 SCENARIO = """
@@ -87,10 +89,23 @@ def test_python_leaves_them_out_too(root: Path) -> None:
 
 
 def test_runs_of_earlier_versions_are_told_by_their_id() -> None:
-    from crowdbot.core.results.results import Results
-    from crowdbot.core.results.rows import RunRow
-
     ids = ("s0", "s0+1f3a", "s0+calibrated", "s0+calibrated+1f3a")
     rows = [RunRow(record=made_up_record(scenario=s, run_id=s), directory=s) for s in ids]
     kept = Results(runs=tuple(rows)).without_altered().runs
     assert [row.scenario for row in kept] == ["s0", "s0+calibrated"]
+
+
+def test_report_takes_a_suite_by_id_and_by_file(root: Path, tmp_path: Path, told: Tell) -> None:
+    for suite in ("scenarios", str(root.parent / "alone.yaml")):
+        told("report", str(root), "--suite", suite, "--out", str(tmp_path / "report.html"))
+
+
+def test_bundle_guesses_neither_suite_nor_planner(
+    root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    row = RunRow(record=made_up_record(planner="mine"), directory="d")
+    monkeypatch.setattr(Results, "open", lambda _: Results(runs=(row, row)))
+    assert cli.main(["bundle", str(root)]) == 2
+    assert "--suite suite --planner mine   (2 runs)" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +11,7 @@ import typer
 
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
+from crowdbot.dsl.suite.suite_entry import NO_SUITE
 from crowdbot.errors import UsageError
 
 
@@ -18,11 +20,11 @@ def bundle(
         Path, typer.Argument(metavar="[ROOT]", help="Root of the run directories.")
     ] = Path("runs"),
     suite: Annotated[
-        str, typer.Option(metavar="SPEC", help="The suite that was run: file or name.")
-    ] = "challenge-2020",
+        str | None, typer.Option(metavar="SPEC", help="The suite that was run: file or name.")
+    ] = None,
     planner: Annotated[
-        str, typer.Option(metavar="LABEL", help="The planner: name of its folders.")
-    ] = "dwa",
+        str | None, typer.Option(metavar="LABEL", help="The planner: name of its folders.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="File to write; default: SUITE-PLANNER.cbz.")
     ] = None,
@@ -79,6 +81,8 @@ def bundle(
             f"{root} is a file; ROOT is a folder of runs. To check a bundle that is there: "
             f"crowdbot verify {root}"
         )
+    if suite is None or planner is None:
+        raise UsageError(f"which runs? Give --suite SPEC and --planner LABEL; {_offer(root)}")
     registry = installed(plugin, no_plugins)
     expansion, lock = open_suite(suite, registry)
     for scenario in expansion.scenarios:
@@ -108,3 +112,19 @@ def bundle(
     if verdict is not None:
         print_verdict(verdict)
         raise typer.Exit(0 if verdict["ok"] else 1)
+
+
+def _offer(root: Path) -> str:
+    """Return the suites and planners of the runs below a folder, in words.
+
+    Raises:
+        InputError: there is no such folder.
+    """
+    from crowdbot.core.results.results import Results
+
+    runs = Results.open(root).without_altered().runs
+    counts = Counter((run.suite, run.planner) for run in runs if run.suite != NO_SUITE)
+    if not counts:
+        return f"no run of a suite is below {root}"
+    offers = [f"  --suite {s} --planner {p}   ({plural(n, 'run')})" for (s, p), n in counts.items()]
+    return "\n".join([f"below {root} there are:", *offers])

@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 import typer
 
-from crowdbot.cli.shared.open_results import Altered, open_results
+from crowdbot.cli.shared.open_results import Altered, open_results, suite_id
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
@@ -38,7 +38,8 @@ def report(
         Path, typer.Argument(metavar="[ROOT]", help="Where campaigns and simulations put runs.")
     ] = Path("runs"),
     suite: Annotated[
-        str | None, typer.Option(metavar="ID", help="Which suite; needed where there are several.")
+        str | None,
+        typer.Option(metavar="SPEC", help="Which suite, if there are several: its id or file."),
     ] = None,
     planner: Annotated[
         list[str] | None,
@@ -82,7 +83,9 @@ def report(
     from crowdbot.core.results.results import Results
 
     check_ending(out, ".html")
-    results = _chosen(open_results(root, altered), suite, planner or [], root)
+    registry = installed(plugin, no_plugins)
+    wanted = None if suite is None else suite_id(suite, registry)
+    results = _chosen(open_results(root, altered), wanted, planner or [], root)
     links = {} if no_replay_links else _replays(results, root, out)
     results, known = _with_reference(results, Results.open(reference) if reference else None)
     findings = confounds(results, accept or ())
@@ -96,7 +99,7 @@ def report(
         references=known,
         audit=_audit(audit, root / results.runs[0].suite),
     )
-    contents = gather(results, installed(plugin, no_plugins), heading, links)
+    contents = gather(results, registry, heading, links)
     _tell(write_report(out, contents), contents, findings, as_json)
 
 

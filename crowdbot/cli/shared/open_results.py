@@ -11,8 +11,10 @@ import typer
 from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.core.results.results import Results
 
+_FILES = (".yaml", ".yml")
 Altered = Annotated[
     bool,
     typer.Option("--altered", help="Include runs of scenarios that --set changed, as own suites."),
@@ -39,3 +41,14 @@ def open_results(root: Path, altered: bool) -> Results:
     message = f"{lost} of altered scenarios left out ({named}): --altered includes them"
     print(message, file=sys.stderr)
     return kept
+
+
+def suite_id(suite: str, registry: Registry) -> str:
+    """Return the id of a suite in records; the suite is given by its id or as a file.
+
+    Raises:
+        SpecError: the file is wrong.
+    """
+    from crowdbot.core.scenarios.library import open_spec
+
+    return open_spec(suite, registry).suite if Path(suite).suffix in _FILES else suite

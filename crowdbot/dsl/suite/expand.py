@@ -19,7 +19,7 @@ from crowdbot.dsl.suite.include import Loader
 from crowdbot.dsl.suite.installed import Installed
 from crowdbot.dsl.suite.matrix import DRAW, combinations
 from crowdbot.dsl.suite.suite import ParsedSuite, read_suite
-from crowdbot.dsl.suite.suite_entry import SuiteEntry, digest_of
+from crowdbot.dsl.suite.suite_entry import NO_SUITE, SuiteEntry, digest_of
 from crowdbot.dsl.text.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.text.finder import Finder, Roots
 from crowdbot.dsl.text.merge import Merged, merge, nest, undot
@@ -82,7 +82,7 @@ class Expansion:
     @property
     def suite(self) -> str:
         """Return the suite's name in records; all documents with a single scenario share one."""
-        return "scenarios" if self.single else self.suite_id
+        return NO_SUITE if self.single else self.suite_id
 
     @property
     def folder(self) -> str:

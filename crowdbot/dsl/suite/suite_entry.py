@@ -11,6 +11,8 @@ from crowdbot.dsl.suite.axis_words import AxisWords
 
 #: Longest readable part of a folder's suffix; what is longer ends with a hash.
 _LONGEST = 60
+#: Suite of all documents with a single scenario.
+NO_SUITE = "scenarios"
 _DIGEST = re.compile(r"\+[0-9a-f]{4}(?=\+|$)")
 _UNSAFE = re.compile(r"[^\w.=-]+")
 
@@ -27,7 +29,7 @@ class SuiteEntry:
         altered: the ``key=value`` texts with which the scenario was changed.
     """
 
-    suite: str = "scenarios"
+    suite: str = NO_SUITE
     axes: Mapping[str, str] = field(default_factory=dict)
     words: Mapping[str, AxisWords] = field(default_factory=dict)
     position: int = 0

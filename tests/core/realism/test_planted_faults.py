@@ -118,7 +118,7 @@ def test_runs_are_compared_in_the_densities_that_they_meet() -> None:
     tracks, _ = usual()
     sparse = [t for t, place in zip(tracks, PLACES, strict=True) if place.density < 1.0]
     found = measure_met("runs", [sparse], shipped())
-    assert 0.5 < found.index < 1.2, "densities without people are no mismatch"
+    assert 0.5 < found.index < 1.2, "a density without people does not count"
     assert measured(sparse).index < found.index - 0.3
     assert found.coverage.startswith(f"{len(found.cells)} of 8 conditions")
     blind = [simulate(CrowdModel(policy=ghosts), place) for place in PLACES if place.density < 1.0]
