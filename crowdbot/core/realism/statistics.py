@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from crowdbot.core.types.arrays import Array
 
 #: Name of a cell: flow and density.
 Cell = tuple[str, str]
+_Value = TypeVar("_Value")
 _LARGEST = 9e8
 #: With samples from fewer windows, a curve would be chance.
 _LEAST_WINDOWS = 8
@@ -70,12 +71,17 @@ class Statistics:
     def within(self, cells: Iterable[Cell]) -> Statistics:
         """Return the statistics of some cells only."""
         kept = set(cells)
+
+        def some(of: Mapping[Cell, _Value]) -> dict[Cell, _Value]:
+            return {cell: value for cell, value in of.items() if cell in kept}
+
         return replace(
             self,
-            **{
-                name: {c: v for c, v in getattr(self, name).items() if c in kept}
-                for name in ("histograms", "lanes", "nearest", "pairs", "people")
-            },
+            histograms=some(self.histograms),
+            lanes=some(self.lanes),
+            nearest=some(self.nearest),
+            pairs=some(self.pairs),
+            people=some(self.people),
         )
 
     def as_json(self) -> dict[str, Any]:
