@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.check import check_model as checked
 from crowdbot.core.types.arrays import Array
@@ -94,6 +95,12 @@ def check_footprint_agrees(component: Component[Any], registry: Registry | None 
         text = f"shapes reach from {low.round(3)} to {high.round(3)} m"
         assert np.all(out < _OUT), f"{text}, {out.max():.3f} m beyond the footprint"
         assert np.all(out > -_BEHIND), f"{text}, {-out.min():.3f} m less than the footprint"
+        outline = footprint_of_model(model)
+        inner = -float(outline.gap(np.zeros(1), np.zeros(1))[0])
+        assert spec.half_width <= inner + 1e-9, (
+            f"half_width of the spec is {spec.half_width:.3f} m, but the outline contains a disc "
+            f"of only {inner:.3f} m around the base"
+        )
         assert top < model.height + _HIGHER, f"shapes are {top:.3f} m high, not {model.height} m"
 
 

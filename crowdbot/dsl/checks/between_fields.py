@@ -10,7 +10,7 @@ from crowdbot.dsl.checks.crowd import check_crowd
 from crowdbot.dsl.checks.facts import Facts
 from crowdbot.dsl.checks.paths import check_paths, check_place
 from crowdbot.dsl.checks.pydantic_errors import locate, missing_field
-from crowdbot.dsl.checks.robots import check_robots
+from crowdbot.dsl.checks.robots import check_robots, check_tasks
 from crowdbot.dsl.checks.spawns import check_spawns
 from crowdbot.dsl.checks.streams import check_streams
 from crowdbot.dsl.scenario.components import components
@@ -63,17 +63,6 @@ def _has_kind(tree: Node, path: tuple[str, ...]) -> bool:
     return node is not None
 
 
-def _check_tasks(facts: Facts) -> Iterator[Diagnostic]:
-    zones = facts.scenario.environment.zones
-    for name, robot in facts.scenario.robots.items():
-        task, path = robot.task, ("robots", name, "task")
-        if task.goal.zone not in zones:
-            yield facts.unknown("zone", task.goal.zone, zones, *path, "goal", "zone")
-        yield from facts.outside(
-            f"the start {{at}} of robot '{name}'", [task.start[:2]], *path, "start"
-        )
-
-
 def _of_crowd(check: Check) -> Check:
     """Return a check for scenarios that have people."""
     return lambda facts: check(facts) if facts.scenario.crowd is not None else iter(())
@@ -90,5 +79,5 @@ _CHECKS: tuple[tuple[Check, tuple[str, ...]], ...] = (
     (check_place, _PLACE),
     (check_robots, _ROBOTS),
     (_of_crowd(check_paths), _PEOPLE),
-    (_check_tasks, _ROBOTS),
+    (check_tasks, _ROBOTS),
 )

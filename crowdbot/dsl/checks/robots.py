@@ -7,15 +7,16 @@ from collections.abc import Iterator
 from crowdbot.dsl.checks.facts import Facts
 from crowdbot.dsl.checks.known_places import known_place, standing_in
 from crowdbot.dsl.checks.reach import areas_connected
-from crowdbot.dsl.scenario.scenario import TaskSpec
+from crowdbot.dsl.scenario.scenario import Robot
 from crowdbot.dsl.spec.areas import Area
+from crowdbot.dsl.spec.outlines import Point
 from crowdbot.dsl.spec.place import Place
 from crowdbot.dsl.spec.spec import Rectangle
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError
 
-#: Smallest radius of any robot, m: places out of its reach are out of reach for all.
-_THINNEST = 0.1
+#: Tolerance for a robot that touches a wall, m.
+_SLACK = 1e-6
 
 
 def check_zones(facts: Facts) -> Iterator[Diagnostic]:
@@ -43,6 +44,23 @@ def _overlap(one: Rectangle, other: Rectangle) -> bool:
     return all(a[0] < b[1] and b[0] < a[1] for a, b in pairs)
 
 
+def check_tasks(facts: Facts) -> Iterator[Diagnostic]:
+    """Check that each goal exists, and that no robot starts outside of the zones or in its goal."""
+    zones = facts.scenario.environment.zones
+    for name, robot in facts.scenario.robots.items():
+        task, path = robot.task, ("robots", name, "task")
+        start, zone = task.start[:2], zones.get(task.goal.zone)
+        if zone is None:
+            yield facts.unknown("zone", task.goal.zone, zones, *path, "goal", "zone")
+        elif zone.contains(*start):
+            text = (
+                f"robot '{name}' starts in its goal: {_at(start)} lies in zone '{task.goal.zone}'"
+            )
+            hint = "it would arrive after 0 s; move the start, or choose another zone"
+            yield Diagnostic("E145", text, facts.mark(*path, "start"), hint)
+        yield from facts.outside(f"the start {{at}} of robot '{name}'", [start], *path, "start")
+
+
 def check_robots(facts: Facts) -> Iterator[Diagnostic]:
     """Check that no robot starts inside an obstacle, and that a path leads to its goal.
 
@@ -53,27 +71,38 @@ def check_robots(facts: Facts) -> Iterator[Diagnostic]:
         return
     standing = standing_in(place)
     for name, robot in facts.scenario.robots.items():
-        yield from _check_robot(facts, standing, name, robot.task)
+        yield from _check_robot(facts, standing, name, robot)
 
 
-def _check_robot(facts: Facts, place: Place, name: str, task: TaskSpec) -> Iterator[Diagnostic]:
-    x, y = task.start[:2]
-    path = ("robots", name, "task")
-    if any(facts.outside("", [(x, y)])):
+def _check_robot(facts: Facts, place: Place, name: str, robot: Robot) -> Iterator[Diagnostic]:
+    start, path = robot.task.start[:2], ("robots", name, "task")
+    if any(facts.outside("", [start])):
         return  # already an error
-    if place.clearance(x, y) < 0.0:
-        text = f"robot '{name}' starts in a wall, a block or a pillar, at ({x:g}, {y:g})"
-        yield Diagnostic("E143", text, facts.mark(*path, "start"))
+    missing = robot.model.half_width - place.clearance(*start)
+    if missing > _SLACK:
+        text = f"robot '{name}' starts in a wall, a block or a pillar, at {_at(start)}"
+        hint = f"there is {missing:.3g} m too little room"
+        yield Diagnostic("E143", text, facts.mark(*path, "start"), hint)
         return
-    zones = facts.scenario.environment.zones
-    zone = zones.get(task.goal.zone)
+    zone = facts.scenario.environment.zones.get(robot.task.goal.zone)
     if zone is None:
-        return
-    goal, start = Area.of(zone), Area(centre=(x, y), size=(0.01, 0.01))
-    points = [p for z in zones.values() for p in z.polygon]
-    xs, ys = [x, *(p[0] for p in points)], [y, *(p[1] for p in points)]
-    box = min(xs), max(xs), min(ys), max(ys)
-    if not areas_connected(place, _THINNEST, box, start.corners, goal.corners):
-        text = f"no way leads robot '{name}' from ({x:g}, {y:g}) to zone '{task.goal.zone}'"
-        hint = f"around ({goal.centre[0]:g}, {goal.centre[1]:g})"
+        return  # already an error
+    goal, radius = Area.of(zone), robot.model.half_width
+    if not _leads(facts, place, radius, start, goal):
+        text = f"no way leads robot '{name}' from {_at(start)} to zone '{robot.task.goal.zone}'"
+        hint = f"around {_at(goal.centre)}, for a body that is {2.0 * radius:g} m wide"
         yield Diagnostic("E143", text, facts.mark(*path, "goal", "zone"), hint)
+
+
+def _leads(facts: Facts, place: Place, radius: float, start: Point, goal: Area) -> bool:
+    """Return True if a path may lead a body of a radius (m) from a point into an area."""
+    zones = facts.scenario.environment.zones.values()
+    points = [start, *(p for zone in zones for p in zone.polygon)]
+    xs, ys = zip(*points, strict=True)
+    box = min(xs), max(xs), min(ys), max(ys)
+    at = Area(centre=start, size=(0.01, 0.01))
+    return areas_connected(place, radius, box, at.corners, goal.corners)
+
+
+def _at(point: Point) -> str:
+    return f"({point[0]:g}, {point[1]:g})"

@@ -81,6 +81,14 @@ class RobotSpec(ComponentSpec):
     #: them open; None: those of the drive, once the robot is built.
     wheels: ClassVar[tuple[float, float] | None] = None
 
+    @property
+    def half_width(self) -> float:
+        """Return the radius of a disc around its base that its outline contains, m.
+
+        `validate` refuses a start and a goal without room for this disc; larger is stricter.
+        """
+        return 0.1
+
 
 class SensorSpec(ComponentSpec):
     """Abstract sensor on a robot."""

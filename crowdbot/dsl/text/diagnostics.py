@@ -51,6 +51,7 @@ CODES = {
     "E142": "no ways across a torus",
     "E143": "nowhere to stand, or no way to a goal",
     "E144": "floor plan that cannot be read",
+    "E145": "start in the goal",
     "E201": "missing include",
     "E202": "include cycle",
     "E203": "include outside the root folder",

@@ -38,6 +38,11 @@ class CuybotSpec(LimitedRobotSpec):
         default=10000.0, description="Of the skin, in series with the person's body, N/m."
     )
 
+    @property
+    def half_width(self) -> float:
+        """Return the radius of the disc within its outline, m."""
+        return 0.266
+
 
 CUYBOT = Component(
     spec=CuybotSpec,

@@ -30,6 +30,11 @@ class PepperSpec(LimitedRobotSpec):
     max_yaw_acceleration: MaxYawAcceleration = 3.0
     mass: Mass = 28.7
 
+    @property
+    def half_width(self) -> float:
+        """Return the radius of the disc within its outline, m."""
+        return 0.27
+
 
 PEPPER = Component(
     spec=PepperSpec,

@@ -34,6 +34,11 @@ class QoloSpec(LimitedRobotSpec):
         default=0.4, le=0.5, ge=0.3, description="Of the capsule that is its outline, m."
     )
 
+    @property
+    def half_width(self) -> float:
+        """Return the radius of the disc within its outline, m."""
+        return self.radius
+
 
 QOLO = Component(
     spec=QoloSpec,

@@ -36,6 +36,11 @@ class SmartWheelchairSpec(LimitedRobotSpec):
     )
     width: PositiveLength = Field(default=0.61, ge=0.6, le=0.75, description="m.")
 
+    @property
+    def half_width(self) -> float:
+        """Return the radius of the disc within its outline, m."""
+        return 0.5 * self.width
+
 
 SMART_WHEELCHAIR = Component(
     spec=SmartWheelchairSpec,

@@ -27,6 +27,11 @@ class Turtlebot2Spec(LimitedRobotSpec):
     max_yaw_acceleration: MaxYawAcceleration = 2.0
     mass: Mass = 6.3
 
+    @property
+    def half_width(self) -> float:
+        """Return the radius of the disc within its outline, m."""
+        return 0.178
+
 
 TURTLEBOT2 = Component(
     spec=Turtlebot2Spec,

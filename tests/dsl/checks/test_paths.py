@@ -115,6 +115,59 @@ def test_robots(tmp_path: Path) -> None:
     assert found.message == "robot 'robot' starts in a wall, a block or a pillar, at (10, 5)"
 
 
+@pytest.mark.parametrize("start", ["[7 m, 5 m, 0 deg]", "[6 m, 4 m, 90 deg]"])  # inside; a corner
+@pytest.mark.parametrize("border", ["walls", "torus"])
+def test_a_start_in_the_goal(start: str, border: str, tmp_path: Path) -> None:
+    text = DOCUMENT.replace("[1 m, 5 m, 0 deg]", start) + FLOW % ("a", "b")
+    if border == "torus":
+        text = text.replace("kind: floor\n", "kind: floor\n    border: torus\n")
+    found = next(e for e in _errors(tmp_path, text) if e.code == "E145")
+    assert found.message.startswith("robot 'robot' starts in its goal: (")
+    assert found.message.endswith("lies in zone 'goal'")
+    assert _pointed_at(text, found).startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("kind", "gap", "passes"),
+    [("turtlebot2", 0.5, True), ("turtlebot2", 0.3, False), ("qolo", 0.6, False),
+     ("qolo", 1.0, True)],
+)  # fmt: skip
+def test_a_gap_as_wide_as_the_robot(kind: str, gap: float, passes: bool, tmp_path: Path) -> None:
+    walls = "walls: {low: {start: [10 m, 0 m], end: [10 m, 5 m], thickness: 0.2 m}, "
+    walls += f"high: {{start: [10 m, {5 + gap} m], end: [10 m, 10 m], thickness: 0.2 m}}}}"
+    begin, end = DOCUMENT.index("walls: {middle"), DOCUMENT.index("    zones:")
+    text = f"{DOCUMENT[:begin]}{walls}\n{DOCUMENT[end:]}" + FLOW % ("a", "b")
+    text = text.replace("goal: {zone: goal}", "goal: {zone: right}")
+    text = text.replace(
+        "  robots.robot.task", f"  robots.robot.model: {{kind: {kind}}}\n  robots.robot.task"
+    )
+    codes = [e.code for e in _errors(tmp_path, text)]
+    assert codes == ([] if passes else ["E143"])
+
+
+def test_a_wide_robot_beside_a_wall(tmp_path: Path) -> None:
+    text = DOCUMENT.replace("[1 m, 5 m, 0 deg]", "[1 m, 0.15 m, 0 deg]") + FLOW % ("a", "b")
+    (found,) = _errors(tmp_path, text)
+    assert found.message == "robot 'robot' starts in a wall, a block or a pillar, at (1, 0.15)"
+    assert found.hint == "there is 0.028 m too little room"
+
+
+def test_a_goal_behind_a_kerb(tmp_path: Path) -> None:
+    text = """\
+crowdbot: 1
+scenario:
+  id: street
+  extends: ["builtin:parts/turtlebot2.yaml"]
+  environment: {kind: street, kerbs: step, crossings: CROSSINGS}
+  robots.robot.task: {start: [0 m, -4.5 m, 0 deg], goal: {zone: roadway}, time_limit: 60 s}
+"""
+    closed = text.replace("CROSSINGS", "{}")
+    (found,) = _errors(tmp_path, closed)
+    assert found.message == "no way leads robot 'robot' from (0, -4.5) to zone 'roadway'"
+    assert _pointed_at(closed, found).startswith("roadway}, time_limit")
+    assert _errors(tmp_path, text.replace("CROSSINGS", "{c: {at: 5 m}}")) == ()
+
+
 def test_robots_drive_under_what_hangs(tmp_path: Path) -> None:
     text = DOCUMENT.replace("goal: {zone: goal}", "goal: {zone: right}")
     text = text.replace("thickness: 0.2 m", "thickness: 0.2 m, base: 1.2 m, height: 2 m")

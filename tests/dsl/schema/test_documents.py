@@ -53,6 +53,7 @@ BEYOND = {
     "E142": "what an environment is like",
     "E143": "where ways lead",
     "E144": "another file, or its text",
+    "E145": "a place inside another",
     "E214": "a hash",
     "E215": "a hash",
     "E103": "fields may come from another file, so that none is required",
