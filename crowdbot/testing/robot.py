@@ -15,6 +15,7 @@ from crowdbot.core.robots.check import check_model as checked
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import RobotSpec
 from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.testing.around import around, built, specs_of
 from crowdbot.testing.commanded_motion import EMPTY_FLOOR
@@ -97,6 +98,7 @@ def check_footprint_agrees(component: Component[Any], registry: Registry | None 
         assert np.all(out > -_BEHIND), f"{text}, {-out.min():.3f} m less than the footprint"
         outline = footprint_of_model(model)
         inner = -float(outline.gap(np.zeros(1), np.zeros(1))[0])
+        assert isinstance(spec, RobotSpec)
         assert spec.half_width <= inner + 1e-9, (
             f"half_width of the spec is {spec.half_width:.3f} m, but the outline contains a disc "
             f"of only {inner:.3f} m around the base"

@@ -13,6 +13,7 @@ from typer.main import get_command
 
 from crowdbot.cli.app.command_names import command_names
 from crowdbot.cli.app.complete import offer
+from crowdbot.cli.app.given_once import refuse_repetition
 from crowdbot.errors import did_you_mean, nearest
 
 _SETTINGS: dict[str, Any] = {
@@ -32,7 +33,9 @@ def run(words: list[str]) -> None:
     Raises:
         SystemExit: always, with the exit code.
     """
-    get_command(_app())(words, prog_name="crowdbot")
+    command = get_command(_app())
+    refuse_repetition(command)
+    command(words, prog_name="crowdbot")
 
 
 class _Commands(TyperGroup):
@@ -68,6 +71,7 @@ def load(name: str) -> Any:
             one.rich_markup_mode = None
         taken = {text for param in one.params for text in param.opts}
         one.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
+        refuse_repetition(one)
         for param in one.params:
             if completes := offer(param.name):
                 param._custom_shell_complete = completes

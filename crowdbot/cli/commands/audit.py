@@ -29,7 +29,8 @@ def audit(
         ),
     ] = None,
     only: Annotated[
-        str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")
+        list[str] | None,
+        typer.Option(metavar="GLOB", help="Only scenarios that match; repeatable."),
     ] = None,
     seeds: Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")] = "0",
     overrides: Annotated[
@@ -58,7 +59,7 @@ def audit(
         planners=(),
         roles=("floor", "baseline", "ceiling"),
         seeds=read_seeds(seeds),
-        only=only,
+        only=only or (),
         sample=scenarios,
         out=out,
         options=RunOptions(replay=False),

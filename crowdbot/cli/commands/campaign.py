@@ -42,7 +42,9 @@ _Crowds = Annotated[
         metavar="NAME,NAME", help="Run every scenario in each of these crowds: the axis 'crowd'."
     ),
 ]
-_Only = Annotated[str | None, typer.Option(metavar="GLOB", help="Only scenarios that match.")]
+_Only = Annotated[
+    list[str] | None, typer.Option(metavar="GLOB", help="Only scenarios that match; repeatable.")
+]
 _Seeds = Annotated[
     str | None,
     typer.Option(metavar="0,1,2|0..4", help="Run seeds; default: those of the suite, or 0."),
@@ -105,7 +107,7 @@ def campaign(
         planners=planner or (),
         floors=floors,
         seeds=None if seeds is None else read_seeds(seeds),
-        only=only,
+        only=only or (),
         crowds=[name.strip() for name in (crowds or "").split(",") if name.strip()],
         out=out,
         options=options,

@@ -32,7 +32,11 @@ _Crowd = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Recording of the same people without robot.")
 ]
 _Metrics = Annotated[
-    str, typer.Option(metavar="GLOB", help="Which metrics; experimental ones by their names.")
+    list[str] | None,
+    typer.Option(
+        metavar="GLOB",
+        help="Which metrics, default all; experimental ones by their names; repeatable.",
+    ),
 ]
 _Variant = Annotated[str, typer.Option(metavar="NAME|all", help="Which variants.")]
 _Experimental = Annotated[
@@ -78,7 +82,7 @@ def evaluate(
     runs: _Runs = None,
     robot_alone: _Alone = None,
     crowd_alone: _Crowd = None,
-    metrics: _Metrics = "*",
+    metrics: _Metrics = None,
     variant: _Variant = "all",
     experimental: _Experimental = False,
     robot: _Robot = None,
@@ -108,7 +112,7 @@ def evaluate(
     paths: list[Path | None] = [*expand_paths(runs or [])] or [None]
     _check_usage(len(paths), paths[0], out, (commands, questionnaires), user_topic)
     registry = installed(plugin, no_plugins)
-    chosen = _chosen(registry, metrics, variant, experimental)
+    chosen = _chosen(registry, metrics or ["*"], variant, experimental)
     requests = [
         RescoreRequest(
             path=path,
@@ -169,14 +173,17 @@ def _check_usage(
     check_ending(out, ".csv", ".json")
 
 
-def _chosen(registry: Registry, metrics: str, variant: str, experimental: bool) -> tuple[str, ...]:
+def _chosen(
+    registry: Registry, metrics: Sequence[str], variant: str, experimental: bool
+) -> tuple[str, ...]:
     """Return the patterns of metrics; unknown names are reported before the first run is read."""
     from crowdbot.core.scoring.evaluate import metric_specs
 
     known = registry.components("metric")
-    patterns = [metrics]
+    patterns = list(metrics)
     if experimental:
-        patterns += [k for k, c in known.items() if c.experimental and fnmatch(k, metrics)]
+        also = [k for k, c in known.items() if c.experimental]
+        patterns += [k for k in also if any(fnmatch(k, pattern) for pattern in metrics)]
     specs = metric_specs(registry, patterns, {})
     variants = {
         v

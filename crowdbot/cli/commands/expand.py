@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 def expand(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
     only: Annotated[
-        str | None, typer.Option(metavar="GLOB", help="Only ids that match, e.g. 'in-*-c50-*'.")
+        list[str] | None,
+        typer.Option(metavar="GLOB", help="Only ids that match, e.g. 'in-*-c50-*'; repeatable."),
     ] = None,
     one: Annotated[
         str | None, typer.Option(metavar="ID", help="Print one scenario with every default.")
@@ -49,27 +51,25 @@ def expand(
     if one is not None:
         typer.echo(_one(expansion, one, registry, as_json=as_json, explain=explain), nl=False)
         return
-    scenarios = _matching(expansion, only)
+    scenarios = _matching(expansion, only or ())
     if as_json and not count:
         typer.echo(json.dumps([_row(expansion, s, registry) for s in scenarios], indent=2))
     else:
         print_scenarios(scenarios, registry, count=count)
 
 
-def _matching(expansion: Expansion, only: str | None) -> list[Scenario]:
-    """Return scenarios whose id matches a pattern.
+def _matching(expansion: Expansion, patterns: Sequence[str]) -> list[Scenario]:
+    """Return scenarios whose id matches any pattern, in the suite's order; all without patterns.
 
     Raises:
-        UnknownNameError: no id matches.
+        UnknownNameError: no id matches one of them.
     """
-    from crowdbot.core.scenarios.library import select
+    from crowdbot.core.scenarios.library import select_any
     from crowdbot.errors import UnknownNameError
 
-    if only is None:
-        return expansion.scenarios
-    found = select(expansion, only)
-    if not found:
-        raise UnknownNameError("scenario", only, [s.id for s in expansion.scenarios])
+    found, unmatched = select_any(expansion, patterns)
+    if unmatched:
+        raise UnknownNameError("scenario", unmatched[0], [s.id for s in expansion.scenarios])
     return found
 
 

@@ -54,8 +54,8 @@ def show(
     context: typer.Context,
     out: _Out = _ROOT,
     metric: Annotated[
-        str | None,
-        typer.Option(metavar="GLOB", help="Default: the suite's, and a few."),
+        list[str] | None,
+        typer.Option(metavar="GLOB", help="Default: the suite's, and a few; repeatable."),
     ] = None,
     variant: Annotated[
         str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
@@ -88,16 +88,18 @@ def show(
 
     found = _with_scales(_only(open_results(out, altered), planner, status))
     if worst:
-        if metric is None:
-            raise UsageError("--worst needs --metric NAME")
-        print_lines(_worst(found, metric, variant, worst), as_csv=as_csv, as_json=as_json)
+        if metric is None or len(metric) != 1:
+            raise UsageError("--worst needs one --metric NAME")
+        print_lines(_worst(found, metric[0], variant, worst), as_csv=as_csv, as_json=as_json)
         return
     groups = [name.strip() for name in by.split(",") if name.strip()]
     known = {s.metric for s in found.scores}
     first = [*named_metrics(found.runs), *_HEADLINES]
-    wanted = [metric] if metric is not None else [m for m in dict.fromkeys(first) if m in known]
+    wanted = metric or [m for m in dict.fromkeys(first) if m in known]
     summaries = [s for m in wanted for s in by_group(found, m, groups, variant)]
-    print_lines([line_of(s) for s in summaries], as_csv=as_csv, as_json=as_json)
+    lines = [line_of(s) for s in summaries]
+    once = {tuple(sorted(line.items(), key=lambda cell: cell[0])): line for line in lines}
+    print_lines([*once.values()], as_csv=as_csv, as_json=as_json)  # patterns may overlap
     if not (as_csv or as_json):
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
         runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")

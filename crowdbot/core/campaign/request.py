@@ -11,7 +11,7 @@ from crowdbot.core.planning.fleet_choice import planners_by_robot
 from crowdbot.core.planning.resolve import PlannerChoice, kinds_of_role, resolve_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.run_options import USUAL, RunOptions
-from crowdbot.core.scenarios.library import open_spec, select
+from crowdbot.core.scenarios.library import open_spec, select_any
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.component_specs import PlannerRole
@@ -29,7 +29,8 @@ class CampaignRequest:
         roles: also run planners with these roles, if the robot has their sensors.
         floors: also run floors and ceilings, in a sample of the scenarios and with the first seed,
             if the robot has their sensors.
-        only: pattern of scenario ids; must match at least one scenario.
+        only: patterns of scenario ids, each of which must match a scenario of some suite; none:
+            all scenarios.
         sample: number of randomly chosen scenarios per suite; None: all.
         planner_settings: ``key=value`` texts, for all planners.
         crowds: names of crowds, in each of which every scenario is run; none: in its own.
@@ -41,7 +42,7 @@ class CampaignRequest:
     seeds: Sequence[int] | None = None
     roles: Sequence[PlannerRole] = ()
     floors: bool = False
-    only: str | None = None
+    only: Sequence[str] = ()
     sample: int | None = None
     out: Path = Path("runs")
     options: RunOptions = USUAL
@@ -90,7 +91,7 @@ def open_suites(request: CampaignRequest, registry: Registry) -> list[SelectedSu
         UnknownNameError: no such suite, or the pattern matches no scenario.
         InputError: two suites have the same id.
     """
-    suites = []
+    suites, unmatched = list[SelectedSuite](), set(request.only)
     plugins = tuple(str(p.resolve()) for p in request.plugins)
     crowds = tuple(dict.fromkeys(_absolute(c) for c in request.crowds))
     for spec in dict.fromkeys(request.suites):
@@ -103,12 +104,13 @@ def open_suites(request: CampaignRequest, registry: Registry) -> list[SelectedSu
             allowed=registry.allowed,
             crowds=crowds,
         )
-        chosen = expansion.scenarios if request.only is None else select(expansion, request.only)
+        chosen, missed = select_any(expansion, request.only)
+        unmatched &= set(missed)
         suites.append(SelectedSuite(source=source, expansion=expansion, scenarios=chosen))
     _check_folders(suites)
-    if request.only is not None and not any(s.scenarios for s in suites):
+    if unmatched:
         known = [s.id for suite in suites for s in suite.expansion.scenarios]
-        raise UnknownNameError("scenario", request.only, known)
+        raise UnknownNameError("scenario", min(unmatched, key=request.only.index), known)
     return suites
 
 

@@ -214,6 +214,21 @@ def select(expansion: Expansion, pattern: str) -> list[Scenario]:
     ]
 
 
+def select_any(
+    expansion: Expansion, patterns: Sequence[str]
+) -> tuple[list[Scenario], tuple[str, ...]]:
+    """Return all scenarios that match any pattern, in order, and the patterns without a match.
+
+    Without patterns, all scenarios.
+    """
+    if not patterns:
+        return expansion.scenarios, ()
+    matches = {p: select(expansion, p) for p in patterns}
+    ids = {s.id for found in matches.values() for s in found}
+    chosen = [s for s in expansion.scenarios if s.id in ids]
+    return chosen, tuple(p for p, found in matches.items() if not found)
+
+
 def _bare(expansion: Expansion, pattern: str) -> str:
     return pattern.removeprefix(f"{expansion.suite_id}/")
 
