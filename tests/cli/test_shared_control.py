@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import shutil
 from pathlib import Path
@@ -26,7 +27,7 @@ def test_the_wheelchair_of_the_guide_is_driven_and_scored(
         shutil.copy(FILES / name, tmp_path)
     monkeypatch.chdir(tmp_path)
     argv = ["simulate", "wheelchair.yaml", "--planner", "share_control.py:ShareControl",
-            "--record", "all", "--no-references", "--set", "robots.robot.task.time_limit=2",
+            "--no-references", "--set", "robots.robot.task.time_limit=2",
             "--quiet", "--json"]  # fmt: skip
     assert cli.main(argv) == 0
     run = json.loads(capsys.readouterr().out)
@@ -42,13 +43,21 @@ def test_the_wheelchair_of_the_guide_is_driven_and_scored(
     assert np.all(told[:, 0] <= asked[:, 0] + 1e-9)
     assert told[:, 0].mean() > 0.5
 
-    argv = ["evaluate", run["directory"], "--user-topic", "/joystick/cmd_vel", "--json"]
-    assert cli.main(argv) == 0
-    (scored,) = json.loads(capsys.readouterr().out)
-    values = {s["metric"]: s["value"] for s in scored["scores"] if s["variant"] == "corrected"}
-    assert 0.9 < values["agreement"] < 1.0
-    assert 0.0 < values["fluency"] < 1.0
-    assert 0.0 < values["user_input_entropy"] < 1.0
+    text = (Path(run["directory"]) / "scores.csv").read_text(encoding="utf-8")
+    rows = csv.DictReader(text.splitlines())
+    written = {row["metric"]: row for row in rows if row["variant"] == "corrected"}
+    assert 0.9 < float(written["agreement"]["value"]) < 1.0
+    assert 0.0 < float(written["fluency"]["value"]) < 1.0
+    assert written["user_input_entropy"]["reason"] == "no_baseline"
+
+    argv = ["evaluate", run["directory"], "--commands-baseline", f"{run['directory']}/run.mcap"]
+    for topics in ([], ["--user-topic", "/joystick/cmd_vel"]):  # found, or named
+        assert cli.main([*argv, *topics, "--json"]) == 0
+        (scored,) = json.loads(capsys.readouterr().out)
+        values = {s["metric"]: s["value"] for s in scored["scores"] if s["variant"] == "corrected"}
+        assert values["agreement"] == pytest.approx(float(written["agreement"]["value"]), abs=1e-3)
+        assert values["fluency"] == pytest.approx(float(written["fluency"]["value"]), abs=1e-3)
+        assert 0.0 < values["user_input_entropy"] < 1.0
 
 
 def _velocities(run: Path, topic: str) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:

@@ -42,6 +42,10 @@ from crowdbot.core.types.sensor import CameraFrame, Reading
 #: Largest number of rows, or bytes of images, without a `flush`.
 _MOST_WAITING, _MOST_IMAGE_BYTES = 8192, 4 * 2**20
 
+#: Categories of sensors that ``used`` simulates and records as ``all`` does, every reading as it
+#: was: what the robot believes of its motion, and what its driver asks for.
+EXACT = frozenset({"odometry", "joystick"})
+
 _P = ParamSpec("_P")
 
 
@@ -106,6 +110,8 @@ class RecordingWriter:
         self._sensors = sensor_topics(ranging, header.namespace)
         seen = {n: i for n, i in header.sensors.items() if is_scan(i) or is_cone(i)}
         self._thinning = {n: Thinning(REPLAY_RATE) for n in (seen if record == "used" else ())}
+        exact = {n for n, i in ranging.items() if i.category in EXACT}
+        self._exact = exact if record == "used" else set()
         known = [group for group in choosers if group.fits]
         people = 0 if header.agents is None else len(header.agents.id)
         self._states, self._trip = StatesWriter(people, known), trip()
@@ -158,7 +164,8 @@ class RecordingWriter:
     def reading(self, sensor: str, reading: Reading) -> None:
         """Write one reading of a sensor in the header that is not a camera."""
         thinning = self._thinning.get(sensor)
-        if self._whole or (thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp))):
+        whole = self._whole or sensor in self._exact
+        if whole or (thinning is not None and thinning.keeps(ros.nanoseconds(reading.stamp))):
             kept = reading.values.copy()
             self._waiting.append(partial(self._measured, sensor, reading.stamp, kept))
 
@@ -283,7 +290,7 @@ class RecordingWriter:
 
     def _measured(self, sensor: str, stamp: float, values: Array) -> None:
         topic, ns = self._sensors[sensor], ros.nanoseconds(stamp)
-        if not self._whole:
+        if not (self._whole or sensor in self._exact):
             values = whole_centimetres(values)
         data = topic.message(ns, values)
         self._file.put_bytes(topic.name, ns, topic.msgtype, data)

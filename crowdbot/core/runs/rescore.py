@@ -224,12 +224,20 @@ def _commands(
         return Commands.from_csv(file, v_max=v_max, w_max=w_max)
     recording = file or (source.recording if source is not None and request.path else None)
     if request.topics is None:
-        if file is not None:
-            raise InputError(f"{file}: no CSV file; for a recording name the two topics")
-        return None
+        return None if file is None else _recorded(file, request.robot)
     if recording is None:
         return None
     return read_commands(recording, *request.topics, v_max=v_max, w_max=w_max)
+
+
+def _recorded(file: Path, robot: str | None) -> Commands:
+    """Return the commands of a recording whose robot has a joystick."""
+    with Recording(file) as recording:
+        found = recording.trajectories(robot if recording.robots else None).commands
+    if found is None:
+        text = "neither a CSV file, nor a recording with a joystick; name its two topics"
+        raise InputError(f"{file}: {text}")
+    return found
 
 
 def _answers(file: Path | None) -> Questionnaires | None:

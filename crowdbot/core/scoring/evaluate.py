@@ -155,7 +155,7 @@ def score(
             references.
         robot_alone: the same robot without people, if known.
         crowd_alone: the same people without robot, if known.
-        commands: the user's and the final commands.
+        commands: the user's and the final commands; default: those of the run's recording.
         commands_baseline: commands of a drive of the same user without shared control.
         questionnaires: answers; see `Questionnaires.from_mapping`.
         metrics: one or several globs over metric names; each must match. Experimental metrics are
@@ -180,6 +180,8 @@ def score(
         commands_baseline=commands_baseline,
         questionnaires=questionnaires,
     )
+    if refs.commands is None and crowded is not None:
+        refs = replace(refs, commands=crowded.commands)
     run = Trajectories(t=np.zeros(1)) if crowded is None else with_velocities(crowded)
     for trajectories in (run, robot_alone, crowd_alone):
         if trajectories is not None:

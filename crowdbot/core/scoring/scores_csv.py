@@ -186,7 +186,7 @@ def _score(cells: Mapping[str, Any]) -> Score:
 
 # ------------------------------------------------------------------- terminal
 #: Reasons of metrics whose data no simulated run has: commands and answers of a driver.
-_NOT_ASKED = ("no_command", "no_answers", "no_formula_in_seed")
+_NOT_ASKED = ("no_command", "no_baseline", "no_answers", "no_formula_in_seed")
 _SIGNS = {"higher": "+", "lower": "-", "reference": "=", "none": ""}
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice, select_sensors
+from crowdbot.core.recording.writer import EXACT
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_robot
 from crowdbot.core.robots.task import sensor_context
@@ -87,7 +88,8 @@ def build_run(
         scenario: with one robot or several.
         registry: the installed components.
         choice: the planner, with the sensors that it needs.
-        record: ``all`` simulates every sensor; otherwise the planner's, and odometry.
+        record: ``all`` simulates every sensor; otherwise the planner's, odometry and the
+            driver's joystick.
         name: name of the robot; optional if there is only one.
         parts: the environment, if already built.
 
@@ -107,9 +109,7 @@ def build_run(
     check_frames(model, infos)
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
     chosen = [
-        n
-        for n, info in infos.items()
-        if record == "all" or n in visible or info.category == "odometry"
+        n for n, info in infos.items() if record == "all" or n in visible or info.category in EXACT
     ]
     return BuiltRun(
         scenario=scenario,

@@ -20,7 +20,7 @@ from crowdbot.core.statistics.table import MISSING, Column, Name, Table
 from crowdbot.core.statistics.variance import VarianceParts, variance_parts
 
 #: Reasons of scores that no simulated run can have; left out if all runs give them.
-_NOT_ASKED = {"no_command", "no_answers", "no_formula_in_seed"}
+_NOT_ASKED = {"no_command", "no_baseline", "no_answers", "no_formula_in_seed"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.support.arguments import mapping_of, number_of, point_of
 from crowdbot.core.support.immutable import immutable, immutable_fields
+from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.from_recordings import FromRecordings
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
@@ -122,6 +123,7 @@ class Trajectories(FromRecordings):
             whose radius is ``robot.radius``. None: a disc of ``robot.radius``.
         robot_speed_limit: the robot's top speed, m/s; None: unknown.
         signals: name -> (P, 2) time (s) and value.
+        commands: of the robot's driver and its planner, where both were recorded.
     """
 
     t: Array
@@ -135,6 +137,7 @@ class Trajectories(FromRecordings):
     robot_footprint: Array | None = None
     robot_speed_limit: float | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
+    commands: Commands | None = None
     _cache: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def cached(self, key: Hashable, compute: Callable[[], _Cached]) -> _Cached:

@@ -43,6 +43,7 @@ USER_INPUT_ENTROPY = declare(
     unit="1",
     better="lower",
     variants={"literal": {}, "corrected": {"minimum": 0.0, "maximum": 1.0}},
+    spec_version=2,
 )
 
 

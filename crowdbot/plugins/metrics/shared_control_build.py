@@ -69,10 +69,10 @@ class Agreement:
 
 @dataclass(frozen=True, slots=True)
 class UserInputEntropy:
-    """Steering entropy of the user's direction; needs commands, better with a baseline.
+    """Steering entropy of the user's direction; needs commands and a baseline.
 
-    Without a baseline, alpha comes from the same drive (``self_calibrated`` = 1), and users cannot
-    be compared.
+    The baseline gives the scale of the errors. On the scale of the drive itself the steadiest hand
+    would have the largest entropy, so without a baseline there is none.
     """
 
     spec: UserInputEntropySpec
@@ -85,12 +85,13 @@ class UserInputEntropy:
         if refs.commands is None:
             return [literal, factory.undefined("corrected", "no_command")]
         baseline = refs.commands_baseline
-        drives = (refs.commands, refs.commands if baseline is None else baseline)
-        errors = [self._errors(c) for c in drives]
+        if baseline is None:
+            return [literal, factory.undefined("corrected", "no_baseline")]
+        errors = [self._errors(c) for c in (refs.commands, baseline)]
         if errors[0] is None or errors[1] is None:
             return [literal, factory.undefined("corrected", "too_few_samples")]
         alpha = float(np.percentile(np.abs(errors[1]), PERCENTILE))
-        extras = {"alpha": alpha, "self_calibrated": float(baseline is None)}
+        extras = {"alpha": alpha}
         if alpha > self.spec.zero_tol:
             return [literal, factory.ok("corrected", entropy(errors[0], alpha), extras)]
         if np.all(np.abs(errors[0]) <= self.spec.zero_tol):

@@ -180,7 +180,7 @@ def test_record_used_keeps_what_the_replay_shows_too(tmp_path: Path) -> None:
     write_run(tmp_path / "none", FULL, record="none")
     topics = {n: set(Recording(tmp_path / n).info.topics) for n in ("all", "used", "none")}
     assert topics["used"] - topics["none"] == {
-        "/front/scan", "/cmd_vel", "/tf", "/tf_static", "/robot_description",
+        "/front/scan", "/odom", "/cmd_vel", "/tf", "/tf_static", "/robot_description",
         "/pedestrians_marker", "/contact_markers", "/walls_marker", "/map", "/goal_zone",
         "/goal_pose",
     }  # fmt: skip

@@ -55,7 +55,9 @@ def test_commands_alone() -> None:
     assert found.find("risk").reason == "invalid_no_robot"
     assert {s.status for s in found} == {"ok", "undefined"}
     known = {s.metric for s in found if s.status == "ok"}
-    assert known == {"agreement", "fluency", "user_input_entropy"}
+    assert known == {"agreement", "fluency"}
+    beside = crowdbot.score(None, commands=COMMANDS, commands_baseline=COMMANDS)
+    assert {s.metric for s in beside if s.status == "ok"} == known | {"user_input_entropy"}
 
 
 def test_answers_alone() -> None:

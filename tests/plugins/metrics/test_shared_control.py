@@ -101,13 +101,35 @@ def angles(theta: ArrayLike, **more: Any) -> Commands:
     return drive(np.sin(theta), 2 * np.cos(theta), **more)
 
 
+def beside(commands: Commands, alpha: float = 0.25) -> dict[str, Score]:
+    """Score beside a baseline whose errors are all of one size."""
+    return of("user_input_entropy", commands, commands_baseline=angles(from_errors([alpha] * 4)))
+
+
 def test_constant_is_predictable() -> None:  # h01
-    found = of("user_input_entropy", drive(ONES, 0 * ONES))
+    found = beside(drive(ONES, 0 * ONES))
     assert value_of(found) == 0
     assert found["literal"].reason == "no_formula_in_seed"
-    assert found["corrected"].extras["self_calibrated"] == 1
     trend = 0.3 + 0.05 * np.arange(60)
-    assert value_of(of("user_input_entropy", angles(trend))) == 0
+    assert value_of(beside(angles(trend))) == 0
+
+
+def test_without_a_baseline_nobody_is_compared() -> None:
+    """On their own scales a smooth driver would seem less predictable than white noise."""
+    rng = np.random.default_rng(4)
+    t = 0.15 * np.arange(400)
+    smooth = 0.8 * np.sin(0.5 * t) + 0.3 * np.sin(1.3 * t)
+    drives = [smooth, smooth + rng.normal(0.0, 0.02, 400), rng.normal(0.0, 0.6, 400)]
+    for theta in drives:
+        found = of("user_input_entropy", angles(np.pi / 2 + theta))["corrected"]
+        assert (found.value, found.reason) == (None, "no_baseline")
+    scale = angles(np.pi / 2 + smooth + rng.normal(0.0, 0.05, 400))
+    values = [
+        value_of(of("user_input_entropy", angles(np.pi / 2 + d), commands_baseline=scale))
+        for d in drives
+    ]
+    assert values == sorted(values)
+    assert values[0] < values[1] < values[2]
 
 
 def from_errors(errors: ArrayLike) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -127,7 +149,7 @@ def test_bins_by_hand() -> None:  # h12: p = (6/8, 1/8, 1/8), alpha = 0.25
     h = -(0.75 * math.log(0.75) + 0.25 * math.log(0.125)) / math.log(9)
     assert value_of(found) == pytest.approx(h)
     assert h == pytest.approx(0.3348, abs=1e-4)
-    assert found["corrected"].extras == pytest.approx({"alpha": 0.25, "self_calibrated": 0})
+    assert found["corrected"].extras == pytest.approx({"alpha": 0.25})
 
 
 def test_every_edge_is_in_the_upper_bin() -> None:
@@ -151,19 +173,20 @@ def test_noise(scale: float, expected: float) -> None:  # h06, h07
 
 def test_alpha_is_a_percentile_of_absolute_errors() -> None:
     errors = np.array([-0.1, 0.02, 0.03, -0.05, 0.01, 0.0])
-    found = of("user_input_entropy", angles(from_errors(errors)))
+    drive_ = angles(from_errors(errors))
+    found = of("user_input_entropy", drive_, commands_baseline=drive_)
     assert found["corrected"].extras["alpha"] == pytest.approx(np.percentile(np.abs(errors), 90))
 
 
 def test_zero_commands_hold_the_last_angle_and_leading_ones_are_dropped() -> None:
     theta = from_errors([0.02, -0.03, 0.05, 0.01, -0.02])
-    plain = value_of(of("user_input_entropy", angles(theta)))
+    plain = value_of(beside(angles(theta), 0.03))
     v, w = np.sin(theta), 2 * np.cos(theta)
     led = drive(np.concatenate([[0, 0], v]), np.concatenate([[0, 0], w]))
-    assert value_of(of("user_input_entropy", led)) == pytest.approx(plain)
+    assert value_of(beside(led, 0.03)) == pytest.approx(plain)
     held, gap = drive(np.repeat(v, 2), np.repeat(w, 2)), np.tile([1.0, 0.0], len(v))
     holes = drive(np.repeat(v, 2) * gap, np.repeat(w, 2) * gap)
-    a, b = (value_of(of("user_input_entropy", c)) for c in (held, holes))
+    a, b = (value_of(beside(c, 0.03)) for c in (held, holes))
     assert a == pytest.approx(b)
 
 
@@ -172,24 +195,22 @@ def test_other_rates_are_resampled() -> None:
     v, w = np.sin(theta), 2 * np.cos(theta)
     coarse = drive(v, w)
     fine = drive(np.repeat(v, 3)[:-2], np.repeat(w, 3)[:-2], dt=0.05)
-    a, b = (of("user_input_entropy", c)["corrected"] for c in (coarse, fine))
+    a, b = (of("user_input_entropy", c, commands_baseline=c)["corrected"] for c in (coarse, fine))
     assert a.value == pytest.approx(b.value)
     assert a.extras["alpha"] == pytest.approx(b.extras["alpha"])
 
 
 def test_angles_are_unwrapped() -> None:
     spin = np.arange(60) * 0.7
-    found = of("user_input_entropy", angles(spin))
+    found = of("user_input_entropy", angles(spin), commands_baseline=angles(spin))
     assert value_of(found) == 0
     assert found["corrected"].extras["alpha"] < 1e-9
 
 
 def test_reasons_of_entropy() -> None:
-    assert of("user_input_entropy", drive([1, 1, 1], [0, 0, 0]))["corrected"].reason == (
-        "too_few_samples"
-    )
+    assert beside(drive([1, 1, 1], [0, 0, 0]))["corrected"].reason == "too_few_samples"
     late = drive([0, 0, 1, 1, 1], [0, 0, 0, 0, 0])
-    assert of("user_input_entropy", late)["corrected"].reason == "too_few_samples"
+    assert beside(late)["corrected"].reason == "too_few_samples"
     wild = angles(from_errors([0.1, -0.2, 0.1]))
     found = of("user_input_entropy", wild, commands_baseline=drive(ONES, 0 * ONES))
     assert found["corrected"].reason == "zero_alpha"
@@ -225,7 +246,7 @@ def test_fluency_of_both_channels_at_once() -> None:
 def test_the_users_commands_count_not_the_final_ones() -> None:
     assert value_of(of("fluency", drive(ONES, 0 * ONES, np.arange(42) % 2))) == 1
     final = np.random.default_rng(0).normal(size=42)
-    assert value_of(of("user_input_entropy", drive(ONES, 0 * ONES, final, final))) == 0
+    assert value_of(beside(drive(ONES, 0 * ONES, final, final))) == 0
 
 
 # ----------------------------------------------------------------------- commands

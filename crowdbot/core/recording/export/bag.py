@@ -123,7 +123,7 @@ def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
         info, run = recording.info, recording.trajectories()
     header = info.header
     if options.tree == "odometry" and "/odom" not in info.topics:
-        raise InputError(f"{path}: there is no /odom in it; only --record all keeps odometry")
+        raise InputError(f"{path}: there is no /odom in it; --record none leaves odometry out")
     counts = {topic: count for topic, (_, count) in info.topics.items()}
     lacking = _lacking(counts, len(run.t), options)
     every = extras(header, run, options.description, markers=options.markers)

@@ -14,6 +14,8 @@ from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, UnknownNameError
 
+#: Time, ns; speed, m/s; yaw rate, rad/s.
+TwistRow = tuple[int, float, float]
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _HEADER = "crowdbot_msgs/msg/RunHeader"
 
@@ -42,7 +44,7 @@ def read_commands(
         InputError: not an MCAP file, a topic is empty or has another type, or limits are unknown.
         UnknownNameError: there is no such topic.
     """
-    by_topic: dict[str, list[tuple[int, float, float]]] = {user_topic: [], command_topic: []}
+    by_topic: dict[str, list[TwistRow]] = {user_topic: [], command_topic: []}
     topics: set[str] = set()
     limits: tuple[float, float] | None = None
     end = 0
@@ -50,7 +52,7 @@ def read_commands(
         topics.add(record.topic)
         end = max(end, record.ns)
         if record.topic in by_topic:
-            by_topic[record.topic].append(_twist(path, record))
+            by_topic[record.topic].append(twist_row(path, record))
         elif record.topic.endswith(Topic.HEADER) and record.msgtype == _HEADER:
             limits = limits or _limits(record)
     for topic, rows in by_topic.items():
@@ -62,14 +64,33 @@ def read_commands(
                 f"{path}: the robot's limits are not recorded; v_max, w_max are needed"
             )
         v_max, w_max = limits[0] if v_max is None else v_max, limits[1] if w_max is None else w_max
-    t, user, final, t_end = _merged(by_topic[user_topic], by_topic[command_topic], end)
+    return commands_of(
+        path, by_topic[user_topic], by_topic[command_topic], end, v_max=v_max, w_max=w_max
+    )
+
+
+def commands_of(
+    path: Path,
+    user: list[TwistRow],
+    final: list[TwistRow],
+    end: int,
+    *,
+    v_max: float,
+    w_max: float,
+) -> Commands:
+    """Return the commands of both lists, neither of which is empty, until a time (ns).
+
+    Raises:
+        InputError: a number or a limit is not usable.
+    """
+    t, v_user, v_final, t_end = _merged(user, final, end)
     try:
         return Commands.from_arrays(
             t=t,
-            v_user=user[:, 0],
-            w_user=user[:, 1],
-            v_sc=final[:, 0],
-            w_sc=final[:, 1],
+            v_user=v_user[:, 0],
+            w_user=v_user[:, 1],
+            v_sc=v_final[:, 0],
+            w_sc=v_final[:, 1],
             v_max=v_max,
             w_max=w_max,
             t_end=t_end,
@@ -78,7 +99,12 @@ def read_commands(
         raise InputError(f"{path}: {error}") from error
 
 
-def _twist(path: Path, record: Record) -> tuple[int, float, float]:
+def twist_row(path: Path, record: Record) -> TwistRow:
+    """Return a command of Twist or TwistStamped.
+
+    Raises:
+        InputError: it is of another type, or damaged.
+    """
     if record.msgtype not in _TWISTS or record.encoding != "cdr":
         found = record.msgtype or "a message without schema"
         raise InputError(f"{path}: {record.topic} holds {found}, not {' or '.join(_TWISTS)} (cdr)")
@@ -101,7 +127,7 @@ def _limits(record: Record) -> tuple[float, float] | None:
 
 
 def _merged(
-    user: list[tuple[int, float, float]], final: list[tuple[int, float, float]], end: int
+    user: list[TwistRow], final: list[TwistRow], end: int
 ) -> tuple[Array, Array, Array, float]:
     """Return times (N,), s from the first; user's and final v and w (N, 2); end, s."""
     # a dict keeps the last of several commands with the same time

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 from crowdbot.core.recording.container.records import Record, decode
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader, check_format, with_tilts
 from crowdbot.core.recording.motion.states import States, StatesReader, series
+from crowdbot.core.recording.reading.driver_commands import DriverCommands
 from crowdbot.core.recording.reading.scan_collector import ScanCollector
 from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.topics import Topic
@@ -50,6 +51,7 @@ class RobotRecords:
         self._path = path
         self._records: dict[str, list[Record]] = {topic: [] for topic in self.TOPICS}
         self._scans = ScanCollector(path, max_rate)
+        self._driver = DriverCommands(path)
         self._header: RecordingHeader | None = None
 
     # ---------------------------------------------------------------------- collecting
@@ -67,14 +69,15 @@ class RobotRecords:
         self._header = None
         if self.has_header:
             self._scans.open(self.header)
+            self._driver.open(self.header)
 
     def wants(self, topic: str) -> bool:
-        """Return True if a topic holds readings of distances that are kept."""
-        return self._scans.wants(topic)
+        """Return True if a topic holds readings of distances, or commands, that are kept."""
+        return self._scans.wants(topic) or self._driver.wants(topic)
 
     def add_reading(self, topic: str, record: Record) -> None:
-        """Take a reading of distances."""
-        self._scans.add(topic, record)
+        """Take a reading of distances, or a command."""
+        (self._driver if self._driver.wants(topic) else self._scans).add(topic, record)
 
     # ------------------------------------------------------------------- what there is
     @property
@@ -158,13 +161,15 @@ class RobotRecords:
         samples = self._messages(Topic.STATE)
         try:
             states = StatesReader(people, *choices).states(samples)
-            return Trajectories.from_arrays(
+            run = Trajectories.from_arrays(
                 **self._shared(header, states),
                 **self._robot(header, states.robot),
                 **self._agents(header, states),
             )
         except (InputError, ValueError) as error:
             raise InputError(f"{self._path}: damaged: {error}") from error
+        end = self._records[Topic.STATE][-1].ns
+        return replace(run, commands=self._driver.commands(header, end))
 
     # ------------------------------------------------------------------------ decoding
     def _messages(self, topic: str) -> list[Any]:
