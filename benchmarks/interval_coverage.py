@@ -27,7 +27,8 @@ from numpy.typing import NDArray
 from crowdbot.core.statistics import clusters as c
 from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.estimate import Estimate
-from crowdbot.core.statistics.signed_rank import p_value, signed_ranks
+from crowdbot.core.statistics.sign_flip import p_value
+from crowdbot.core.statistics.signed_rank import signed_ranks
 
 DRAWS, SCENARIOS, CONDITIONS = 18, 9, 18
 #: Means of the conditions, in standard deviations of people.
@@ -161,7 +162,7 @@ def main() -> None:
                     assert x.low is not None
                     assert x.high is not None
                     found[column] += x.low <= truth[name] <= x.high
-                false += p_value(signed_ranks(values), groups) <= 0.05
+                false += p_value(values, groups) <= 0.05
             shares = "".join(f"{found[n] / options.repetitions:13.1%}" for n in COLUMNS)
             level = "" if skewed else f"{false / options.repetitions:9.1%}"
             kind = "lognormal" if skewed else "normal"

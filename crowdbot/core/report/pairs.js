@@ -74,7 +74,7 @@ function pairsNote(rows) {
   const { tests, alpha, level } = report.stats;
   return `Mean of the differences over pairs of the same scenario and seed; effect size: the same in standard deviations; in brackets ${level} % intervals. ` +
     "Undefined, censored and failed runs take part in the probability and the test as far as they are known. " +
-    `p: signed ranks, signs flipped for whole crowd draws, corrected for the ${tests} tests of ${report.stats.family}; there is a verdict where it is at most ${alpha}. ` +
+    `p: mean difference, planners exchanged in whole crowd draws, corrected for the ${tests} tests of ${report.stats.family}; there is a verdict where it is at most ${alpha}. ` +
     "All other scores are detail, and corrected among themselves. Detectable: the mean difference that this number of draws would find in four cases of five. " +
     "Below it: how many crowd draws would find the difference that was seen, if it is real; where every scenario has a crowd of its own, that many scenarios.";
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 import crowdbot.core.statistics.clusters as c
 from crowdbot.core.statistics.clusters import Bounds, Clusters, Floats
 from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
-from crowdbot.core.statistics.signed_rank import double_ranks, least_p, p_value, signed_ranks
+from crowdbot.core.statistics.judged import Judged, judge, utility
+from crowdbot.core.statistics.sign_flip import least_p
+from crowdbot.core.statistics.signed_rank import double_ranks, signed_ranks
 from crowdbot.core.statistics.summary_estimator import bounds_of_difference, rate_difference
 from crowdbot.core.statistics.table import MISSING, UNDEFINED, Column, Name, Table
 
@@ -45,8 +47,8 @@ class Comparison:
         improvement_bounds: the same with all undecided pairs lost, or won.
         detectable: the smallest mean difference that this many draws detect with probability 0.8 at
             this level; None if unknown.
-        p: p value of the signed ranks of whole draws; ``p_holm`` is corrected for all tests of the
-            summary.
+        p: p value of the mean gain, by exchanging the planners in whole draws; runs without a value
+            count as in `judge`. ``p_holm`` is corrected for all tests of the summary.
         verdict: verdict on ``a``, never stronger than ``p_holm`` supports; ``reason`` explains it.
     """
 
@@ -77,20 +79,9 @@ class Comparison:
     reason: str = ""
 
 
-class Leaning(NamedTuple):
-    """The direction of a comparison, before its significance is known.
-
-    ``ranks``: sign of their sum, 1 if ``a`` looks better. ``means``: the difference without failed
-    runs, so that failing early brings no advantage.
-    """
-
-    ranks: int = 0
-    means: Estimate = NOTHING
-
-
 def compare(
     table: Table, name: Name, a: str, b: str, *, level: float = 0.95
-) -> tuple[Comparison, Leaning]:
+) -> tuple[Comparison, Judged]:
     """Compare two planners; `with_verdict` adds the verdict once all p values are known."""
     label = table.label(name)
     sides = table.column(name, a), table.column(name, b)
@@ -102,40 +93,34 @@ def compare(
         counts_a=sides[0].counts, counts_b=sides[1].counts,
     )  # fmt: skip
     if not there.any():
-        return replace(head, reason="no scenario and seed was run with both"), Leaning()
+        return replace(head, reason="no scenario and seed was run with both"), Judged()
     reference = table.reference(name)
     if label.better == "reference" and reference is None:
-        return replace(head, verdict="not ranked", reason=NO_REFERENCE), Leaning()
+        return replace(head, verdict="not ranked", reason=NO_REFERENCE), Judged()
     pair = _Pair(*(_Side.of(s, there, label.better, reference) for s in sides))
-    sign = 1.0 if label.better in ("higher", "none") else -1.0
     found = _differences(head, pair, groups, _bounds(table, head), level)
     rates = rate_difference(table, name, (a, b), _chosen(there, pair.known), level)
     if rates is not None:
         found = _with_rates(found, *rates, groups, level)
     if label.better == "none":
-        return replace(found, verdict="not ranked", reason=NO_DIRECTION), Leaning()
-    found, ranks = _ranked(found, pair, groups, level)
-    return found, Leaning(ranks, _sound_means(found, pair, groups, sign, level))
+        return replace(found, verdict="not ranked", reason=NO_DIRECTION), Judged()
+    judged = judge(table, name, a, b, label.better, reference)
+    return replace(_ranked(found, pair, groups, level), p=judged.p), judged
 
 
 def with_verdict(
-    found: Comparison, leaning: Leaning, p_holm: float | None, alpha: float
+    found: Comparison, judged: Judged, p_holm: float | None, alpha: float
 ) -> Comparison:
-    """Return the comparison with its verdict.
-
-    A verdict needs significant ranks and a mean that does not contradict them.
-    """
+    """Return the comparison with its verdict, which rests on means; ranks only describe."""
     if found.verdict == "not ranked" or found.p is None:
         return found
     verdict: Verdict = "not distinguishable"
-    reason = ""
-    if p_holm is not None and p_holm <= alpha and leaning.ranks:
-        verdict = "better" if leaning.ranks > 0 else "worse"
-        if _contradicts(leaning, found.better):
-            verdict, reason = "not distinguishable", "ranks and means point to different sides"
+    reason = judged.reason
+    if p_holm is not None and p_holm <= alpha and judged.sign:
+        verdict = "better" if judged.sign > 0 else "worse"
     elif least_p(found.draws) > alpha:
         reason = f"too few crowd draws: {found.draws}; no difference could be told from chance"
-    elif not found.wins and not found.losses:
+    elif not found.wins and not found.losses and not reason:
         reason = "every pair is equal" if not found.undecided else "no pair is decided"
     return replace(found, p_holm=p_holm, verdict=verdict, reason=reason)
 
@@ -153,21 +138,9 @@ class _Side:
 
     @staticmethod
     def of(column: Column, there: NDArray[np.bool_], better: str, reference: float | None) -> _Side:
-        low, high = _utility(column.low[there], column.high[there], better, reference)
+        low, high = utility(column.low[there], column.high[there], better, reference)
         outcome = column.outcome[there]
         return _Side(low, high, column.known[there], outcome == UNDEFINED, column.failed[there])
-
-
-def _utility(
-    low: Floats, high: Floats, better: str, reference: float | None
-) -> tuple[Floats, Floats]:
-    if better == "lower":
-        return -high, -low
-    if better == "reference" and reference is not None:
-        near, far = np.abs(low - reference), np.abs(high - reference)
-        within = (low <= reference) & (reference <= high)
-        return -np.maximum(near, far), -np.where(within, 0.0, np.minimum(near, far))
-    return low, high
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -252,17 +225,6 @@ def _differences(
     )
 
 
-def _sound_means(
-    found: Comparison, pair: _Pair, groups: Clusters, sign: float, level: float
-) -> Estimate:
-    """Return the mean difference over pairs in which neither planner failed."""
-    failed = pair.a.failed | pair.b.failed
-    if not failed.any():
-        return found.difference
-    sound = pair.known & ~failed
-    return c.mean(sign * pair.least[sound], groups.part(sound), level)
-
-
 def _finite(number: float) -> float | None:
     return number if math.isfinite(number) else None
 
@@ -292,10 +254,8 @@ def _standardised(gains: Floats, groups: Clusters, level: float) -> Estimate:
     return Estimate(value=value, low=low, high=high, reason=found.reason)
 
 
-def _ranked(
-    found: Comparison, pair: _Pair, groups: Clusters, level: float
-) -> tuple[Comparison, int]:
-    """Return the rank-based results over all pairs."""
+def _ranked(found: Comparison, pair: _Pair, groups: Clusters, level: float) -> Comparison:
+    """Return the rank-based results over all pairs, which describe and decide nothing."""
     contrasts, undecided = pair.contrasts()
     ranks = signed_ranks(contrasts)
     won = 0.5 + np.sign(contrasts) / 2
@@ -304,7 +264,7 @@ def _ranked(
     share = float(won.mean())
     shares = ranks.astype(float), double_ranks(contrasts).astype(float)
     biserial = c.ratio(*shares, groups, level, (-1.0, 1.0))
-    ended = replace(
+    return replace(
         found,
         wins=int((contrasts > 0).sum()),
         losses=int((contrasts < 0).sum()),
@@ -313,14 +273,4 @@ def _ranked(
         rank_biserial=biserial,
         improvement=improvement,
         improvement_bounds=(share - half, share + half),
-        p=p_value(ranks, groups),
     )
-    return ended, int(np.sign(ranks.sum()))
-
-
-def _contradicts(leaning: Leaning, better: str) -> bool:
-    sign = leaning.ranks if better == "higher" else -leaning.ranks
-    low, high = leaning.means.low, leaning.means.high
-    if low is None or high is None:
-        return False
-    return high < 0 if sign > 0 else low > 0

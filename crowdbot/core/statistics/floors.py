@@ -16,7 +16,7 @@ from crowdbot.core.results.results import Results
 from crowdbot.core.scoring import four_scores
 from crowdbot.core.statistics.comparison import Comparison, compare
 from crowdbot.core.statistics.estimate import NOTHING, Estimate
-from crowdbot.core.statistics.signed_rank import least_p
+from crowdbot.core.statistics.sign_flip import least_p
 from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.table import MISSING, Name, Table
 from crowdbot.core.support.text import plural
@@ -34,8 +34,9 @@ class Lead:
     Attributes:
         pairs, draws: scenarios and seeds that both have run; crowd draws among them.
         by: mean lead over the pairs, in the score's unit, positive where ``planner`` is better.
-        verdict: ``ahead`` or ``behind`` only if the interval excludes 0, every pair has a value and
-            there are enough draws for a test; else ``reason`` may say why not.
+        verdict: ``ahead`` or ``behind`` only if the interval excludes 0, every pair has a value,
+            no run of the planner is missing and there are enough draws for a test; else ``reason``
+            may say why not.
     """
 
     planner: str
@@ -133,7 +134,9 @@ def lead_over(table: Table, name: Name, planner: str, other: str, *, level: floa
     found, _ = compare(table, name, planner, other, level=level)
     sign = 1.0 if found.better in ("higher", "none") else -1.0
     by = _turned(found.difference, sign)
-    verdict, reason = _verdict(found, by, _lacking(table, name, planner, other), level)
+    gone = table.lacking(planner) & (table.column(name, other).outcome != MISSING)
+    lacking = _lacking(table, name, planner, other)
+    verdict, reason = _verdict(found, by, lacking, int(gone.sum()), level)
     return Lead(
         planner=planner, other=other, pairs=found.pairs, draws=found.draws, by=by,
         verdict=verdict, reason=reason,
@@ -156,7 +159,7 @@ def _lacking(table: Table, name: Name, *planners: str) -> int:
 
 
 def _verdict(
-    found: Comparison, by: Estimate, lacking: int, level: float
+    found: Comparison, by: Estimate, lacking: int, gone: int, level: float
 ) -> tuple[LeadVerdict, str]:
     if found.better == "none":
         return "not distinguishable", "nothing says which values are better"
@@ -164,6 +167,8 @@ def _verdict(
         return "not distinguishable", by.reason or found.reason
     if lacking:  # leaving out runs that went badly must not be an advantage
         return "not distinguishable", f"{lacking} of {found.pairs} pairs have no value"
+    if gone and by.low > 0.0:
+        return "not distinguishable", f"{plural(gone, 'run')} of the planner missing"
     # An interval needs two draws; with so few, any difference may be chance.
     if least_p(found.draws) > 1.0 - level:
         return "not distinguishable", f"too few crowd draws: {found.draws}"

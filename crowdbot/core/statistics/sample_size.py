@@ -1,11 +1,9 @@
 """Number of crowd draws that a verdict needs: the minimum, and for the observed difference.
 
 Runs in one crowd are correlated, so draws count, not runs. The least number follows from the test:
-with G draws no p is below 2^(1 - G) (`signed_rank`), and Holm's first step wants alpha / tests. The
+with G draws no p is below 2^(1 - G) (`sign_flip`), and Holm's first step wants alpha / tests. The
 number for a difference of size d is that of a two-sided t test at the level alpha / tests with
-power 0.8, from the observed standard error, which falls with the square root of the draws; times pi
-/ 3, because signed ranks need that for normal differences (Pitman's efficiency 3 / pi; Lehmann
-1975, Nonparametrics, appendix 5).
+power 0.8, from the observed standard error, which falls with the square root of the draws.
 """
 
 from __future__ import annotations
@@ -15,7 +13,7 @@ from dataclasses import dataclass
 
 from crowdbot.core.scoring.four_scores import is_main
 from crowdbot.core.statistics.comparison import Comparison, reach
-from crowdbot.core.statistics.signed_rank import least_p
+from crowdbot.core.statistics.sign_flip import least_p
 from crowdbot.core.statistics.summary import Summary
 from crowdbot.core.support.text import plural
 
@@ -98,7 +96,7 @@ def draws_needed(found: Comparison, tests: int, alpha: float, level: float) -> i
         return None
     error = found.detectable / reach(found.draws - 1, level)
     strict = 1.0 - alpha / tests
-    spread = error * math.sqrt(found.draws * math.pi / 3)  # standard error of one draw
+    spread = error * math.sqrt(found.draws)  # standard error of one draw
     low = max(2, least_draws(tests, alpha))
     if _finds(size, spread, low, strict):
         return low

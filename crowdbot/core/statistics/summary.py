@@ -14,7 +14,7 @@ from crowdbot.core.statistics.axes import AxisEffect, DensityLevel, axis_effects
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.estimate import Counts, Estimate
-from crowdbot.core.statistics.signed_rank import holm
+from crowdbot.core.statistics.sign_flip import holm
 from crowdbot.core.statistics.summary_estimator import planner_mean
 from crowdbot.core.statistics.table import MISSING, Column, Name, Table
 from crowdbot.core.statistics.variance import VarianceParts, variance_parts

@@ -16,7 +16,7 @@ from crowdbot.core.results.rows import WITHOUT_RUN, RunRow, ScoreRow
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
-from crowdbot.core.types.ending import has_failed
+from crowdbot.core.types.ending import Ending, has_failed
 from crowdbot.dsl.suite.matrix import DRAW
 
 #: Suite, scenario, seed: the key for pairing runs.
@@ -134,6 +134,24 @@ class Table:
             return None
         column = self.column(over, planner)
         return np.where(column.known & (column.low > 0.0), column.low, np.nan)
+
+    def lacking(self, planner: str) -> NDArray[np.bool_]:
+        """Return a mask (n,) of rows that a planner should have run and has not.
+
+        These are all scenarios of a suite with the run seeds that it has in any of them. Floors and
+        ceilings are measures: they run in part of a suite, and lack nothing.
+        """
+        tried = np.array([run is not None or lost for run, lost in self._tried(planner)], np.bool_)
+        roles = {run.role for run, _ in self._tried(planner) if run is not None}
+        if roles & {"floor", "ceiling"}:
+            return np.zeros_like(tried)
+        seeds = {key[::2] for key, here in zip(self.keys, tried, strict=True) if here}
+        return ~tried & np.array([key[::2] in seeds for key in self.keys], np.bool_)
+
+    def arrived(self, planner: str) -> NDArray[np.bool_]:
+        """Return a mask (n,) of rows in which a planner's robot arrived."""
+        runs = (run for run, _ in self._tried(planner))
+        return np.array([run is not None and run.status == Ending.ARRIVED for run in runs], bool)
 
     def column(self, name: Name, planner: str) -> Column:
         """Return one score of one planner."""

@@ -9,7 +9,7 @@ from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.scoring.four_scores import MAIN_SCORES, PRIMARY, is_main, main_first
 from crowdbot.core.statistics import Table, headline_names, summarise
-from crowdbot.core.statistics.signed_rank import holm
+from crowdbot.core.statistics.sign_flip import holm
 from tests.built_in import built_in_metrics
 from tests.core.statistics.made_up_results import censored, run, score
 
