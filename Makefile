@@ -108,7 +108,7 @@ setup: $(READY)
 $(READY): requirements.lock pyproject.toml
 	@$(PYTHON) scripts/check_machine.py
 	@echo "setting up .venv (about a minute)"
-	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	@$(PIP) --version > /dev/null 2>&1 || $(PYTHON) -m venv --clear .venv  # none, or an interrupted one
 	@$(PIP) install --no-compile --require-hashes -r requirements.lock
 	@$(PIP) install --no-compile --no-deps --no-build-isolation -e .
 	@$(BYTE_CODE) .venv/lib crowdbot || true

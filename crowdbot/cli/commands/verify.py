@@ -67,6 +67,13 @@ def verify(
     ] = False,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,
+    not_contained: Annotated[
+        bool,
+        typer.Option(
+            "--not-contained",
+            help="Run the planner also where this system cannot keep it from files and processes.",
+        ),
+    ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
@@ -77,7 +84,7 @@ def verify(
     """
     from crowdbot.core.bundle.verification import save_verification
 
-    place = planner_place(in_process, planner_memory)
+    place = planner_place(in_process, planner_memory, contained=not not_contained)
     registry = installed(plugin, no_plugins)
     size = None if everything else sample
     document = verify_bundle(bundle, registry, suite, (source or planner, place), size, seed)

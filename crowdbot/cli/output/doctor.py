@@ -43,6 +43,7 @@ def machine(out: Path) -> Iterator[Examined]:
     yield _drake()
     yield _egl()
     yield _kernels()
+    yield _containment()
     yield _cores()
     yield _disk(out)
 
@@ -90,6 +91,14 @@ def _kernels() -> Examined:
     if nothing_compiled():
         return Examined("kernels", "note", f"not compiled yet: the first run does it, in {folder}")
     return Examined("kernels", "ok", f"compiled, in {folder}")
+
+
+def _containment() -> Examined:
+    from crowdbot.core.planning.containment.offer import kernel_offer
+
+    if missing := kernel_offer().missing:
+        return Examined("containment", "note", f"planners are not contained: {missing}")
+    return Examined("containment", "ok", "files, network, signals, processes of planners")
 
 
 def _cores() -> Examined:

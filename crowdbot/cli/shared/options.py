@@ -69,13 +69,15 @@ def check_ending(out: Path | None, *endings: str) -> None:
         raise UsageError(f"--out {out}: the name must end in {known}")
 
 
-def planner_place(in_process: bool | None, memory: float, *, lenient: bool = False) -> PlannerPlace:
+def planner_place(
+    in_process: bool | None, memory: float, *, lenient: bool = False, contained: bool = False
+) -> PlannerPlace:
     """Return where planners run.
 
     Args:
         in_process: as `InProcess`.
         memory: as `PlannerMemory`.
-        lenient: as in `PlannerPlace`.
+        lenient, contained: as in `PlannerPlace`.
 
     Raises:
         UsageError: the memory is too small for any process.
@@ -86,4 +88,4 @@ def planner_place(in_process: bool | None, memory: float, *, lenient: bool = Fal
     if not memory < 2**20 or 0.0 < memory < _LEAST_GIB:
         raise UsageError(f"--planner-memory {memory:g}: 0, or at least {_LEAST_GIB:g} GiB")
     limit = round(memory * 2**30) if memory else None
-    return PlannerPlace(in_process=in_process, memory=limit, lenient=lenient)
+    return PlannerPlace(in_process=in_process, memory=limit, lenient=lenient, contained=contained)

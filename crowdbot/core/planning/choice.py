@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, Literal
 
+from crowdbot.core.planning.containment.offer import Aspect, kernel_offer
 from crowdbot.dsl.spec.component_specs import PlannerRole
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ class PlannerPlace:
         in_process: True: in the simulator's process; False: in a separate process; None: built-in
             planners inside, all others separate.
         memory: largest address space of a separate process, bytes; None: unlimited.
+        contained: True to refuse planners that this system does not contain.
         lenient: True to accept a planner that cannot be loaded in its process; it fails in every
             run, and a campaign continues with the others.
     """
@@ -35,6 +37,7 @@ class PlannerPlace:
     in_process: bool | None = None
     memory: int | None = MEMORY
     lenient: bool = False
+    contained: bool = False
 
     def own_memory(self, in_process: bool) -> int | None:
         """Return the memory limit, if there is a separate process."""
@@ -96,6 +99,11 @@ class PlannerChoice:
         """
         found = (getattr(choice.build, "died", "") for choice in (self, *self.fleet.values()))
         return next(filter(None, found), "")
+
+    @property
+    def contained(self) -> list[Aspect] | None:
+        """Return what the kernel keeps from it, as named in records; None in this process."""
+        return None if self.in_process else list(kernel_offer().contained)
 
     @property
     def process(self) -> Literal["own", "in_process"]:

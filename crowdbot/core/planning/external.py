@@ -11,13 +11,23 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from crowdbot.core.planning.choice import PlannerChoice, PlannerPlace, label_of
+from crowdbot.core.planning.containment.declared import needs_of_program
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.process import foreign_main
 from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
-from crowdbot.core.support.source_digest import data_files, digest_of_files, source_digest
+from crowdbot.core.support.source_digest import (
+    data_files,
+    digest_of_files,
+    source_digest,
+    source_files,
+)
 from crowdbot.errors import InputError, did_you_mean, nearest
 
-_FIELDS = ("command", "python", "planner", "name", "parameters", "files")
+_FIELDS = (
+    "command", "python", "planner", "name", "parameters", "files", "libraries", "network",
+)  # fmt: skip
+#: Files of crowdbot that run in another Python.
+_FOREIGN_SIDE = ("foreign_main.py", "serving.py", "small_msgpack.py")
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")
 
 
@@ -51,6 +61,9 @@ def external_choice(
         folder=str(path.resolve().parent),
         parameters=parameters,
         memory=place.memory,
+        contained=place.contained,
+        needs=program.needs,
+        beside=path.resolve().parent,
     )
     said, build = describe(plan, lenient=place.lenient)
     dump: dict[str, Any] = {
@@ -59,6 +72,7 @@ def external_choice(
         **({"data": _data(path.resolve().parent, said.data)} if said.data else {}),
         **({"runtime": said.runtime} if said.runtime else {}),
         **({"parameters": parameters} if parameters else {}),
+        **({"network": True} if program.needs.network else {}),
     }
     return PlannerChoice(
         name=program.name,
@@ -82,6 +96,7 @@ class _Program:
         name: name of the planner.
         command: command line; the first word is a program's absolute path.
         sha256: hash of the command line and of every file in it.
+        needs: what it may read, and if it may use the network.
     """
 
     def __init__(self, path: Path, document: Mapping[str, Any]) -> None:
@@ -111,6 +126,13 @@ class _Program:
         if not _NAME.fullmatch(self.name):
             self._fail(f"'{self.name}' cannot be a planner's name: letters, digits, '_', '-', '.'")
         self.sha256 = _digest(words if "command" in document else [], files)
+        sources = {one for file in files.values() for one in _sources(file)}
+        if "python" in document:
+            here = Path(foreign_main.__file__).parent
+            sources |= {here / name for name in _FOREIGN_SIDE}
+        self.needs = needs_of_program(
+            Path(self.command[0]), sources, self._libraries(), network=self._network()
+        )
 
     def _mapping(self) -> dict[str, Any]:
         given = self._document.get("parameters", {})
@@ -157,6 +179,20 @@ class _Program:
                 self._fail(f"files: nothing in {self._folder} fits '{pattern}'")
             yield from ((p.relative_to(self._folder).as_posix(), p) for p in found)
 
+    def _libraries(self) -> list[Path]:
+        words = self._words("libraries") if "libraries" in self._document else []
+        folders = [self._folder / Path(word).expanduser() for word in words]
+        for word, folder in zip(words, folders, strict=True):
+            if not folder.exists():
+                self._fail(f"libraries: no folder or file '{word}'")
+        return [folder.resolve() for folder in folders]
+
+    def _network(self) -> bool:
+        found = self._document.get("network", False)
+        if not isinstance(found, bool):
+            self._fail("'network' is true or false")
+        return found
+
     def _fail(self, what: str) -> NoReturn:
         raise InputError(f"{self._path}: {what}")
 
@@ -171,6 +207,11 @@ def _digest(words: Sequence[str], files: Mapping[str, Path]) -> str:
 def _data(folder: Path, names: Sequence[str]) -> str:
     """Return the SHA-256 of the files that a planner declares as data."""
     return digest_of_files(data_files(folder, names))
+
+
+def _sources(path: Path) -> set[Path]:
+    """Return a file, and modules beside it that it imports."""
+    return source_files(path) if path.suffix == ".py" else {path}
 
 
 def _file_digest(path: Path) -> str:

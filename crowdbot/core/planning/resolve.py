@@ -12,6 +12,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
+from crowdbot.core.planning.containment.declared import needs_of_class, needs_of_kind
 from crowdbot.core.planning.description import described, role_of
 from crowdbot.core.planning.external import external_choice, is_external
 from crowdbot.core.planning.fleet_choice import fleet_choice
@@ -169,6 +170,8 @@ def _from_kind(
                 "plugins": registry.source,
             },
             memory=place.memory,
+            contained=place.contained,
+            needs=needs_of_kind(component, registry),
         )
         _, build = describe(plan, lenient=place.lenient)
     return PlannerChoice(
@@ -276,6 +279,9 @@ def _from_class(
             },
             preload=preloads(path),
             memory=place.memory,
+            contained=place.contained,
+            needs=needs_of_class(path, name),
+            beside=path.parent,
         )
         description, build = describe(plan, lenient=place.lenient)
     dump = {

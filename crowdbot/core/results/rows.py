@@ -169,8 +169,15 @@ def named_metrics(runs: Iterable[RunRow]) -> list[str]:
 
 
 def processes(records: Iterable[RunRecord]) -> str:
-    """Describe where the planners of some runs ran."""
-    return " or ".join(sorted({_PLACES[record.planner_process] for record in records}))
+    """Describe where the planners of some runs ran, and what they could reach there."""
+    return " or ".join(sorted({_place(record) for record in records}))
+
+
+def _place(record: RunRecord) -> str:
+    place, reached = _PLACES[record.planner_process], record.uncontained
+    if not reached:
+        return place
+    return f"{place}, not contained" + ("" if reached == "all" else f" ({reached})")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.planning.choice import PlannerChoice
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
@@ -66,6 +67,7 @@ def make_record(
         privileged=request.choice.privileged,
         role=request.choice.role,
         planner_process=request.choice.process,
+        **_containment(request.choice),
         allowed_plugins=None if registry.allowed is None else list(registry.allowed),
         recorded=request.options.record,
         **ending(outcome),
@@ -83,6 +85,10 @@ def make_record(
         machine=provenance.machine(),
         agents=people.source,
     )
+
+
+def _containment(choice: PlannerChoice) -> dict[str, Any]:
+    return {} if choice.contained is None else {"planner_contained": choice.contained}
 
 
 def _robots(request: Request, outcome: Outcome, runs: Mapping[str, Trajectories]) -> dict[str, Any]:

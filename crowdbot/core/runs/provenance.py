@@ -106,6 +106,8 @@ def remarks(record: RunRecord) -> dict[str, str]:
         found["Privileged"] = "the planner sees the truth"
     if runs_inside(record):
         found["In process"] = "the planner ran inside the simulator, where nothing contains it"
+    if record.uncontained and record.planner_contained is not None:
+        found["Not contained"] = f"nothing kept the planner from: {record.uncontained}"
     if not record.pinned:
         loose = [plugin.distribution for plugin in record.plugins if not plugin.pinned]
         if record.planner.sha256:

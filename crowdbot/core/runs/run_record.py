@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from annotated_types import Len
 from pydantic import Field, ValidationError
 
+from crowdbot.core.planning.containment.offer import ALL, Aspect
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import (
     CostPart,
@@ -112,6 +113,7 @@ class RunRecord(_Record, RunIdentity):
     privileged: bool
     role: Literal["floor", "baseline", "ceiling", "candidate"] = "candidate"
     planner_process: Literal["own", "in_process"] = "in_process"
+    planner_contained: list[Aspect] | None = None
     allowed_plugins: list[str] | None = None
     recorded: Literal["all", "used", "none"] = "all"
     robots: dict[str, RobotPart] = Field(default_factory=dict)
@@ -135,6 +137,17 @@ class RunRecord(_Record, RunIdentity):
     def trusted(self) -> bool:
         """True if planner and plugins all come from installed distributions."""
         return self.pinned and all(plugin.pinned for plugin in self.plugins)
+
+    @property
+    def uncontained(self) -> str:
+        """What a planner in a process of its own could reach that is not its own; empty: nothing.
+
+        Planners were not contained before records said so.
+        """
+        if self.planner_process == "in_process":
+            return ""
+        missing = [aspect for aspect in ALL if aspect not in (self.planner_contained or ())]
+        return "" if not missing else "all" if len(missing) == len(ALL) else ", ".join(missing)
 
     @property
     def compared(self) -> dict[str, str]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from pathlib import Path
 
 _PACKAGE = Path(__file__).parents[2]
 _VARIABLE = "NUMBA_CACHE_DIR"
+#: In a planner's process, the folder in which the simulator keeps compiled functions.
+SIMULATORS = "CROWDBOT_KERNELS"
 _PLAIN = "CROWDBOT_PLAIN_NUMBA"
 _LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
 #: Numba's cache locators in order: its own follow if the first has no file or no folder.
@@ -33,15 +36,16 @@ USUAL = 218
 
 def nothing_compiled() -> bool:
     """Return True if compiled functions are going to be written for the first time."""
-    return next(_folder().rglob("*.nbi"), None) is None
+    return next(used_folder().rglob("*.nbi"), None) is None
 
 
 def compiled() -> int:
     """Return how many functions have been compiled so far."""
-    return sum(name.endswith(".nbi") for _, _, names in os.walk(_folder()) for name in names)
+    return sum(name.endswith(".nbi") for _, _, names in os.walk(used_folder()) for name in names)
 
 
-def _folder() -> Path:
+def used_folder() -> Path:
+    """Return the folder in which this process keeps compiled functions."""
     return Path(os.environ.get(_VARIABLE) or kernel_folder())
 
 
@@ -50,5 +54,22 @@ def kernel_folder(package: Path = _PACKAGE) -> Path:
     name = "kernels-plain" if is_plain_numba() else "kernels"
     if os.access(package, os.W_OK):
         return package / "__pycache__" / name
+    return _user_cache() / name
+
+
+def lock_of(folder: str) -> Path:
+    """Return the file that processes lock while they compile functions of a folder.
+
+    It lies elsewhere: a planner's process may read that folder, and could keep the lock.
+    """
+    return _user_cache() / f"compiling-{hashlib.sha256(folder.encode()).hexdigest()[:16]}.lock"
+
+
+def is_readable_only(py_file: str) -> bool:
+    """Return True if this is a planner's process, and the function is one of crowdbot's own."""
+    return bool(os.environ.get(SIMULATORS)) and Path(py_file).is_relative_to(_PACKAGE)
+
+
+def _user_cache() -> Path:
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return cache / "crowdbot" / name
+    return cache / "crowdbot"

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 from numba.core.caching import UserProvidedCacheLocator
 
+from crowdbot.core.support.compile_cache import SIMULATORS, is_plain_numba, is_readable_only
 from crowdbot.core.support.compiled_state import CompiledState
 
 
@@ -16,6 +19,15 @@ class CompiledStateLocator(UserProvidedCacheLocator):
     def __init__(self, py_func: FunctionType, py_file: str) -> None:
         super().__init__(py_func, py_file)  # type: ignore[no-untyped-call]
         self._function = py_func
+        self._reads = is_readable_only(py_file) and not is_plain_numba()
+        if self._reads:
+            inner = self.get_suitable_cache_subpath(py_file)  # type: ignore[no-untyped-call]
+            self._cache_path = str(Path(os.environ[SIMULATORS], inner))
+
+    def ensure_cache_path(self) -> None:
+        """Check that the folder can be written, unless it is only read."""
+        if not self._reads:
+            super().ensure_cache_path()  # type: ignore[no-untyped-call]
 
     def get_source_stamp(self) -> Any:
         """Return the state that must be unchanged for compiled code to be reused."""

@@ -19,7 +19,7 @@ import importlib
 import os
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,8 @@ from numba.core.sigutils import normalize_signature
 from numba.core.types import Omitted
 from numba.np import linalg
 
+from crowdbot.core.support.compile_cache import lock_of
+from crowdbot.core.support.compile_cache_file import CheckedCacheFile
 from crowdbot.core.support.compile_files import PART, CacheFiles, PartLibrary, is_part
 from crowdbot.core.support.gc_throttle import seldom_collected
 
@@ -50,6 +52,13 @@ class _Cache(FunctionCache):
     _impl_class = CacheFiles
     _as_part = False
 
+    def __init__(self, py_func: Any) -> None:
+        super().__init__(py_func)
+        found = self._cache_file
+        self._cache_file = CheckedCacheFile(
+            found._cache_path, self._impl.filename_base, found._source_stamp
+        )
+
     def load(self, sig: Any, context: Any, as_part: bool) -> Any:
         """As numba's, without what only compilation needs, which saves a tenth of a second."""
         self._as_part = as_part
@@ -58,8 +67,9 @@ class _Cache(FunctionCache):
             return self._load_overload(sig, context)
 
     def save(self, sig: Any, result: Any, as_part: bool) -> None:
+        """Store a function, if the folder can be written: a planner's process may only read it."""
         self._as_part = as_part
-        with SAVING:
+        with SAVING, suppress(OSError):
             self.save_overload(sig, result)
 
     @contextmanager
@@ -72,7 +82,7 @@ class _Cache(FunctionCache):
         place = int.from_bytes(hashlib.sha256(self._cache_file._index_path.encode()).digest()[:5])
         try:
             self._impl.locator.ensure_cache_path()
-            file = _lock_file(Path(self.cache_path) / "compiling.lock")
+            file = _lock_file(lock_of(self.cache_path))
             fcntl.lockf(file, fcntl.LOCK_EX, 1, place)
         except OSError:
             yield
@@ -90,6 +100,7 @@ class _Cache(FunctionCache):
 @cache
 def _lock_file(path: Path) -> int:
     """Open the lock file for the process's lifetime: closing any handle would release locks."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     return os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
 
 

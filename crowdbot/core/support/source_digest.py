@@ -117,6 +117,11 @@ def package_files(folder: Path) -> dict[str, Path]:
     return own | {f"../{f.relative_to(folder.parent).as_posix()}": f for f in beside}
 
 
+def source_files(file: Path) -> set[Path]:
+    """Return a Python file and the modules beside it that it imports."""
+    return _with_helpers(file)
+
+
 def imported_names(file: Path) -> set[str]:
     """Return the top module names that a file, or one beside it, imports."""
     return {name for one in _with_helpers(file) for name in _imported(one)}

@@ -1,9 +1,8 @@
 """The process that forks planner processes and ends their leftovers.
 
 It has imported only what planners need, so a planner starts in milliseconds and sees nothing of
-another run. It serves one planner at a time. On Linux it is the subreaper: orphaned children of a
-planner stay below it, even with a session of their own. It ends, with everything below it, when the
-simulator closes the connection or dies.
+another run. It serves one planner at a time. A guard above it ends all of them when the simulator
+closes the connection or dies, or when the server is killed; the server does so if the guard is.
 
 It uses only the standard library until it gets a list of imports.
 """
@@ -14,6 +13,7 @@ import contextlib
 import ctypes
 import importlib
 import json
+import math
 import os
 import pickle
 import resource
@@ -22,38 +22,92 @@ import signal
 import socket
 import struct
 import sys
+import tempfile
 import time
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any, NoReturn
 
-from crowdbot.core.planning.process.inspection import give_up_inspecting, set_inspectable
+from crowdbot.core.planning.containment.enforce import enforce
+from crowdbot.core.planning.containment.rights import set_inspectable
+from crowdbot.core.planning.containment.scratch import make_folder, remove_scratch, use_scratch
+from crowdbot.core.planning.process.process_tree import (
+    adopt_orphans,
+    all_tasks,
+    count_descendants,
+    die_with_parent,
+    end_descendants,
+    limit_own_signals,
+)
 
 #: A planner's file descriptors: messages in, messages out, memory, as in `serving`.
 _TARGETS = (3, 4, 5)
-_PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
-_LINUX = sys.platform == "linux"
 _OUTPUT = (1, 2)
 _HEAD = struct.Struct("<I")
 #: Seconds after SIGABRT for a process to print its position.
 _LAST_WORDS = 0.5
+#: Most processes of a planner; seconds between looks; threads of all processes by which the
+#: machine has to grow before they are counted.
+_MOST_PROCESSES, _LOOKS, _GROWTH = 256, 0.1, 256
+#: Seconds for the server to end by itself.
+_GRACE = 1.0
+_LARGEST_FILE = 1 << 30
+_PEER_CLOSED = 0x2000  # POLLRDHUP
 
 
-def main(descriptor: int) -> None:
-    """Serve until the connection is closed."""
+def main(descriptor: int, landlock: int) -> None:
+    """Start the server, and guard it until it ends or the connection is closed.
+
+    Args:
+        descriptor: the connection.
+        landlock: version of Landlock to use; 0: none.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # only the simulator handles Ctrl-C
-    if _LINUX:
-        _prctl(_PR_SET_CHILD_SUBREAPER, 1)
-        _prctl(_PR_SET_PDEATHSIG, signal.SIGCONT)  # resume if stopped, to see the closed connection
-        set_inspectable(False)
+    adopt_orphans()
+    set_inspectable(False)
+    die_with_parent(os.getppid(), signal.SIGCONT)  # resume if stopped, to see the closed connection
     line = socket.socket(fileno=descriptor)
-    server = ForkServer(line)
+    limited = limit_own_signals(landlock)
+    guard, folder = os.getpid(), make_folder()
+    server = os.fork()
+    if server == 0:
+        _serve(line, landlock, guard, folder)
+    _guard(line, server)
+    end_descendants(limited=limited)
+    remove_scratch(folder)
+    os._exit(0)
+
+
+def _guard(line: socket.socket, server: int) -> None:
+    """Wait until the server has ended, or until it had time to after the simulator has."""
+    closes = select.poll()
+    closes.register(line, _PEER_CLOSED | select.POLLHUP)
+    until = math.inf
+    while not os.waitpid(server, os.WNOHANG)[0] and time.monotonic() < until:
+        if until == math.inf and closes.poll(1000.0 * _LOOKS):
+            until = time.monotonic() + _GRACE
+        elif until < math.inf:
+            time.sleep(0.01)
+
+
+def _serve(line: socket.socket, landlock: int, guard: int, folder: str) -> NoReturn:
+    """Serve planners until the connection is closed."""
+
+    def end(*_: object) -> None:
+        end_descendants(limited=limited)
+        remove_scratch(folder)
+        os._exit(0)
+
+    adopt_orphans()
+    signal.signal(signal.SIGTERM, end)
+    limited = limit_own_signals(landlock)
+    die_with_parent(guard, signal.SIGTERM)
+    server = ForkServer(line, folder, limited=limited)
     try:
         while server.serve_one():
             pass
     finally:
         server.end_all()
-    os._exit(0)
+        os._exit(0)
 
 
 class ForkServer:
@@ -62,14 +116,20 @@ class ForkServer:
     Args:
         line: connection: requests are length and pickle, with descriptors; replies are one JSON
             document per line.
+        folder: folder of the planners' scratch folders.
+        limited: True if signals of this process and of planners stay among them.
     """
 
-    def __init__(self, line: socket.socket) -> None:
-        self._line, self._pid = line, 0
+    def __init__(self, line: socket.socket, folder: str, *, limited: bool) -> None:
+        self._line, self._folder, self._pid, self._limited = line, folder, 0, limited
         self._status: int | None = None
+        self._tasks = 0
+        self._why = ""
+        self._scratch = ""
 
     def serve_one(self) -> bool:
         """Handle the next request; return False if there are no more."""
+        self._watch()
         head, descriptors, _, _ = socket.recv_fds(self._line, _HEAD.size, len(_TARGETS) + 1)
         raw = b""
         if len(head) == _HEAD.size:
@@ -77,7 +137,11 @@ class ForkServer:
         if not raw:
             return False
         request = pickle.loads(raw)  # noqa: S301 - only from this process's parent
-        answer = getattr(self, f"_{request['do']}")(request, descriptors)
+        try:
+            answer = getattr(self, f"_{request['do']}")(request, descriptors)
+        except OSError as error:
+            where = error.filename or tempfile.tempdir or "its process"
+            answer = {"error": f"cannot be started: {where}: {error.strerror or error}"}
         for one in descriptors:
             os.close(one)
         try:
@@ -92,15 +156,23 @@ class ForkServer:
             with contextlib.suppress(OSError):
                 os.killpg(self._pid, signal.SIGKILL)
             self._wait(None)
-        left = 0
-        while True:
-            try:
-                pid, _ = os.waitpid(-1, os.WNOHANG)
-            except ChildProcessError:
-                return left
-            if pid == 0:
-                left += self._kill_children()
-                time.sleep(0.002)
+        left = end_descendants(limited=self._limited)
+        if self._scratch:
+            remove_scratch(self._scratch)
+            self._scratch = ""
+        return left
+
+    def _watch(self) -> None:
+        """Wait for a request; end a planner that starts too many processes meanwhile."""
+        comes = select.poll()
+        comes.register(self._line, select.POLLIN)
+        while self._pid and not self._why and not comes.poll(1000.0 * _LOOKS):
+            if all_tasks() < self._tasks + _GROWTH:
+                continue
+            if count_descendants(os.getpid()) > _MOST_PROCESSES:
+                self._why = f"it started more than {_MOST_PROCESSES} processes"
+                end_descendants(limited=self._limited)
+                self._status = -signal.SIGKILL
 
     def _import(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> dict[str, Any]:
         """Import installed modules for all later planners."""
@@ -113,10 +185,11 @@ class ForkServer:
     def _start(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> dict[str, Any]:
         """Fork a planner; the descriptors are messages in and out, memory, output."""
         parent = os.getpid()
-        self._status = None
+        self._status, self._why, self._tasks = None, "", all_tasks()
+        self._scratch = make_folder(self._folder or tempfile.gettempdir())
         self._pid = os.fork()
         if self._pid == 0:
-            _be_planner(request, descriptors, parent)
+            _be_planner(request, descriptors, parent, self._scratch)
         return {"pid": self._pid}
 
     def _end(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> dict[str, Any]:
@@ -130,7 +203,7 @@ class ForkServer:
         status = self._status if gone else None
         left = self.end_all()
         self._pid = 0
-        return {"status": status, "left": left}
+        return {"status": status, "left": left, "why": self._why}
 
     def _wait(self, seconds: float | None) -> bool:
         """Return True if the planner's process ended within this time, or wait forever."""
@@ -150,36 +223,23 @@ class ForkServer:
     def _pause(self, seconds: float) -> None:
         select.select([], [], [], seconds)
 
-    def _kill_children(self) -> int:
-        """Kill all children of this process; their orphans become its children in turn."""
-        mine, killed = os.getpid(), 0
-        for folder in Path("/proc").glob("[0-9]*"):
-            try:
-                fields = (folder / "stat").read_text(errors="replace").rpartition(")")[2].split()
-            except OSError:
-                continue
-            if int(fields[1]) == mine and fields[0] != "Z":
-                with contextlib.suppress(OSError):
-                    os.kill(int(folder.name), signal.SIGKILL)
-                    killed += 1
-        return killed
 
-
-def _be_planner(request: Mapping[str, Any], descriptors: Sequence[int], parent: int) -> NoReturn:
-    """Run the planner in the new process: detach from the server and apply limits."""
+def _be_planner(
+    request: Mapping[str, Any], descriptors: Sequence[int], parent: int, scratch: str
+) -> NoReturn:
+    """Run the planner in the new process: detach from the server, contain and limit itself."""
     code = 70
     try:
         os.setsid()
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         _take_descriptors(descriptors)
-        if _LINUX:
-            _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-            if os.getppid() != parent:
-                os._exit(1)
-            give_up_inspecting()
-            set_inspectable(True)
-        _limit(request["memory"])
+        die_with_parent(parent)
+        set_inspectable(False)
+        use_scratch(scratch)
         if request["folder"]:
             os.chdir(request["folder"])
+        _limit(request["memory"])
+        enforce(request["contain"], scratch)
         for number in (signal.SIGINT, signal.SIGPIPE):
             signal.signal(number, signal.SIG_DFL)
         if command := request.get("command"):
@@ -196,6 +256,7 @@ def _be_planner(request: Mapping[str, Any], descriptors: Sequence[int], parent: 
 
 
 def _execute(command: Sequence[str]) -> NoReturn:
+    os.environ.pop("NUMBA_CACHE_LOCATOR_CLASSES", None)  # crowdbot's, which it may not have
     try:
         os.execvp(command[0], list(command))  # noqa: S606 - the program that the user named
     except OSError as error:
@@ -229,17 +290,20 @@ def _take_descriptors(given: Sequence[int]) -> None:
         os.dup2(output, target)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
-    os.closerange(_TARGETS[0] + len(lines), os.sysconf("SC_OPEN_MAX"))
+    most = os.sysconf("SC_OPEN_MAX")
+    with contextlib.suppress(OSError):  # the limit may have been lowered since some were opened
+        most = max(most, *(int(entry.name) + 1 for entry in os.scandir("/proc/self/fd")))
+    os.closerange(_TARGETS[0] + len(lines), most)
 
 
 def _limit(memory: int | None) -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    _lower(resource.RLIMIT_FSIZE, _LARGEST_FILE)
     if memory is not None:
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        least = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
-        resource.setrlimit(resource.RLIMIT_AS, (least, least))
+        _lower(resource.RLIMIT_AS, memory)
 
 
-def _prctl(option: int, value: int) -> None:
-    libc: Any = ctypes.CDLL(None)
-    libc.prctl(option, value, 0, 0, 0)
+def _lower(what: int, limit: int) -> None:
+    _, hard = resource.getrlimit(what)
+    least = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+    resource.setrlimit(what, (least, least))

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import math
 import os
 import signal
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from importlib import metadata
 from pathlib import Path
 from typing import Any, NoReturn
 
 import msgpack
 
+from crowdbot.core.planning.containment.declared import with_data
+from crowdbot.core.planning.containment.offer import (
+    Needs,
+    contained_request,
+    kernel_offer,
+)
 from crowdbot.core.planning.description import PlannerDescription, read_description
 from crowdbot.core.planning.host import RESET_LIMIT
 from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner
@@ -36,6 +43,7 @@ from crowdbot.core.types.task import Task
 from crowdbot.errors import InputError, PlannerError, printable
 from crowdbot.old_names import say_old_names
 
+_LOG = logging.getLogger("crowdbot")
 #: Seconds for a process to exit by itself, and to be gone after closing its connection.
 _LEAVES, _DIES = 1.0, 0.3
 _GIB = 1 << 30
@@ -57,6 +65,9 @@ class ProcessPlan:
         parameters: its parameters; another program gets them in ``hello``.
         preload: installed modules that are imported before the process is forked.
         memory: largest address space, bytes; None: unlimited.
+        needs: files and network that it asks for.
+        beside: folder of the data that its description declares.
+        contained: True to refuse to run it where it would not be contained.
     """
 
     who: str
@@ -66,6 +77,9 @@ class ProcessPlan:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     preload: Sequence[str] = ()
     memory: int | None = 4 * _GIB
+    needs: Needs = field(default_factory=Needs)
+    beside: Path | None = None
+    contained: bool = False
 
 
 class ProcessLostError(PlannerError):
@@ -120,7 +134,10 @@ def describe(
         died = str(error) if isinstance(error, ProcessDiedError) else ""
         return PlannerDescription(needs=()), NotLoaded(str(error), died)
     planner.close()
-    return planner.description, partial(ProcessPlanner, plan)
+    said = planner.description
+    if plan.beside is not None and said.data:
+        plan = replace(plan, needs=with_data(plan.needs, plan.beside, said.data))
+    return said, partial(ProcessPlanner, plan)
 
 
 class ProcessPlanner:
@@ -132,13 +149,15 @@ class ProcessPlanner:
         plan: the program.
 
     Raises:
-        InputError, PlannerError: it cannot be loaded.
+        InputError, PlannerError: it cannot be loaded, or would not be contained and has to be.
     """
 
     def __init__(self, plan: ProcessPlan) -> None:
         self._plan, self._step = plan, 0
         _check_parameters(plan)
+        _check_containment(plan)
         self._server: ServerHandle | None = None
+        self._why = ""
         self._memory = SharedMemory() if has_shared_memory() else None
         self._line = self._start()
         said = self._ask("load", self._hello(), RESET_LIMIT, "hello")
@@ -217,6 +236,7 @@ class ProcessPlanner:
                     "command": list(plan.command),
                     "folder": plan.folder or _here(),
                     "memory": plan.memory,
+                    "contain": contained_request(plan.needs),
                 },
                 [theirs_in, theirs_out, *memory, theirs_output],
             )
@@ -272,6 +292,11 @@ class ProcessPlanner:
         text = printable(str(said.get("text", ""))[:_LONGEST_REASON])
         if "MemoryError" in text and self._plan.memory is not None:
             text += f"; the limit of its memory is {self._plan.memory / _GIB:g} GiB"
+        if "PermissionError" in text and kernel_offer().contained:
+            text += (
+                "; a planner reads what it declares ('data', 'files', 'libraries'), writes to its "
+                "home folder, and has no network unless its document asks for it"
+            )
         if "BdbQuit" in text:
             text += "; to use a debugger, let the planner run --in-process"
         error = InputError if said.get("kind") == "input" else PlannerError
@@ -280,7 +305,9 @@ class ProcessPlanner:
     def _gone(self, doing: str) -> str:
         """Describe how a process without a reply ended."""
         status, where = self._end(grace=_DIES)
-        if status is None:
+        if self._why:
+            how = f"{self._why}; all of them were ended"
+        elif status is None:
             how = "its process closed the descriptors of its messages"
         elif status == _KILLED_ALL:
             how = "its process was ended, and with it the one that had started it"
@@ -295,7 +322,9 @@ class ProcessPlanner:
         server, self._server = self._server, None
         assert server is not None
         try:
-            status: int | None = server.end(grace=grace, ask=ask)["status"]
+            said = server.end(grace=grace, ask=ask)
+            status: int | None = said["status"]
+            self._why = str(said["why"])
             POOL.give_back(server)
         except ServerGone:
             status = _KILLED_ALL
@@ -343,6 +372,27 @@ def _here() -> str:
     with contextlib.suppress(OSError):
         return str(Path.cwd())
     return ""
+
+
+def _check_containment(plan: ProcessPlan) -> None:
+    """Say, once in a process, that planners are not contained here, or refuse to run one.
+
+    Raises:
+        InputError: it has to be contained.
+    """
+    missing = kernel_offer().missing
+    if missing and plan.contained:
+        raise InputError(
+            f"{plan.who}: it would not be contained ({missing}); "
+            "--not-contained runs it all the same"
+        )
+    if missing:
+        _say_uncontained(missing)
+
+
+@cache
+def _say_uncontained(missing: str) -> None:
+    _LOG.warning("warning: planners are not contained: %s", missing)
 
 
 def _check_parameters(plan: ProcessPlan) -> None:

@@ -7,7 +7,6 @@ import contextlib
 import json
 import os
 import pickle
-import secrets
 import select
 import signal
 import socket
@@ -17,17 +16,18 @@ import sys
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from crowdbot.core.planning.process.inspection import set_inspectable
+from crowdbot.core.planning.containment.offer import kernel_offer
+from crowdbot.core.planning.containment.rights import set_inspectable
+from crowdbot.core.planning.process.process_tree import adopt_orphans, end_strays
 from crowdbot.core.registry.plugin_path import path_without_plugins
 from crowdbot.errors import PlannerError
 
 _HEAD = struct.Struct("<I")
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
-    "from crowdbot.core.planning.process.fork_server import main; main(int(sys.argv[2]))"
+    "from crowdbot.core.planning.process.fork_server import main; main(*map(int, sys.argv[2:]))"
 )
 #: Planners use one thread, as in campaigns, unless the user sets a value.
 _ONE_THREAD = (
@@ -35,10 +35,12 @@ _ONE_THREAD = (
 )  # fmt: skip
 #: Seconds for a server to end its planner and itself, and to import modules.
 _GOES, _IMPORTS = 30.0, 600.0
-#: Environment variable that identifies processes from the same server.
-_MARK = "CROWDBOT_PLANNER_SERVER"
 #: Modules that every planner in our Python needs.
 _OWN = ("crowdbot.core.planning.process.own_child",)
+
+
+#: Processes of the servers of this process.
+_RUNNING: set[int] = set()
 
 
 class ServerGone(PlannerError):  # noqa: N818 - what happened
@@ -50,14 +52,15 @@ class ServerHandle:
 
     def __init__(self) -> None:
         set_inspectable(False)  # planners have this user's rights
+        adopt_orphans()
         ours, theirs = socket.socketpair()
-        self._mark = f"{_MARK}={secrets.token_hex(16)}"
         command = [
             sys.executable,
             "-c",
             _START,
             json.dumps(path_without_plugins()),
             str(theirs.fileno()),
+            str(kernel_offer().landlock),
         ]
         with theirs:
             self._process = subprocess.Popen(
@@ -66,12 +69,9 @@ class ServerHandle:
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 start_new_session=True,
-                env={
-                    **dict.fromkeys(_ONE_THREAD, "1"),
-                    **os.environ,
-                    _MARK: self._mark.partition("=")[2],
-                },
+                env={**dict.fromkeys(_ONE_THREAD, "1"), **os.environ},
             )
+        _RUNNING.add(self._process.pid)
         self._line = ours
         self._owner = os.getpid()
         self._imported: set[str] = set()
@@ -89,9 +89,13 @@ class ServerHandle:
 
         Raises:
             ServerGone: the server was ended.
+            PlannerError: the system cannot start a process.
         """
         self._send({"do": "start", **request}, descriptors)
-        return int(self._answer(_IMPORTS)["pid"])
+        answer = self._answer(_IMPORTS)
+        if "error" in answer:
+            raise PlannerError(answer["error"])
+        return int(answer["pid"])
 
     def end(self, *, grace: float, ask: bool = False) -> dict[str, Any]:
         """End the planner and everything it left; return how its process ended.
@@ -105,20 +109,19 @@ class ServerHandle:
         """
         self._send({"do": "end", "grace": grace, "ask": ask})
         with contextlib.suppress(OSError):
-            os.kill(self._process.pid, signal.SIGCONT)  # the planner may have stopped it
+            os.killpg(self._process.pid, signal.SIGCONT)  # a planner may have stopped them
         return self._answer(grace + _GOES)
 
     def sweep(self) -> None:
-        """Kill leftovers of a killed server, as far as they can be identified."""
+        """Kill what a server and its guard left that were both killed."""
         self.close()
-        for folder in Path("/proc").glob("[0-9]*"):
-            with contextlib.suppress(OSError):
-                if self._mark.encode() in (folder / "environ").read_bytes().split(b"\0"):
-                    os.kill(int(folder.name), signal.SIGKILL)
+        if os.getpid() == self._owner:
+            end_strays(_RUNNING)
 
     def close(self) -> None:
         """End the server, and with it everything below it."""
         if os.getpid() == self._owner:
+            _RUNNING.discard(self._process.pid)
             self._line.close()
             try:
                 self._process.wait(_GOES)

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
+from crowdbot.core.planning.containment.offer import kernel_offer
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.planning.process.process_planner import ProcessPlanner
+from crowdbot.core.planning.process.server_handle import POOL
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.registry.registry import discover
 from crowdbot.plugin import Observation, Pose, Reading, RobotLimits, SensorInfo, Task
+from tests.waiting import wait_until
 
 LIMITS = RobotLimits(v_min=-0.2, v_max=0.65, w_max=3.14, a_max=1.0, alpha_max=2.0)
 ZONE = np.array([[45.0, -5.0], [50.0, -5.0], [50.0, 5.0], [45.0, 5.0]])
@@ -86,6 +91,27 @@ def below(pid: int) -> list[int]:
         if int(fields[1]) == pid and fields[0] != "Z":
             found += [int(folder.name), *below(int(folder.name))]
     return found
+
+
+def left(name: str) -> Path:
+    """A file that a running planner wrote into its home, the only folder that it may write to."""
+    pattern = f"crowdbot-planner-*/*/{name}"
+    wait_until(lambda: any(f.read_text() for f in Path(tempfile.gettempdir()).glob(pattern)))
+    return next(Path(tempfile.gettempdir()).glob(pattern))
+
+
+@contextmanager
+def older_kernel(monkeypatch: pytest.MonkeyPatch, landlock: int = 0) -> Iterator[None]:
+    """One whose Landlock is older; 0: one that contains nothing."""
+    POOL.close()
+    monkeypatch.setenv("CROWDBOT_LANDLOCK", str(landlock))
+    kernel_offer.cache_clear()
+    try:
+        yield
+    finally:
+        monkeypatch.delenv("CROWDBOT_LANDLOCK")
+        kernel_offer.cache_clear()
+        POOL.close()
 
 
 def descriptors() -> int:

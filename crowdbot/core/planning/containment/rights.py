@@ -1,4 +1,4 @@
-"""Deny planners access to the simulator's memory.
+"""Rights that a process of root gives up: all but those to read files of others.
 
 Linux lets a process of the same user open another's ``/proc/PID/mem``, or trace it, unless that
 process forbids it; root always may, and has to drop the capability. See ptrace(2), section "Ptrace
@@ -13,9 +13,9 @@ from typing import Any
 
 _PR_SET_DUMPABLE, _PR_CAPBSET_DROP, _PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL = 4, 24, 47, 4
 _VERSION_3 = 0x20080522
-#: CAP_SYS_MODULE, CAP_SYS_RAWIO, CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_PERFMON, CAP_BPF,
-#: CAP_CHECKPOINT_RESTORE: capabilities that give access to other processes' memory.
-_INTO_OTHERS = (16, 17, 19, 21, 38, 39, 40)
+#: CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH: root in a container reads files of other users.
+_KEPT = (1, 2)
+_CAPABILITIES = 64
 
 
 class _Header(ctypes.Structure):
@@ -33,20 +33,21 @@ def set_inspectable(may: bool) -> None:
         libc.prctl(_PR_SET_DUMPABLE, int(may), 0, 0, 0)
 
 
-def give_up_inspecting() -> None:
-    """Prevent this process and its children from accessing others, even as root; on Linux.
+def give_up_rights() -> None:
+    """Give up all capabilities but two, for this process and its children, even as root; on Linux.
 
     An unprivileged user has no capability that cannot be dropped.
     """
     libc: Any = ctypes.CDLL(None)
-    for capability in _INTO_OTHERS:
-        libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0)
+    for capability in range(_CAPABILITIES):
+        if capability not in _KEPT and libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0) != 0:
+            break  # beyond the last one, or not root
     libc.prctl(_PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0)
     header, sets = _Header(_VERSION_3, 0), (_Sets * 2)()
     if libc.capget(ctypes.byref(header), sets) != 0:
         return
-    for capability in _INTO_OTHERS:
-        half = sets[capability // 32]
+    kept = sum(1 << capability for capability in _KEPT)
+    for half, mask in zip(sets, (kept, 0), strict=True):
         for name in ("effective", "permitted", "inheritable"):
-            setattr(half, name, getattr(half, name) & ~(1 << capability % 32))
+            setattr(half, name, getattr(half, name) & mask)
     libc.capset(ctypes.byref(header), sets)

@@ -1,0 +1,1 @@
+"""Containment of planner processes by the kernel: files, network, signals, other processes."""

@@ -1,0 +1,66 @@
+"""What a planner's process denies itself before any of the planner's code runs.
+
+Uses only the standard library, since the process has imported nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.planning.containment import landlock, system_calls
+from crowdbot.core.planning.containment.rights import give_up_rights
+
+#: Programs, libraries and their settings. All of it is public on usual systems.
+_SYSTEM = (
+    "/usr", "/lib", "/lib32", "/lib64", "/libx32", "/bin", "/sbin", "/opt", "/nix/store",
+    "/gnu/store", "/snap", "/sys/devices", "/sys/bus", "/sys/class", "/sys/module/nvidia",
+    "/proc/self", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc/version", "/proc/uptime",
+    "/proc/loadavg", "/proc/filesystems", "/proc/devices", "/proc/sys/kernel", "/proc/sys/vm",
+    "/proc/driver/nvidia",
+)  # fmt: skip
+_SETTINGS = (
+    "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "ld.so.preload", "localtime", "timezone",
+    "nsswitch.conf", "passwd", "group", "hosts", "host.conf", "hostname", "resolv.conf", "gai.conf",
+    "services", "protocols", "ssl", "pki", "ca-certificates", "alternatives", "fonts",
+    "locale.conf", "mime.types", "magic", "os-release", "OpenCL", "vulkan", "glvnd", "libnl",
+    "python3",
+)  # fmt: skip
+_DEVICES = ("null", "zero", "full", "random", "urandom", "nvidia*", "kfd", "dri")
+
+
+def enforce(given: Mapping[str, Any], scratch: str) -> None:
+    """Contain this process and all that it starts, as far as the kernel can.
+
+    Args:
+        given: from `contained_request`.
+        scratch: the only folder that it may write to.
+
+    Raises:
+        OSError: the kernel refuses what it offers.
+    """
+    give_up_rights()
+    system_calls.forbid_new_rights()
+    version, network = given["landlock"], given["network"]
+    if version:
+        landlock.deny_files(version, _allowed(given, scratch), network=network)
+    if given["filter"]:
+        tells_apart = version >= landlock.ABI_SIGNALS
+        system_calls.deny_system_calls(network=network, signals=not tells_apart)
+
+
+def _allowed(given: Mapping[str, Any], scratch: str) -> Iterator[tuple[str, int]]:
+    """Yield paths and the rights to them."""
+    yield scratch, landlock.EVERYTHING
+    for path in _SYSTEM:
+        yield path, landlock.READ
+    for name in _SETTINGS:
+        yield f"/etc/{name}", landlock.READ
+    for name in _DEVICES:
+        for path in Path("/dev").glob(name):
+            yield str(path), landlock.DEVICE | landlock.READ_DIR
+    for path in given["read"]:
+        yield path, landlock.READ
+    for path in given["list"]:
+        yield path, landlock.READ_DIR
