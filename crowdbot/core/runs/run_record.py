@@ -140,7 +140,7 @@ class RunRecord(_Record, RunIdentity):
 
     @property
     def uncontained(self) -> str:
-        """What a planner in a process of its own could reach that is not its own; empty: nothing.
+        """Return what a planner in a separate process was not kept from; empty: nothing.
 
         Planners were not contained before records said so.
         """

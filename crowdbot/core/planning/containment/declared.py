@@ -1,4 +1,4 @@
-"""What planners declare that they read: files beside them, data, libraries of their own."""
+"""Needs of planners as they declare them: files beside them, data, libraries of their own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a planner's process denies itself before any of the planner's code runs.
+"""Containment of this process, before any of the planner's code runs.
 
 Uses only the standard library, since the process has imported nothing else.
 """

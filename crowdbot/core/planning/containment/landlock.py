@@ -21,7 +21,7 @@ ABI_SIGNALS = 6
 EXECUTE, WRITE_FILE, READ_FILE, READ_DIR = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 _MAKE_CHAR, _MAKE_BLOCK = 1 << 6, 1 << 11
 _TRUNCATE, _IOCTL_DEVICE = 1 << 14, 1 << 15
-#: Rights to a file that is no folder.
+#: Rights to a file, as opposed to a folder.
 _OF_FILES = EXECUTE | WRITE_FILE | READ_FILE | _TRUNCATE | _IOCTL_DEVICE
 #: Number of the rights to files that a version knows.
 _RIGHTS = {1: 13, 2: 14, 3: 15, 4: 15}

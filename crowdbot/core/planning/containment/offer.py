@@ -1,4 +1,4 @@
-"""What this kernel can deny to planners, and the request that makes a process do it."""
+"""Means of this kernel to contain planners, and the request that makes a process do it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ALL: Final[tuple[Aspect, ...]] = ("files", "network", "signals", "processes")
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """What the kernel offers for containment.
+    """The kernel's means of containment.
 
     Attributes:
         landlock: version of Landlock's interface; 0: none.
@@ -72,7 +72,7 @@ def kernel_offer() -> Offer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Needs:
-    """What a planner asks for.
+    """Files and network that a planner asks for.
 
     Attributes:
         files: files and folders that it declares.
