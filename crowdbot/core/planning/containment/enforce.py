@@ -58,8 +58,8 @@ def _allowed(given: Mapping[str, Any], scratch: str) -> Iterator[tuple[str, int]
     for name in _SETTINGS:
         yield f"/etc/{name}", landlock.READ
     for name in _DEVICES:
-        for path in Path("/dev").glob(name):
-            yield str(path), landlock.DEVICE | landlock.READ_DIR
+        for device in Path("/dev").glob(name):
+            yield str(device), landlock.DEVICE | landlock.READ_DIR
     for path in given["read"]:
         yield path, landlock.READ
     for path in given["list"]:
