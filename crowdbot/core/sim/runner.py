@@ -53,6 +53,8 @@ def run(
                 robot.given.ending.end(PLANNER_FAILED, robot.given.ending.failure, t)
     finally:
         _finish(blocks, context)
+        for robot in blocks.robots:
+            robot.bank.close()
     return run_outcome(
         [robot.given for robot in blocks.robots],
         sim_time=float(context.get_time()),

@@ -25,7 +25,7 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.cameras.images import ColourRenderer, Images, capture, view_size
+from crowdbot.core.sim.cameras.images import Graphics, Images, capture, view_size
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.other_robots import OtherRobots
@@ -126,7 +126,7 @@ class SensorBank(LeafSystem):
         seed: int,
         robot: str,
         writer: RecordingWriter,
-        renderers: Mapping[str, ColourRenderer] = MappingProxyType({}),
+        renderers: Mapping[str, Graphics] = MappingProxyType({}),
     ) -> None:
         """Build the bank.
 
@@ -150,6 +150,7 @@ class SensorBank(LeafSystem):
             n: _Way(x, sensors[n].read, SensorStream(seed, robot, n) if x.info.random else None)
             for n, x in self.slots.items()
         }
+        self._renderers = tuple(renderers.values())
         self._images = {
             n: Images(sensors[n], partial(self._rng, n), renderers.get(n))  # type: ignore[arg-type]
             for n, slot in self.slots.items()
@@ -261,6 +262,16 @@ class SensorBank(LeafSystem):
         bank[slot.values] = values if values.ndim == 1 else values.ravel()
         self._on_reading(name, Reading(t, values))
 
+    def close(self) -> None:
+        """Free the graphics of the cameras.
+
+        A graphics context belongs to the thread that drew in it, and the diagram may live on until
+        Python collects it in another one: there each mesh would fail to make the context current.
+        """
+        for renderer in self._renderers:
+            renderer.close()
+        self._renderers = ()
+
 
 def add_sensors(
     builder: DiagramBuilder,
@@ -312,7 +323,7 @@ def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[RobotMo
 
 def _renderers(
     infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[RobotModel]
-) -> dict[str, ColourRenderer]:
+) -> dict[str, Graphics]:
     """Return renderers of cameras with colour, for which VTK is loaded."""
     cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
     if not cameras:

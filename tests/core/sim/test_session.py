@@ -5,15 +5,19 @@ from __future__ import annotations
 import functools
 import subprocess
 import sys
+import threading
 from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import crowdbot
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
+from crowdbot.core.types.sensor import Pinhole
 
 
 @functools.cache
@@ -120,3 +124,40 @@ print(session.step((0.1, 0.0)).t)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "begun\n0.0625\n", "")
+
+
+class FakeRenderer:
+    """Notes in which thread it draws and is closed; needs no EGL."""
+
+    closed_in: ClassVar[list[tuple[str, str]]] = []
+
+    def __init__(self, _scene: Any, camera: Pinhole, *_: Any) -> None:
+        self._image = np.zeros((camera.height, camera.width, 3), np.uint8)
+        self._drawn_in = "nowhere"
+
+    def __call__(self, *_: Any) -> NDArray[np.uint8]:
+        self._drawn_in = threading.current_thread().name
+        return self._image
+
+    def close(self) -> None:
+        """Note the thread."""
+        self.closed_in.append((self._drawn_in, threading.current_thread().name))
+
+
+@pytest.mark.slow
+def test_graphics_are_freed_in_the_thread_that_drew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Otherwise each mesh complains when Python collects the diagram in another thread."""
+    monkeypatch.setattr("crowdbot.core.sim.cameras.rendering.Renderer", FakeRenderer)
+    monkeypatch.setattr(FakeRenderer, "closed_in", [])
+    seen = crowdbot.load(
+        "challenge-2020",
+        "in-d0125-slow-c01-r02",
+        set={"robots.robot.sensors.camera.colour": True},
+    )
+    session = crowdbot.Session(seen, sensors=["camera"])
+    for _ in range(2):
+        assert session.reset().readings["camera"].colour is not None
+        session.step((0.3, 0.0))
+    assert FakeRenderer.closed_in == [("session", "session")], "the first run has ended"
+    session.close()
+    assert FakeRenderer.closed_in == [("session", "session")] * 2

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +26,22 @@ from crowdbot.core.types.robot import RobotState
 from crowdbot.core.types.sensor import CameraFrame, Reading
 
 _COLUMNS = (s.X, s.Y, s.VX, s.VY, s.DIR_X, s.DIR_Y, s.WALKED, s.WAITING)
+
+
 #: A function that draws a camera's image: from the scene and the robot's pose to (H, W, 3).
 ColourRenderer = Callable[[Scene, Pose], NDArray[np.uint8]]
+
+
+class Graphics(Protocol):
+    """A `ColourRenderer` that holds graphics of one thread."""
+
+    def __call__(self, scene: Scene, pose: Pose, /) -> NDArray[np.uint8]:
+        """Return the image (H, W, 3) of a scene, from the robot's pose."""
+        ...
+
+    def close(self) -> None:
+        """Free the graphics, in the thread that drew; nothing is drawn afterwards."""
+        ...
 
 
 def view_size(people: int, robots: int = 0) -> int:

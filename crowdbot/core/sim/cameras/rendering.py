@@ -122,6 +122,10 @@ class Renderer:
         colours: NDArray[np.uint8] = picture.data[:, :, :3].copy()
         return colours
 
+    def close(self) -> None:
+        """Free graphics and meshes, in the thread that drew; nothing is drawn afterwards."""
+        del self._context, self._graph
+
     def _scenery(self, scene: Scene) -> None:
         self._add(Box(400.0, 400.0, 0.1), RigidTransform([0.0, 0.0, -0.05]), _FLOOR, "floor")
         walls = zip(scene.walls, scene.wall_heights, strict=True)
