@@ -42,8 +42,10 @@ from crowdbot.core.trajectories.questionnaires import TLX_SCALES, USE_ITEMS, Ans
 from crowdbot.core.trajectories.trips import (
     DISTANCE_TOLERANCE,
     Durations,
+    Pace,
     displacement,
     durations,
+    mean_pace,
     meets_robot,
     walked_distances,
 )
@@ -57,6 +59,7 @@ __all__ = [
     "Effects",
     "Evasion",
     "FaultRule",
+    "Pace",
     "Pairing",
     "PersonContacts",
     "approach",
@@ -73,6 +76,7 @@ __all__ = [
     "heading_changes",
     "inf_to_nan",
     "least_warping",
+    "mean_pace",
     "meeting_effects",
     "meets_robot",
     "own_legs",

@@ -58,7 +58,8 @@ def show(
         typer.Option(metavar="GLOB", help="Default: the suite's, and a few; repeatable."),
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Variant; default: rate, or else corrected.")
+        str | None,
+        typer.Option(metavar="NAME", help="Variant; default: rate or pace, or else corrected."),
     ] = None,
     by: Annotated[
         str, typer.Option(metavar="AXIS,AXIS", help="Groups: axes, planner, seed, status.")

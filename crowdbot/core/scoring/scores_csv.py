@@ -193,7 +193,8 @@ _SIGNS = {"higher": "+", "lower": "-", "reference": "=", "none": ""}
 def headlines(scores: Sequence[Score]) -> list[Score]:
     """Return one score per metric with data in the run; the four main scores first.
 
-    This is the rate if the metric has one, else the corrected variant, else its headline.
+    This is the rate or the pace if the metric has one, else the corrected variant, else its
+    headline.
     """
     found = []
     for _, group in groupby(scores, key=lambda s: s.metric):
@@ -201,7 +202,7 @@ def headlines(scores: Sequence[Score]) -> list[Score]:
         corrected = [s for s in variants if s.variant == "corrected"]
         restricted = [s for s in variants if s.variant == "restricted" and s.status == "ok"]
         unclear = corrected and corrected[0].status != "ok"
-        rate = [s for s in variants if s.variant == "rate"]
+        rate = [s for s in variants if s.variant in ("rate", "pace")]
         found += (rate + (restricted if unclear else []) + corrected + variants)[:1]
     return main_first(found, _name)
 

@@ -108,7 +108,8 @@ class Summary:
 def headline_names(table: Table) -> tuple[Name, ...]:
     """Return one variant per metric, the same for all runs; the four main scores come first.
 
-    This is ``rate`` if the metric has one, since sums over time depend on the run's length.
+    This is ``rate`` if the metric has one, since sums over time depend on the run's length, or
+    ``pace``, which has a value where people complete no trips.
     Otherwise ``corrected``, or ``restricted`` if that has more values (it handles records that end
     early), or else the first. Metrics without data are left out.
     """
@@ -233,8 +234,9 @@ def _is_asked(table: Table, name: Name) -> bool:
 
 def _headline(table: Table, names: Sequence[Name]) -> Name:
     by_variant = {variant: (metric, variant) for metric, variant in names}
-    if "rate" in by_variant:
-        return by_variant["rate"]
+    for first in ("rate", "pace"):
+        if first in by_variant:
+            return by_variant[first]
     corrected, restricted = by_variant.get("corrected"), by_variant.get("restricted")
     if corrected and restricted and _values(table, restricted) > _values(table, corrected):
         return restricted

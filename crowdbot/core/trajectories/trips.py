@@ -69,6 +69,20 @@ class Durations:
         return Durations(self.seconds[rows], self.reached[rows])
 
 
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """Time (s) and displacement (m) of a number of trips, summed up."""
+
+    trips: int
+    seconds: float
+    metres: float
+
+    @property
+    def value(self) -> float | None:
+        """Return the pace, s/m; None where there was no displacement."""
+        return self.seconds / self.metres if self.metres > DISTANCE_TOLERANCE else None
+
+
 def durations(run: Trajectories) -> Durations:
     """Return durations of all trips of a run that ends at the arrival."""
     trips = run.trips
@@ -110,6 +124,23 @@ def walked_distances(run: Trajectories, jump_speed: float) -> tuple[Array, Array
     length[known] = so_far[b, c] - so_far[a, c]
     displacement[known] = _displacement(x, y, valid, (a, b, c))
     return length, displacement
+
+
+def mean_pace(run: Trajectories, jump_speed: float, trips: Mask | None = None) -> Pace:
+    """Return the mean pace of people on their trips, finished or not: time over displacement.
+
+    The displacement of a trip is the straight distance from its first to its last sample, so that
+    a detour counts as a delay. A trip without two samples is left out.
+
+    Args:
+        trips: (K,) which trips; None: all.
+    """
+    _, straight = walked_distances(run, jump_speed)
+    first, last, column = trip_samples(run)
+    seen = (column >= 0) & (last > first)
+    seen = seen if trips is None else seen & trips
+    seconds = float((run.t[last[seen]] - run.t[first[seen]]).sum())
+    return Pace(int(seen.sum()), seconds, float(straight[seen].sum()))
 
 
 def displacement(x: Array, y: Array) -> float:

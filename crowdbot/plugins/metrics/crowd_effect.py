@@ -16,12 +16,13 @@ class EffectOnTimeSpec(MetricSpec):
 
     kind: Literal["effect_on_time"] = "effect_on_time"
     zero_tol: ZeroTol
+    jump_speed: JumpSpeed
 
 
 EFFECT_ON_TIME = declare(
     EffectOnTimeSpec,
     symbol="E_t",
-    spec_version=2,
+    spec_version=3,
     unit="1",
     better="reference",
     minimum=0.0,
@@ -29,6 +30,7 @@ EFFECT_ON_TIME = declare(
         "literal": {"better": "higher"},
         "corrected": {"self_value": 1.0},
         "restricted": {"self_value": 1.0},
+        "pace": {"self_value": 1.0},
     },
 )
 
@@ -58,15 +60,17 @@ class NeighboursTimeToGoalSpec(MetricSpec):
     kind: Literal["neighbours_time_to_goal"] = "neighbours_time_to_goal"
     neighbour_radius: NeighbourRadius
     zero_tol: ZeroTol
+    jump_speed: JumpSpeed
 
 
 NEIGHBOURS_TIME_TO_GOAL = declare(
     NeighboursTimeToGoalSpec,
     symbol="N_ttg",
+    spec_version=2,
     unit="1",
     better="lower",
     minimum=0.0,
-    variants=("literal", "corrected"),
+    variants=("literal", "corrected", "pace"),
 )
 
 

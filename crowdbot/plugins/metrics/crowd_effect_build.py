@@ -20,9 +20,11 @@ from crowdbot.plugin import (
 from crowdbot.plugin.for_metrics import (
     DISTANCE_TOLERANCE,
     Durations,
+    Pace,
     durations,
     encounter,
     inf_to_nan,
+    mean_pace,
     meets_robot,
     people,
     people_speeds,
@@ -64,7 +66,14 @@ class EffectOnTime:
         a, b = durations(alone), durations(run)
         if not len(a) or not len(b):
             return [literal, *factory.all_undefined("no_trips", factory.variants[1:])]
-        return [literal, mean_ratio(factory, a, b, self.spec.zero_tol), self._restricted(a, b)]
+        mean = mean_ratio(factory, a, b, self.spec.zero_tol)
+        paces = (mean_pace(each, self.spec.jump_speed) for each in (alone, run))
+        return [
+            literal,
+            mean,
+            self._restricted(a, b),
+            pace_ratio(factory, *paces, self.spec.zero_tol),
+        ]
 
     def _restricted(self, alone: Durations, crowded: Durations) -> Score:
         """Score the ratio of both means, restricted to the time up to which both are known."""
@@ -94,9 +103,11 @@ class NeighboursTimeToGoal:
         if not met.any():
             return factory.all_undefined("no_neighbours")
         both = everybody.select(met), everybody
+        paces = (mean_pace(run, self.spec.jump_speed, trips) for trips in (met, None))
         return [
             completed_ratio(factory, *both, self.spec.zero_tol),
             mean_ratio(factory, *both, self.spec.zero_tol),
+            pace_ratio(factory, *paces, self.spec.zero_tol),
         ]
 
 
@@ -228,6 +239,21 @@ def mean_ratio(factory: ScoreFactory, above: Durations, below: Durations, zero_t
         upper=bound if not above.open_ended else None,
         extras=extras,
     )
+
+
+def pace_ratio(factory: ScoreFactory, above: Pace, below: Pace, zero_tol: float) -> Score:
+    """Score the ratio of mean paces of all trips, finished or not (``pace``)."""
+    if not above.trips or not below.trips:
+        return factory.undefined("pace", "no_trips")
+    if above.value is None or below.value is None:
+        return factory.undefined("pace", "no_movement")
+    extras = {
+        "numerator": above.value,
+        "denominator": below.value,
+        "trips_numerator": float(above.trips),
+        "trips_denominator": float(below.trips),
+    }
+    return factory.ratio("pace", above.value, below.value, zero_tol, extras)
 
 
 def pooled_mean(speed: Array, weights: Array) -> float | None:

@@ -54,7 +54,9 @@ def test_all_complete() -> None:  # e04
         "literal": pytest.approx(0.8),
         "corrected": pytest.approx(0.8),
         "restricted": pytest.approx(225 / 265),
+        "pace": None,
     }
+    assert found["pace"].reason == "no_movement"
     assert found["restricted"].extras["tau"] == 45
 
 
@@ -73,7 +75,47 @@ def test_completions_come_before_censorings_at_ties() -> None:
 
 def test_itself() -> None:  # a02
     run = lasting(30, 12, 15, 18)
-    assert set(values(effect(run, dataclasses.replace(run, robot=None))).values()) == {1.0}
+    found = values(effect(run, dataclasses.replace(run, robot=None)))
+    assert set(found.values()) == {1.0, None}
+
+
+def walking(*speeds: float, robot: bool = True) -> Trajectories:
+    """People who walk along x for 20 s, each at a steady speed, and complete no trip."""
+    t = grid(20)
+    crowd = [line(t, (0.0, float(i)), (v, 0)) for i, v in enumerate(speeds)]
+    rows = [(i, 0.0, 20.0, False) for i in range(len(speeds))]
+    return scene(t, line(t, (0, 0), (1, 0)) if robot else None, crowd, **trips(*rows))
+
+
+def test_pace_needs_no_completed_trip() -> None:
+    found = effect(walking(1.0, 0.5, 1.2), walking(1.0, 1.0, 1.2, robot=False))
+    assert found["literal"].reason == "no_completed_trips"
+    assert (found["corrected"].status, found["corrected"].value) == ("censored", None)
+    assert value_of(found, "pace") == pytest.approx(2.7 / 3.2)
+    assert found["pace"].extras["denominator"] == pytest.approx(3.0 / 2.7)
+    run = walking(1.0, 0.5, 1.2)
+    assert value_of(effect(run, dataclasses.replace(run, robot=None)), "pace") == 1.0
+
+
+def test_pace_counts_a_detour_as_a_delay() -> None:
+    t = grid(20)
+    rows = trips((0, 0.0, 20.0, False))
+    there_and_back = line(t, (0.0, 5.0), (1, 0))
+    back = np.where(t > 15, 30.0 - t, t)
+    detour = dataclasses.replace(there_and_back, x=back)
+    run = scene(t, line(t, (0, 0), (1, 0)), [detour], **rows)
+    alone = scene(t, None, [there_and_back], **rows)
+    assert value_of(effect(run, alone), "pace") == pytest.approx(10 / 20)
+
+
+def test_pace_of_neighbours() -> None:
+    t = grid(20)
+    crowd = [line(t, (0.0, 1.0), (0.5, 0)), line(t, (0.0, 50.0), (1.0, 0))]
+    rows = trips((0, 0.0, 20.0, False), (1, 0.0, 20.0, False))
+    run = scene(t, line(t, (0, 0), (0.5, 0)), crowd, **rows)
+    found = scores_of("neighbours_time_to_goal", run, None, None)
+    assert found["literal"].reason == "no_completed_trips"
+    assert value_of(found, "pace") == pytest.approx(2.0 / (40 / 30))
 
 
 def test_a_longer_calibration() -> None:  # j02
@@ -133,7 +175,9 @@ def test_reasons_of_time() -> None:
     assert found["corrected"].status == "censored"
     assert found["restricted"].status == "ok"
     at_once = journeys(10, (0, 3, 3, True))
-    assert why(effect(at_once, run)) == {("undefined", "zero_denominator")}
+    found = effect(at_once, run)
+    assert found.pop("pace").reason == "no_trips"
+    assert why(found) == {("undefined", "zero_denominator")}
 
 
 # -------------------------------------------------------------------- neighbours
@@ -149,7 +193,7 @@ def f01() -> Trajectories:
 
 def test_neighbours() -> None:  # f01
     found = scores_of("neighbours_time_to_goal", f01())
-    assert values(found) == {v: pytest.approx(10 / 7.5) for v in ("literal", "corrected")}
+    assert values(found) == {v: pytest.approx(10 / 7.5) for v in ("literal", "corrected", "pace")}
     found = scores_of("neighbours_velocity", f01())
     assert value_of(found, "literal") == pytest.approx(0.5 / ((0.5 * 202 + 102) / 304))
     assert value_of(found) == pytest.approx(0.5 / ((0.5 * 20 + 10.1) / 30.1))
@@ -166,7 +210,11 @@ def test_three_metres_count(distance: float, near: bool) -> None:  # f02
     time = scores_of("neighbours_time_to_goal", at(distance))
     speed = scores_of("neighbours_velocity", at(distance))
     if near:
-        assert values(time) == {v: pytest.approx(6 / 8) for v in time}
+        assert values(time) == {
+            "literal": pytest.approx(6 / 8),
+            "corrected": pytest.approx(6 / 8),
+            "pace": pytest.approx(1 / (16 / 11)),
+        }
         assert values(speed) == {v: pytest.approx(1 / 0.75) for v in speed}
     else:
         assert why(time) == why(speed) == {("undefined", "no_neighbours")}
@@ -183,7 +231,8 @@ def test_a_single_neighbour_is_the_crowd() -> None:  # b06, b02
     for agent in (line(t, (2, 0), (1, 0)), line(t, (10, 1), (-1, 0))):
         run = scene(t, line(t, (0, 0), (1, 0)), [agent], **trips((0, 0, 10, True)))
         for metric in ("neighbours_time_to_goal", "neighbours_velocity"):
-            assert [*values(scores_of(metric, run)).values()] == pytest.approx([1.0, 1.0])
+            found = [*values(scores_of(metric, run)).values()]
+            assert found == pytest.approx([1.0] * len(found))
 
 
 def test_only_meetings_inside_the_trip_count() -> None:
