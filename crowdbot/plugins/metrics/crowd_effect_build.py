@@ -67,7 +67,7 @@ class EffectOnTime:
         if not len(a) or not len(b):
             return [literal, *factory.all_undefined("no_trips", factory.variants[1:])]
         mean = mean_ratio(factory, a, b, self.spec.zero_tol)
-        paces = (mean_pace(each, self.spec.jump_speed) for each in (alone, run))
+        paces = mean_pace(alone, self.spec.jump_speed), mean_pace(run, self.spec.jump_speed)
         return [
             literal,
             mean,
@@ -103,7 +103,8 @@ class NeighboursTimeToGoal:
         if not met.any():
             return factory.all_undefined("no_neighbours")
         both = everybody.select(met), everybody
-        paces = (mean_pace(run, self.spec.jump_speed, trips) for trips in (met, None))
+        jump = self.spec.jump_speed
+        paces = mean_pace(run, jump, met), mean_pace(run, jump)
         return [
             completed_ratio(factory, *both, self.spec.zero_tol),
             mean_ratio(factory, *both, self.spec.zero_tol),
