@@ -117,6 +117,7 @@ def simulate(
     metrics: str | Sequence[str] = "*",
     replay: bool = True,
     step_budget: float | None = None,
+    duration: float | None = None,
     in_process: bool | None = None,
     planner_memory: float | None = 4.0,
     progress: Callable[[Progress], None] | None = None,
@@ -141,6 +142,7 @@ def simulate(
         metrics: one or several globs over metric names.
         replay: True to write the replay page.
         step_budget: largest wall time of a planner step, s; None: unlimited.
+        duration: of a scenario without a robot, whose people walk alone, s; None: 60.
         in_process: True: run the planner in this process, visible to a debugger but not isolated;
             None: only crowdbot's own planners, all others in separate processes.
         planner_memory: largest address space of its process, GiB; None: unlimited.
@@ -148,7 +150,7 @@ def simulate(
         stop: called several times per simulated second; True ends the run.
 
     Raises:
-        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or the
+        InputError: there is neither robot nor people; planner, folder or an option is wrong, or the
             suite's lock is out of date.
         UnknownNameError: no metric matches a pattern.
         PlannerHungError: a planner step never returned; a ``.partial`` directory is left.
@@ -176,6 +178,7 @@ def simulate(
             force=force,
             metrics=_patterns(metrics),
             step_budget=step_budget,
+            duration=duration,
             place=PlannerPlace(in_process=in_process, memory=_bytes(planner_memory)),
         ),
         progress=progress,

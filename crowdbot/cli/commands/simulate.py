@@ -58,6 +58,10 @@ def simulate(
         float | None,
         typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),
     ] = None,
+    duration: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="Of people alone, without a robot; default 60."),
+    ] = None,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,
     meshcat: MeshcatPort = None,
@@ -65,7 +69,7 @@ def simulate(
     no_plugins: NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
-    """Simulate one scenario with one planner; record, score and replay it.
+    """Simulate one scenario with one planner, or its people alone; record, score and replay it.
 
     Example: crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
 
@@ -82,11 +86,14 @@ def simulate(
     from crowdbot.core.runs.run_options import RunOptions
     from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
+    from crowdbot.errors import UsageError
 
     with stdout_to_stderr():
         registry = installed(plugin, no_plugins)
         expansion = open_spec(spec, registry, overrides or ())
         chosen = pick(expansion, scenario)
+        if planner and not chosen.robots:
+            raise UsageError(f"--planner {planner[0]}: {chosen.id} has no robot to drive")
         simulate_it = import_simulate()
         watchers = meshcat_view(meshcat)
         with interruptible() as stop, show_progress() as progress:
@@ -104,6 +111,7 @@ def simulate(
                     force=force,
                     metrics=expansion.metrics,
                     step_budget=step_budget,
+                    duration=duration,
                     place=planner_place(in_process, planner_memory),
                 ),
                 progress=progress,

@@ -120,7 +120,11 @@ def _print_result(run: Run, *, as_json: bool) -> None:
     from rich.console import Console
 
     console = Console()
-    console.print(scores_table(headlines([r.score for r in rows])))
+    shown = headlines([r.score for r in rows])
+    if run.record.people_alone:  # nothing about a robot has a value
+        shown = [score for score in shown if score.status == "ok"]
+    if shown:
+        console.print(scores_table(shown))
     console.print(_summary(run), highlight=False)
     console.print(f"all variants: {run.directory / SCORES}", soft_wrap=True, highlight=False)
     console.print(f"replay: {run.directory / REPLAY}", soft_wrap=True, highlight=False)
@@ -132,6 +136,8 @@ def _summary(run: Run) -> str:
     record = run.record
     when = record.goal_time or record.sim_time
     ending = record.status.sentence.format(t=when)
+    if record.people_alone:
+        ending = f"people walked alone for {record.sim_time:.1f} s"
     speed = f"{record.real_time_factor:.1f} times real time"
     note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
     who = f"{record.scenario} · {record.planner.name} · seed {record.seed}"

@@ -111,6 +111,22 @@ class PlannerChoice:
         return IN_PROCESS if self.in_process else OWN
 
 
+def _nothing_to_drive() -> Planner:
+    raise AssertionError("a run of people alone has no planner")
+
+
+#: The choice of runs without a robot.
+NO_ROBOT = PlannerChoice(
+    name="no_robot",
+    spec_dump={"kind": "no_robot"},
+    build=_nothing_to_drive,
+    pinned=True,
+    needs=(),
+    label="no_robot",
+    role="floor",
+)
+
+
 def label_of(name: str, parameters: Mapping[str, Any], privileged: bool) -> str:
     """Return the name of a planner's folder.
 

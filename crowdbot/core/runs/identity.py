@@ -16,7 +16,7 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import IdentityHashes, PlannerPart, PluginPart
 from crowdbot.core.runs.run import Request
-from crowdbot.core.runs.run_options import Recorded
+from crowdbot.core.runs.run_options import PEOPLE_ALONE, Recorded
 from crowdbot.core.runs.run_record import (
     ReferenceIdentity,
     ReferenceRecord,
@@ -107,6 +107,7 @@ def prepare(
     *,
     references: bool = True,
     populate: Populate = population,
+    people_alone: bool = False,
 ) -> Prepared:
     """Find the people of a scenario and of its calibration runs.
 
@@ -115,15 +116,18 @@ def prepare(
         registry: the installed components.
         references: False omits the calibration runs.
         populate: function that finds people; a caller with many scenarios can cache them.
+        people_alone: True if a scenario without a robot is fine.
 
     Raises:
         InputError: it has no robot, one of several has no name for topics, or its lock is out of
             date.
     """
-    if not scenario.robots:
+    if not scenario.robots and scenario.crowd is None:
+        raise InputError(f"scenario '{scenario.id}' has neither a robot nor people")
+    if not scenario.robots and not people_alone:
         raise InputError(
             f"scenario '{scenario.id}' has no robot to drive; "
-            "`crowdbot docs simulate_a_crowd` shows how to let people walk alone"
+            "`crowdbot simulate` lets its people walk alone"
         )
     for name in scenario.robots if len(scenario.robots) > 1 else ():
         if not _ROS_NAME.fullmatch(name):
@@ -137,7 +141,8 @@ def prepare(
         return Trial(scenario=of, people=people, spec=spec, realisation=people.hash)
 
     run = trial(scenario, populate(scenario, registry))
-    if not references or scenario.crowd is None:  # without people a run is its own reference
+    compared = references and bool(scenario.robots)
+    if not compared or scenario.crowd is None:  # without people a run is its own reference
         return Prepared(run=run, alone=None, crowd=None)
     alone = scenario.references.get(ROBOT_ALONE) or scenario.model_copy(update={"crowd": None})
     crowd = scenario.references.get(CROWD_ALONE) or scenario.model_copy(update={"robots": {}})
@@ -194,6 +199,8 @@ def _budget(request: Request) -> dict[str, Any]:
         found["step_budget"] = request.options.step_budget
     if not request.choice.in_process and request.choice.memory != MEMORY:
         found["planner_memory"] = request.choice.memory
+    if not request.scenario.robots:
+        found["duration"] = request.options.duration or PEOPLE_ALONE
     return found
 
 

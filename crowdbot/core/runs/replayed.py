@@ -150,7 +150,7 @@ def shown_run(
         scans=seen[last].scans,
         images=images,
         scores=scores,
-        look=looks[last],
+        look=looks.get(last, ()),
         robot=last,
         others=[
             OtherTrack(
@@ -162,8 +162,15 @@ def shown_run(
             for name, one in seen.items()
             if name != last
         ],
-        scenery=scenery(parts, max(model.height for model in models.values())),
+        scenery=scenery(parts, _height(scenario, models)),
     )
+
+
+def _height(scenario: Scenario, models: Mapping[str, RobotModel]) -> float:
+    """Return the height of the highest robot; without one, of people, m."""
+    if not models:
+        return 0.0 if scenario.crowd is None else scenario.crowd.body.height
+    return max(model.height for model in models.values())
 
 
 def _replayed(folder: Path, record: RunRecord, label: str, registry: Registry) -> ShownRun:
@@ -171,7 +178,7 @@ def _replayed(folder: Path, record: RunRecord, label: str, registry: Registry) -
     images = images_of_replay(recording)
     shown = shown_run(
         scenario,
-        read_robots(recording, tuple(scenario.robots), REPLAY_RATE, images),
+        read_robots(recording, tuple(scenario.robots) or ("",), REPLAY_RATE, images),
         {name: build_robot(registry, robot) for name, robot in scenario.robots.items()},
         build_environment(registry, scenario.environment),
         record,

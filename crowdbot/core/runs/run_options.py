@@ -11,6 +11,8 @@ from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.support.arguments import number_of
 from crowdbot.errors import InputError
 
+#: Duration of a run of people alone where none is given, and the longest one, s.
+PEOPLE_ALONE, _LONGEST = 60.0, 24.0 * 3600.0
 #: What is recorded, most first: what a run has holds all that the levels after it ask for.
 Recorded = Literal["all", "used", "none"]
 
@@ -27,6 +29,8 @@ class RunOptions:
         retry_failed: make a complete run again whose planner failed.
         metrics: patterns of the metrics to score; None is all.
         step_budget: wall time that a planner step may take, s; None sets no limit.
+        duration: of a run of people alone, s; None: `PEOPLE_ALONE`. Runs with robots end by their
+            tasks.
         place: where the planner runs, and what its process may take.
 
     Raises:
@@ -40,12 +44,16 @@ class RunOptions:
     retry_failed: bool = False
     metrics: Sequence[str] | None = None
     step_budget: float | None = None
+    duration: float | None = None
     place: PlannerPlace = ANYWHERE
 
     def __post_init__(self) -> None:
         if self.record not in get_args(Recorded):
             choices = " or ".join(map(repr, get_args(Recorded)))
             raise InputError(f"record must be {choices}, not {self.record!r}")
+        length = self.duration
+        if length is not None and not 0.0 < number_of("duration", length) <= _LONGEST:
+            raise InputError(f"duration {length:g} s must be above 0, at most {_LONGEST:g} s")
         budget = self.step_budget
         if budget is not None and not 0.0 < number_of("step_budget", budget) < STEP_LIMIT:
             raise InputError(

@@ -37,6 +37,7 @@ class RunIdentity(RecordPart):
     Attributes:
         step_budget: s, where one was given.
         planner_memory: bytes or None, where it is not the usual.
+        duration: s, in a run of people alone.
     """
 
     scenario: Identity[str]
@@ -44,6 +45,7 @@ class RunIdentity(RecordPart):
     planner: Identity[PlannerPart]
     step_budget: Identity[int | float | None] = None
     planner_memory: Identity[int | None] = None
+    duration: Identity[int | float] = 0.0
     seed: Identity[Count]
     hashes: Identity[IdentityHashes]
     versions: Identity[dict[str, str]]
@@ -132,6 +134,11 @@ class RunRecord(_Record, RunIdentity):
     def knows_truth(self) -> bool:
         """True if the planner gets information that no sensor can provide."""
         return self.privileged or self.planner.label.endswith("+privileged")
+
+    @property
+    def people_alone(self) -> bool:
+        """True if the scenario has no robot."""
+        return bool(self.duration)
 
     @property
     def trusted(self) -> bool:

@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from crowdbot.core.crowd.compile_ahead import crowd_compiled_ahead
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.planning.choice import NO_ROBOT
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.recording.reading.images import ImageCollector, ReplayImages
 from crowdbot.core.recording.reading.scans import REPLAY_RATE
@@ -44,19 +46,22 @@ from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.preflight import preflight
 from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
-from crowdbot.core.sim.run_setup import RunSetup
+from crowdbot.core.sim.run_setup import RunSetup, record_crowd
 from crowdbot.core.support.arguments import expect, expect_function, whole_number_of
+from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.suite_entry import IN_NO_SUITE, SuiteEntry
 from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import InputError
+
+_USUAL_PLANNER = "dwa"
 
 
 def simulate(
     scenario: Scenario,
     registry: Registry,
     *,
-    planner: GivenPlanner = "dwa",
+    planner: GivenPlanner = _USUAL_PLANNER,
     planner_settings: Sequence[str] | Mapping[str, object] = (),
     seed: int = 0,
     out: Path | None = None,
@@ -70,7 +75,7 @@ def simulate(
     """Simulate and score one run; a complete run with the same hashes is reused.
 
     Args:
-        scenario: from an expanded suite.
+        scenario: from an expanded suite; without a robot, its people walk alone.
         registry: the installed components.
         planner, planner_settings: arguments of `choose_planner`; runs of an object or function are
             never reused.
@@ -81,8 +86,8 @@ def simulate(
         progress, stop, on_hang, watchers: as in `Request`.
 
     Raises:
-        InputError: the scenario has no robot, the planner, the folder or an option is wrong, or the
-            suite's lock is out of date.
+        InputError: the scenario has neither robot nor people, or no robot for a planner; planner,
+            folder or an option is wrong, or the suite's lock is out of date.
         UnknownNameError: no metric matches a pattern.
         PlannerHungError: a step of a planner in this process never returned; a ``.partial``
             directory is left.
@@ -91,7 +96,12 @@ def simulate(
     seed = whole_number_of("seed", seed)
     _check_suite(entry.suite)
     _check_callbacks(progress, stop)
-    choice = choose_planner(planner, registry, planner_settings, options.place)
+    if scenario.robots:
+        _check_duration(scenario, options)
+        choice = choose_planner(planner, registry, planner_settings, options.place)
+    else:
+        _check_people_alone(scenario, planner, planner_settings, watchers)
+        choice = NO_ROBOT
     if options.metrics is not None:
         metric_specs(registry, options.metrics, {})  # a wrong name ends the run before it begins
     keep = None
@@ -112,7 +122,31 @@ def simulate(
         watchers=watchers,
     )
     with crowd_compiled_ahead() if scenario.crowd else nullcontext():
-        return make_run(request, prepare(scenario, registry, references=options.references), keep)
+        prepared = prepare(scenario, registry, references=options.references, people_alone=True)
+        return make_run(request, prepared, keep)
+
+
+def _check_duration(scenario: Scenario, options: RunOptions) -> None:
+    """Refuse a duration of a run that its tasks end."""
+    if options.duration is not None:
+        raise InputError(
+            f"{scenario.id} has a robot, whose task ends the run; a duration is for people alone. "
+            "Change robots.NAME.task.time_limit instead"
+        )
+
+
+def _check_people_alone(
+    scenario: Scenario, planner: object, settings: object, watchers: Sequence[Watcher]
+) -> None:
+    """Refuse what needs a robot where there is none.
+
+    Raises:
+        InputError: there is a planner other than the default one, settings for it, or a watcher.
+    """
+    if planner != _USUAL_PLANNER or settings:
+        raise InputError(f"{scenario.id} has no robot, so there is nothing for a planner to drive")
+    if watchers:
+        raise InputError(f"{scenario.id} has no robot; live views show runs of robots")
 
 
 def _check_callbacks(progress: object, stop: object) -> None:
@@ -151,7 +185,8 @@ def make_run(
         keep: object kept alive with the result.
         builts: result of `preflight` for the request, if the caller has it; not reusable.
     """
-    builts = preflight(request) if builts is None else builts
+    if builts is None:
+        builts = preflight(request) if request.scenario.robots else {}
     identity = run_identity(request, prepared.run)
     references = references_of(request, prepared)
     if not request.options.force:
@@ -174,17 +209,19 @@ def _record_run(
     references: Mapping[str, Path],
 ) -> RunRecord:
     final = request.directory
-    parts = next(iter(builts.values())).parts
+    parts = _parts(request, builts)
     with partial(final) as folder:
-        outcome = record_robots(_setup(request, prepared, folder, identity), builts)
+        setup = _setup(request, prepared, folder, identity)
+        outcome = record_robots(setup, builts) if builts else record_crowd(setup, identity.duration)
         check_interrupted(outcome, folder)
         images = _images(request, builts, folder / files.RECORDING)
-        seen = read_robots(folder / files.RECORDING, tuple(builts), REPLAY_RATE, images)
+        names = tuple(builts) or ("",)
+        seen = read_robots(folder / files.RECORDING, names, REPLAY_RATE, images)
         runs = {name: one.run for name, one in seen.items()}
         scores = score_robots(
             request.registry,
             runs,
-            references_by_robot(references, tuple(builts)),
+            references_by_robot(references, names),
             metrics="*" if request.options.metrics is None else request.options.metrics,
         )
         people = prepared.run.people
@@ -195,6 +232,13 @@ def _record_run(
         record = _write_files(request, builts, folder, seen, shown, scores, record)
         files.publish(folder, final)
     return record
+
+
+def _parts(request: Request, builts: Mapping[str, BuiltRun]) -> EnvironmentParts:
+    """Return the environment of the robots, or of people alone."""
+    if builts:
+        return next(iter(builts.values())).parts
+    return build_environment(request.registry, request.scenario.environment)
 
 
 def _images(
@@ -241,7 +285,7 @@ def _write_replay(
         request.scenario,
         seen,
         {name: built.model for name, built in builts.items()},
-        next(iter(builts.values())).parts,
+        _parts(request, builts),
         record,
         scores,
         images,
