@@ -80,8 +80,8 @@ def _compared(contents: Contents) -> list[str]:
     main = any(is_main(s.metric, s.variant) for s in summary.scores)
     family = "the four scores" if main else "the scores"
     said = [
-        "Planners were compared in pairs of the same scenario and seed by Wilcoxon signed-rank "
-        "tests in which the signs of whole crowd draws are exchanged; Holm's correction over the "
+        "Means were compared in pairs of the same scenario and seed by sign-flip tests, which "
+        "exchange the signs of whole crowd draws; Holm's correction over the "
         f"{plural(summary.tests, 'test')} of {family} keeps the chance of any false verdict "
         f"among them at {100 * summary.alpha:g} %. A run in which the planner failed counts as "
         "worse than any other."

@@ -169,7 +169,8 @@ def _unpaired(runs: Sequence[RunRow]) -> Iterator[Finding]:
     if alone:
         paired = [r.directory or r.run_id for g in by_place.values() for r in g
                   if len({x.planner for x in g}) == len(planners)]  # fmt: skip
-        values = {"all planners": tuple(paired)} | {f"only {k}": tuple(v) for k, v in alone.items()}
+        values = {"all planners": tuple(paired)} if paired else {}
+        values |= {f"only {k}": tuple(v) for k, v in alone.items()}
         yield Finding(
             kind="unpaired", severity=KINDS["unpaired"][0], subject="scenarios and seeds",
             values=values,

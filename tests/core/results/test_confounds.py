@@ -111,6 +111,8 @@ def test_many_findings_are_told_in_part() -> None:
 def test_runs_without_a_partner_are_told() -> None:
     text = found(row("a"), row("b"), row("a", "s1"))["unpaired"]
     assert "only a in 1 run (suite/s1/a/seed-0)" in text
+    text = found(row("a"), row("b", "s1"))["unpaired"]
+    assert "all planners" not in text, "no run is shared"
 
 
 def test_a_ceiling_may_know_what_others_sense() -> None:
