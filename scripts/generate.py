@@ -31,6 +31,7 @@ from scripts import (  # noqa: E402
     write_reference,
     write_schemas,
 )
+from scripts.fault_cases import draw as fault_cases  # noqa: E402
 
 Texts = dict[Path, str]
 
@@ -59,6 +60,7 @@ GENERATED: dict[str, Callable[[], Texts]] = {
     "metrics by category": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
     "gallery of metrics": make_metric_pictures.pages,
     "endings": _endings,
+    "cases of fault": fault_cases.files,
     "rooms": _rooms,
     "robots from above": draw_robots.pictures,
 }

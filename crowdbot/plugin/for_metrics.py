@@ -18,6 +18,8 @@ from crowdbot.core.trajectories.encounters import (
     touching,
 )
 from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run, own_legs
+from crowdbot.core.trajectories.fault.at_fault import at_fault
+from crowdbot.core.trajectories.fault.braking import FaultRule
 from crowdbot.core.trajectories.footprint_of_run import footprint_of
 from crowdbot.core.trajectories.headway import share_below
 from crowdbot.core.trajectories.paired_people import (
@@ -26,7 +28,7 @@ from crowdbot.core.trajectories.paired_people import (
     meeting_effects,
     whole_effects,
 )
-from crowdbot.core.trajectories.person_contacts import PersonContacts, at_fault, person_contacts
+from crowdbot.core.trajectories.person_contacts import PersonContacts, person_contacts
 from crowdbot.core.trajectories.preprocess import (
     heading_changes,
     inf_to_nan,
@@ -37,7 +39,6 @@ from crowdbot.core.trajectories.preprocess import (
     valid_robot_steps,
     wrap,
 )
-from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.core.trajectories.questionnaires import TLX_SCALES, USE_ITEMS, Answer
 from crowdbot.core.trajectories.trips import (
     DISTANCE_TOLERANCE,

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.trajectories.encounters import (
+    Contacts,
     encounter,
     onsets,
     people,
@@ -19,10 +20,10 @@ from crowdbot.core.trajectories.encounters import (
     robot_of,
     robot_velocities,
 )
+from crowdbot.core.trajectories.fault.touch_point import touch_point
 from crowdbot.core.trajectories.preprocess import TIME_TOLERANCE, inf_to_nan
-from crowdbot.core.trajectories.proper_response import FaultRule, braked_in_time
 from crowdbot.core.trajectories.trajectories import ContactEvents, Trajectories
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.types.arrays import Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,14 +32,16 @@ class PersonContacts:
 
     Attributes:
         time: onset, s.
+        end: when it ends, s.
         agent: column of the person; -1: not in the table of people.
         sample: last sample before or at the onset.
         speed: relative speed before, m/s; NaN: unknown.
-        closing: speed of the robot towards the person before, m/s; NaN: unknown.
+        closing: speed of the robot's touching point towards the person before, m/s; NaN: unknown.
         recorded: True if they are from the table.
     """
 
     time: Array
+    end: Array
     agent: NDArray[np.int64]
     sample: NDArray[np.int64]
     speed: Array
@@ -48,21 +51,6 @@ class PersonContacts:
     def __len__(self) -> int:
         """Return the number of contacts."""
         return len(self.time)
-
-
-def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
-    """Return a mask of contacts (K,) into which the robot moved although it could have braked.
-
-    If the direction or the person is unknown, a moving robot is at fault.
-
-    Args:
-        run: the run of ``found``.
-        found: from `person_contacts`.
-        rule: the fault rule.
-        jump_speed: speed that detects teleports if none were recorded, m/s.
-    """
-    braked = braked_in_time(run, rule, found.time, found.sample, found.agent, jump_speed)
-    return ~(found.closing <= rule.speed) & ~braked
 
 
 def person_contacts(
@@ -90,12 +78,25 @@ def _contacts(
     unknown = np.full(len(found.time), np.nan)
     return PersonContacts(
         time=found.time,
+        end=_ends(run, found, jump_speed, release_gap),
         agent=found.agent,
         sample=found.sample,
         speed=speed,
         closing=_closing(run, found.time, found.agent, found.sample, unknown, jump_speed),
         recorded=False,
     )
+
+
+def _ends(run: Trajectories, found: Contacts, jump_speed: float, release_gap: float) -> Array:
+    """Return the last sample times (K,) at which the surfaces are not yet apart, s."""
+    pair = encounter(run, jump_speed)
+    ends = found.time.copy()
+    for k, (sample, agent) in enumerate(zip(found.sample, found.agent, strict=True)):
+        near = pair.gap[sample + 1 :, agent] <= release_gap
+        near[1:] &= pair.valid[sample + 1 :, agent]
+        lasts = len(near) if near.all() else int(near.argmin())
+        ends[k] = max(ends[k], run.t[sample + lasts])
+    return ends
 
 
 def _recorded(run: Trajectories, table: ContactEvents, jump_speed: float) -> PersonContacts:
@@ -111,6 +112,7 @@ def _recorded(run: Trajectories, table: ContactEvents, jump_speed: float) -> Per
     sample = np.clip(before, 0, len(run.t) - 1)
     return PersonContacts(
         time=time,
+        end=table.t1[rows],
         agent=column,
         sample=sample,
         speed=table.relative_speed[rows],
@@ -133,12 +135,34 @@ def _closing(
     """
     if not len(time):
         return np.empty(0)
+    if encounter(run, jump_speed).footprint is not None:
+        return _closing_of_outline(run, agent, sample, bearing, jump_speed)
     vx, vy = (v[sample] for v in robot_velocities(run, jump_speed))
     told = inf_to_nan(robot_of(run).theta)[sample] + bearing
     towards = _direction_of(run, time, agent, sample, jump_speed)
     angle = np.where(np.isfinite(told), told, towards)
     stands = np.hypot(vx, vy) == 0.0
     return np.where(stands, 0.0, vx * np.cos(angle) + vy * np.sin(angle))
+
+
+def _closing_of_outline(
+    run: Trajectories,
+    agent: NDArray[np.int64],
+    sample: NDArray[np.int64],
+    bearing: Array,
+    jump_speed: float,
+) -> Array:
+    """As `_closing`, of a robot with a footprint: by the point nearest to the person.
+
+    The bearing counts only if the person is not in the table of people.
+    """
+    known = agent >= 0
+    found = np.full(len(sample), np.nan)
+    found[known] = touch_point(run, sample[known], agent[known], jump_speed).closing
+    vx, vy = (v[sample] for v in robot_velocities(run, jump_speed))
+    angle = inf_to_nan(robot_of(run).theta)[sample] + bearing
+    told = np.where(np.hypot(vx, vy) == 0.0, 0.0, vx * np.cos(angle) + vy * np.sin(angle))
+    return np.where(known & np.isfinite(found), found, told)
 
 
 def _direction_of(

@@ -7,9 +7,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from crowdbot.core.trajectories.encounters import encounter
-from crowdbot.core.trajectories.person_contacts import at_fault, person_contacts
+from crowdbot.core.trajectories.fault.at_fault import at_fault
+from crowdbot.core.trajectories.fault.braking import FaultRule
+from crowdbot.core.trajectories.person_contacts import person_contacts
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival
-from crowdbot.core.trajectories.proper_response import FaultRule
 from crowdbot.core.trajectories.trajectories import Trajectories
 
 #: Defaults of the metric ``contacts_at_fault``; m, m, m/s. The tolerance of its speed covers

@@ -45,7 +45,7 @@ class SafeEfficiencySpec(MetricSpec):
 SAFE_EFFICIENCY = declare(
     SafeEfficiencySpec,
     symbol="E_s",
-    spec_version=2,
+    spec_version=3,
     unit="1",
     better="higher",
     minimum=0.0,

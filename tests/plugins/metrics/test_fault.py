@@ -214,9 +214,10 @@ def meet(robot: Body, person: Body) -> tuple[float, float]:
 
 def test_who_is_shoved_into_the_robot_at_once_is_not_its_fault() -> None:
     """0.5 m at 2.5 m/s is a fifth of a second: less than anybody needs to react."""
-    straight_on = line(T, (0, 0), (0.5, 0))
-    assert meet(straight_on, beside(4.0, 2.5)) == (0, 1)
-    assert meet(straight_on, beside(4.0, 0.5)) == (1, 0)  # a second is time enough
+    brakes, straight_on = moving(np.clip(0.5 - (T - 4.3), 0.0, 0.5)), line(T, (0, 0), (0.5, 0))
+    assert meet(brakes, beside(4.0, 2.5)) == (0, 1)
+    assert meet(straight_on, beside(4.0, 2.5)) == (1, 0)  # it pushes on
+    assert meet(brakes, beside(3.0, 0.5)) == (1, 0)  # a second is time enough
 
 
 def test_who_brakes_when_it_is_foreseeable_is_not_at_fault() -> None:

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core.trajectories.encounters import (
     encounter,
+    people_velocities,
     relative_velocity,
     robot_velocities,
     time_to_contact,
 )
+from crowdbot.core.trajectories.fault.touch_point import touch_point
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 
@@ -73,9 +75,33 @@ def braked_in_time(
     ahead = run.cached(
         ("foreseen", rule.margin, jump_speed), lambda: _foreseen(run, rule.margin, jump_speed)
     )
+    turns = encounter(run, jump_speed).footprint is not None
     for k in np.flatnonzero((agent >= 0) & shown):
-        found[k] = _braked(run.t, speed, ahead[:, agent[k]], onset[k], int(sample[k]), rule)
+        own, soon = speed, ahead[:, agent[k]]
+        if turns:
+            own, soon = _turning(run, own, soon, int(agent[k]), int(sample[k]), jump_speed)
+        found[k] = _braked(run.t, own, soon, onset[k], int(sample[k]), rule)
     return found
+
+
+def _turning(
+    run: Trajectories, speed: Array, ahead: Array, agent: int, last: int, jump_speed: float
+) -> tuple[Array, Array]:
+    """Return speed (N,) and time to contact (N,) of the point that is nearest to a person.
+
+    A long robot that turns comes nearer although its centre may stand. Samples after ``last`` are
+    those of the centre.
+    """
+    sample = np.arange(last + 1)
+    there = touch_point(run, sample, np.full(last + 1, agent), jump_speed)
+    px, py = (v[: last + 1, agent] for v in people_velocities(run, jump_speed))
+    nears = there.closing - (px * there.nx + py * there.ny)
+    gap = np.maximum(encounter(run, jump_speed).gap[: last + 1, agent], 0.0)
+    soon = np.divide(gap, nears, out=np.full(last + 1, np.inf), where=nears > _STILL)
+    speed, ahead = speed.copy(), ahead.copy()
+    speed[: last + 1] = np.fmax(speed[: last + 1], there.speed)
+    ahead[: last + 1] = np.fmin(ahead[: last + 1], soon)
+    return speed, ahead
 
 
 def _foreseen(run: Trajectories, margin: float, jump_speed: float) -> Array:

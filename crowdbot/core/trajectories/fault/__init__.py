@@ -1,0 +1,1 @@
+"""Contacts of the robot with people, judged: does the robot cause them?"""

@@ -1,0 +1,1 @@
+"""Cases of the decision table of fault, and their pictures."""
