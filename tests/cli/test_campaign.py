@@ -150,6 +150,9 @@ def test_questions(
     assert [e["metric"] for e in entries[:4]] == [
         "safe_efficiency", "contacts_per_km", "push_work", "intrusion",
     ]  # fmt: skip
+    powers = json.loads(ask("power", "--out", str(whole), "--size", "0.1", "--json"))
+    assert {"planners", "condition", "deviation", "information", "runs_for_0.1"} <= powers[0].keys()
+    assert powers[0]["condition"] == "all conditions"
     file = tmp_path / "runs.parquet"
     ask("export", "--out", str(whole), "--parquet", str(file), "--table", "runs")
     import duckdb

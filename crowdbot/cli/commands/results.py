@@ -191,6 +191,37 @@ def atlas(
         typer.echo(atlas_page(entries), nl=False)
 
 
+@results.command()
+def power(
+    out: _Out = _ROOT,
+    metric: Annotated[str, typer.Option(metavar="NAME", help="The score.")] = MAIN_SCORES[0].metric,
+    variant: Annotated[str, typer.Option(metavar="NAME", help="Its variant.")] = "corrected",
+    size: Annotated[
+        list[float] | None,
+        typer.Option(metavar="X", help="A difference to find; default 0.05, 0.02; repeatable."),
+    ] = None,
+    tests: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Tests that share the chance of 5 %.")
+    ] = 1,
+    planner: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Only these planners; repeatable.")
+    ] = None,
+    altered: Altered = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_json: _Json = False,
+) -> None:
+    """Show how many runs tell a difference at 80 %, and which conditions help.
+
+    Example: crowdbot results power --runs runs --size 0.05 --planner dwa --planner stop_and_go
+    """
+    from crowdbot.cli.output.power_lines import lines_of
+    from crowdbot.core.statistics.power import SIZES
+
+    sizes = tuple(size or SIZES)
+    found = _with_scales(_only(open_results(out, altered), planner, None))
+    print_lines(lines_of(found, (metric, variant), sizes, tests), as_csv=as_csv, as_json=as_json)
+
+
 def _with_scales(found: Results) -> Results:
     """Return results with the installed metrics' scales."""
     from crowdbot.cli.shared.options import installed

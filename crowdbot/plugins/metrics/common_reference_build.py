@@ -42,7 +42,8 @@ def goal_distance(
 ) -> tuple[Array, Array] | list[Score]:
     """Return times and distances (K,), (K,) of the robot's centre to its goal, s and m; or why not.
 
-    Distances are to the goal point, or to the goal zone if there is no point.
+    Distances are to the goal zone, in which the robot arrives, or to the goal point if there is no
+    zone.
     """
     if run.robot is None:
         return factory.all_undefined("invalid_no_robot", variants)
@@ -52,10 +53,10 @@ def goal_distance(
     if not known.any():
         return factory.all_undefined("too_few_samples", variants)
     x, y = robot.x[known], robot.y[known]
-    if robot.goal is not None:
-        return run.t[known], np.hypot(x - robot.goal[0], y - robot.goal[1])
     if run.goal_zone is not None:
         return run.t[known], np.maximum(Footprint(run.goal_zone, 0.0).gap(x, y), 0.0)
+    if robot.goal is not None:
+        return run.t[known], np.hypot(x - robot.goal[0], y - robot.goal[1])
     return factory.all_undefined("invalid_no_goal", variants)
 
 
@@ -93,12 +94,8 @@ def shortest_way(
     found = goal_distance(factory, run, variants)
     if isinstance(found, list):
         return found
-    robot = robot_of(run)
-    if run.goal_zone is None:
-        return max(0.0, float(found[1][0]) - robot.goal_radius)
-    known = present(robot.x, robot.y)
-    start = robot.x[known][:1], robot.y[known][:1]
-    return max(0.0, float(Footprint(run.goal_zone, 0.0).gap(*start)[0]))
+    radius = robot_of(run).goal_radius if run.goal_zone is None else 0.0
+    return max(0.0, float(found[1][0]) - radius)
 
 
 def shortest_time(

@@ -1,0 +1,64 @@
+"""Lines of ``crowdbot results power``: each pair of planners, then its conditions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any
+
+from crowdbot.core.results.results import Results
+from crowdbot.core.statistics.power import ConditionPower, Power, power
+from crowdbot.core.statistics.table import Name, Table
+from crowdbot.errors import InputError, UnknownNameError, UsageError
+
+ALL = "all conditions"
+
+
+def lines_of(
+    results: Results, name: Name, sizes: Sequence[float], tests: int
+) -> list[dict[str, Any]]:
+    """Return a line for each pair of planners and condition.
+
+    Raises:
+        UsageError: a size is not above 0, or the score is a rate.
+        UnknownNameError: no run has this score.
+        InputError: there is no pair of planners with common runs.
+    """
+    if not all(math.isfinite(size) and size > 0.0 for size in sizes):
+        raise UsageError("--size must be above 0")
+    table = Table(results)
+    if name not in table.names:
+        known = {".".join(n) for n in table.names}
+        raise UnknownNameError("score", ".".join(name), known)
+    if table.exposure_name(name) is not None:
+        raise UsageError(f"{'.'.join(name)} is a rate; use a score of single runs")
+    pairs = combinations(table.planners, 2)
+    level = 1.0 - 0.05 / tests
+    found = [power(table, name, a, b, sizes=sizes, level=level) for a, b in pairs]
+    lines = [line for one in found if one is not None for line in _lines(one)]
+    if not lines:
+        raise InputError("no two planners were run in the same scenario and seed")
+    return lines
+
+
+def _lines(found: Power) -> Iterator[dict[str, Any]]:
+    for part in (found.whole, *found.conditions):
+        yield {"planners": f"{found.a} - {found.b}", **_line(part)}
+
+
+def _line(part: ConditionPower) -> dict[str, Any]:
+    line: dict[str, Any] = {
+        "condition": part.condition or ALL,
+        "pairs": part.pairs,
+        "draws": part.draws,
+        "difference": part.difference.value,
+        "low": part.difference.low,
+        "high": part.difference.high,
+        "p": part.p,
+        "deviation": part.deviation,
+        "variance_share": part.share,
+        "minutes": part.minutes,
+        "information": None if part.information == math.inf else part.information,
+    }
+    return line | {f"runs_for_{size:g}": runs for size, runs in part.runs.items()}
