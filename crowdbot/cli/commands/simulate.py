@@ -22,7 +22,6 @@ from crowdbot.cli.shared.run_arguments import (
     MeshcatPort,
     OutRoot,
     Overrides,
-    Record,
     RecordChoice,
     RunSeed,
     ScenarioArgument,
@@ -47,7 +46,10 @@ def simulate(
     ] = None,
     seed: RunSeed = 0,
     out: OutRoot = Path("runs"),
-    record: Record = RecordChoice.used,
+    record: Annotated[
+        RecordChoice | None,
+        typer.Option(help="Sensors to simulate and record; default: the suite's, or used."),
+    ] = None,
     references: Annotated[
         bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
     ] = True,
@@ -106,7 +108,7 @@ def simulate(
                 out=out,
                 entry=expansion.entry(chosen),
                 options=RunOptions(
-                    record=record.value,
+                    record=(expansion.record or "used") if record is None else record.value,
                     references=references,
                     force=force,
                     metrics=expansion.metrics,

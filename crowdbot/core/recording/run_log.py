@@ -71,6 +71,8 @@ class RunLog:
             _take_sample(people, self._aim, self._jumps, agents, goals, jump)
         row = None if robot is None else self._row(robot)
         self.writer.state(t, row, agents, jump, goals=goals)
+        if robot is not None:
+            self.writer.wheels(t, (robot.left_angle, robot.right_angle))
         if self._on_sample is not None:
             self._on_sample(t, row, agents)
 

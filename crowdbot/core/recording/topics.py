@@ -37,6 +37,7 @@ class Topic(StrEnum):
     DESCRIPTION = "/robot_description"
     PATH = "/robot/path"
     TF_ODOMETRY = "/tf_odometry"
+    JOINT_STATES = "/joint_states"
     PEOPLE_MARKERS = "/people_markers"
     CONTACT_MARKERS = "/contact_markers"
 

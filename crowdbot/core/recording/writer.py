@@ -22,6 +22,7 @@ import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
+from crowdbot.core.recording.joints import WheelMessages
 from crowdbot.core.recording.motion.candidates import Choosers
 from crowdbot.core.recording.motion.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.namespace import NamespacedFile
@@ -78,6 +79,7 @@ class RecordingWriter:
         choosers: Sequence[Choosers] = (),
         description: str = "",
         beside: RecordingWriter | None = None,
+        wheels: Sequence[str] = (),
     ) -> None:
         """Start the file with its header.
 
@@ -91,6 +93,8 @@ class RecordingWriter:
                 one group.
             description: the robot's URDF, omitted with ``none``.
             beside: writer of shared data to the same file; the header then has a namespace.
+            wheels: joints of the driven wheels in ``description``, left and right, if it has any;
+                recorded with ``all``.
 
         Raises:
             InputError: the path cannot be written.
@@ -127,11 +131,24 @@ class RecordingWriter:
             self._file.put(Topic.TILTS, 0, tilts, latched=True)
         for group in known:
             self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
+        self._wheels = (
+            WheelMessages(description, wheels, header.namespace)
+            if wheels and description and self._whole
+            else None
+        )
         self._tools = (
             None
             if record == "none"
             else ToolTopics(self._file, header, description, whole=self._whole)
         )
+
+    @_later
+    def wheels(self, t: float, angles: Sequence[float]) -> None:
+        """Write the angles of the driven wheels, left and right, rad."""
+        if self._wheels is not None:
+            ns = ros.nanoseconds(t)
+            self._file.put(Topic.JOINT_STATES, ns, self._wheels.states(ns, angles))
+            self._file.put(Topic.TF, ns, self._wheels.frames(ns, angles))
 
     def state(
         self,

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.context import SensorContext
+from crowdbot.core.sensing.reading_errors import ErringSensor
 from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
@@ -37,9 +38,12 @@ def build_sensor(
 
     Raises:
         PluginError: it cannot be built, or its description is invalid.
+        InputError: one of its errors is about a number that its readings do not have.
     """
     call = registry.plugin_call(spec)
-    return registry.build(spec, lambda sensor: checked_sensor(sensor, call), context, call=call)
+    sensor = registry.build(spec, lambda built: checked_sensor(built, call), context, call=call)
+    errors = [spec.errors[name] for name in sorted(spec.errors)]
+    return ErringSensor(sensor, errors) if errors else sensor
 
 
 def build_noise(registry: Registry, spec: NoiseSpec) -> NoiseGenerator:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
+from crowdbot.dsl.spec.reading_errors import ReadingError
 from crowdbot.dsl.spec.spec import ComponentSpec, Rectangle, Spec
 
 if TYPE_CHECKING:
@@ -94,6 +95,12 @@ class SensorSpec(ComponentSpec):
     """Abstract sensor on a robot."""
 
     category: ClassVar[str] = "sensor"
+    errors: dict[str, ReadingError] = Field(
+        default={},
+        exclude_if=lambda errors: not errors,
+        description="Named errors that are added to its readings, in the order of their names; "
+        "outside the hash while there are none.",
+    )
 
     @model_validator(mode="before")
     @classmethod

@@ -18,7 +18,7 @@ from crowdbot.dsl.suite.axis_words import AxisWords, axis_words
 from crowdbot.dsl.suite.include import Loader
 from crowdbot.dsl.suite.installed import Installed
 from crowdbot.dsl.suite.matrix import DRAW, combinations
-from crowdbot.dsl.suite.suite import ParsedSuite, read_suite
+from crowdbot.dsl.suite.suite import ParsedSuite, Recorded, read_suite
 from crowdbot.dsl.suite.suite_entry import NO_SUITE, SuiteEntry, digest_of
 from crowdbot.dsl.text.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
 from crowdbot.dsl.text.finder import Finder, Roots
@@ -51,6 +51,7 @@ class Expansion:
         run_seeds: seeds of the runs that a bundle consists of.
         words: axis -> label -> readable names of the quantity and the value.
         altered: the ``key=value`` texts that ``--set`` applied to each scenario.
+        record: what to record by default; None: not said.
     """
 
     suite_id: str
@@ -63,6 +64,7 @@ class Expansion:
     run_seeds: tuple[int, ...] = (0,)
     words: dict[str, dict[str, AxisWords]] = field(default_factory=dict, repr=False)
     altered: tuple[str, ...] = ()
+    record: Recorded | None = None
 
     def words_of(self, scenario: str) -> dict[str, AxisWords]:
         """Return axis -> readable names of a scenario's label; axes without names are left out."""
@@ -229,6 +231,7 @@ class _Expander:
             suite.run_seeds,
             axis_words(suite.base, suite.axes, self._set),
             self._altered,
+            suite.record,
         )
 
     def _unusable(self, bare: _Bare) -> str:

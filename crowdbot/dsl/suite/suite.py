@@ -10,6 +10,7 @@
     draws: N
     seeds: {crowd: [axis, …]}
     metrics: [name, …]
+    record: all|used|none
     references: {name: {override}}
 """
 
@@ -18,7 +19,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from importlib import metadata
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, cast, get_args
 
 from annotated_types import Ge, Le
 from pydantic import Field, WithJsonSchema
@@ -37,6 +38,9 @@ from crowdbot.errors import did_you_mean, nearest
 
 #: Version of the document format of this release.
 FORMAT = 1
+
+#: What a recording holds.
+Recorded = Literal["all", "used", "none"]
 
 MAX_REFERENCES = 16
 MAX_FIELDS = 10_000_000
@@ -127,6 +131,10 @@ class SuiteDocument(Spec):
     )
     seeds: Seeds | None = Field(default=None, description="Axes of the random numbers.")
     metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
+    record: Recorded | None = Field(
+        default=None,
+        description="What `crowdbot simulate` records where it is not told; outside the hash.",
+    )
     references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
     kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
 
@@ -137,6 +145,10 @@ class ScenarioDocument(Spec):
     crowdbot: int = Field(description="Version of the format.")
     scenario: dict[str, Any] = Field(description="All fields of one scenario.")
     metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
+    record: Recorded | None = Field(
+        default=None,
+        description="What `crowdbot simulate` records where it is not told; outside the hash.",
+    )
     references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
     kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
 
@@ -153,6 +165,7 @@ class ParsedSuite:
         commitment: commitment to the seed, or empty.
         hidden: True until the seed is revealed; then ``seed`` is a node of None.
         run_seeds: seeds of the runs that a bundle consists of.
+        record: what to record by default; None: not said.
         problems: errors found so far.
         tree: the whole document, including ``extends``.
         finder: finds the document's files; None: assets are not searched.
@@ -174,6 +187,7 @@ class ParsedSuite:
     commitment: str = ""
     hidden: bool = False
     run_seeds: tuple[int, ...] = (0,)
+    record: Recorded | None = None
 
 
 def read_suite(
@@ -215,7 +229,7 @@ def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite
     _check_references(root, problems)
     return ParsedSuite(
         name, title, name, None, body, (), (), _metrics(root), _references(root), tuple(problems),
-        root,
+        root, record=_record(root),
     )  # fmt: skip
 
 
@@ -241,6 +255,7 @@ def _suite(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:
     return ParsedSuite(
         name, title, name, seed, body, axes, crowd_axes, _metrics(root), _references(root),
         tuple(problems), root, kept, None, commitment, hidden, run_seeds,
+        _record(root),
     )  # fmt: skip
 
 
@@ -337,6 +352,12 @@ def _metrics(root: Node) -> tuple[str, ...] | None:
     if listed is None or not isinstance(listed.value, tuple):
         return None
     return tuple(item.value for item in listed.value if isinstance(item.value, str))
+
+
+def _record(root: Node) -> Recorded | None:
+    found = root.child("record")
+    value = None if found is None else found.value
+    return cast("Recorded", value) if value in get_args(Recorded) else None
 
 
 def _references(root: Node) -> dict[str, Node]:

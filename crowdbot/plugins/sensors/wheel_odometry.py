@@ -62,6 +62,23 @@ class HolonomicOdometrySpec(OdometrySpec):
     kind: Literal["holonomic_odometry"] = "holonomic_odometry"
 
 
+class BaseOdometrySpec(SensorSpec):
+    """Reading: x, y (m), yaw (rad), v (m/s), w (rad/s), vy (m/s): the true ones.
+
+    The second method of the annex of D7.3, which reads the velocity of the base itself; add
+    `errors` to make it drift-free but noisy.
+    """
+
+    kind: Literal["base_odometry"] = "base_odometry"
+    rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
+
+
+BASE_ODOMETRY = Component(
+    spec=BaseOdometrySpec,
+    build="crowdbot.plugins.sensors.base_odometry_build:build",
+    summary="pose and twist of the base as they are, without wheels",
+)
+
 WHEEL_ODOMETRY = Component(
     spec=WheelOdometrySpec,
     build="crowdbot.plugins.sensors.wheel_odometry_build:build",

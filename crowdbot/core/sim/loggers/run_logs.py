@@ -16,7 +16,7 @@ from crowdbot.core.sim.loggers.watched_run import WatchedRun
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.run_outcome import last_arrival, run_status, status_of
 from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, choosers, ids
-from crowdbot.core.types.robot import HolonomicDrive
+from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +72,7 @@ def _one_log(
 ) -> RunLogs:
     writer = RecordingWriter(
         setup.recording, header, record=setup.options.record, choosers=choosers(engine),
-        description=description_of(setup, built),
+        description=description_of(setup, built), wheels=_wheels(built),
     )  # fmt: skip
     stack.callback(lambda: writer.close(ending.goal_time, ending.ended, status_of(ending)))
     log = RunLog(
@@ -100,7 +100,7 @@ def _several_logs(
     for k, (name, built) in enumerate(builts.items()):
         writer = RecordingWriter(
             setup.recording, replace(headers[name], namespace=name), record=setup.options.record,
-            beside=root, description=description_of(setup, built),
+            beside=root, description=description_of(setup, built), wheels=_wheels(built),
         )  # fmt: skip
         stack.callback(_close_robot, writer, endings[name])  # before the root is closed
         robots[name] = RunLog(
@@ -147,6 +147,14 @@ def header_of(setup: RunSetup, built: BuiltRun) -> RecordingHeader:
 def description_of(setup: RunSetup, built: BuiltRun) -> str:
     """The robot's URDF, where it is recorded."""
     return to_urdf(built.model, built.infos, built.name) if setup.options.record != "none" else ""
+
+
+def _wheels(built: BuiltRun) -> tuple[str, ...]:
+    """Return the joints of the driven wheels, left and right; none of a holonomic robot."""
+    drive = built.model.drive
+    if not isinstance(drive, DifferentialDrive):
+        return ()
+    return drive.left_joint, drive.right_joint
 
 
 def _sideways(built: BuiltRun) -> bool:

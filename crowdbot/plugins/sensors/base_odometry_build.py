@@ -1,0 +1,52 @@
+"""Odometry from the true velocity of the base."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.errors import SimulationError
+from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo
+from crowdbot.plugins.sensors.wheel_odometry import BaseOdometrySpec
+
+
+class BaseOdometry:
+    """Reading: (6,) x, y, yaw, v, w, vy; m, rad, m/s, rad/s; vy to the left."""
+
+    def __init__(self, spec: BaseOdometrySpec) -> None:
+        self._info = SensorInfo(
+            category="odometry",
+            frame="odom",
+            mount=(0.0, 0.0, 0.0, 0.0),
+            rate=spec.rate,
+            shape=(6,),
+            ros_type="nav_msgs/msg/Odometry",
+            random=False,
+            sees=False,
+        )
+
+    def info(self) -> SensorInfo:
+        """Return the constant description."""
+        return self._info
+
+    def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
+        """Return pose and twist of the base.
+
+        Raises:
+            SimulationError: the scene has no robot.
+        """
+        del t, rng
+        robot = scene.robot
+        if robot is None:
+            raise SimulationError("odometry needs a robot in the scene")
+        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+        ahead, aside = c * robot.vx + s * robot.vy, c * robot.vy - s * robot.vx
+        yaw = math.remainder(pose.yaw, 2.0 * math.pi)
+        return np.array([pose.x, pose.y, yaw, ahead, robot.w, aside])
+
+
+def build(spec: BaseOdometrySpec, context: SensorContext) -> BaseOdometry:
+    """Return odometry from its spec."""
+    del context
+    return BaseOdometry(spec)
