@@ -14,7 +14,7 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 class _ReadingError(Spec):
-    """What all errors have."""
+    """Fields of every error."""
 
     entries: tuple[Annotated[int, Ge(0)], ...] | None = Field(
         default=None,
