@@ -51,7 +51,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         _drop_output()
         return 0
     except OSError as error:
-        _say(f"error: {error.filename or 'operating system'}: {error.strerror or error}")
+        from crowdbot.cli.app.mishaps import system_error
+
+        _say(system_error(error))
         return 1
     except Exception as error:
         if os.environ.get("CROWDBOT_DEBUG"):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import resource
 import sys
 import threading
 import traceback
@@ -31,6 +33,16 @@ def internal_error(error: Exception) -> str:
         text += (
             f", or with CROWDBOT_PLUGINS=builtin to see whether it is a plugin's: {_few(others)}"
         )
+    return text
+
+
+def system_error(error: OSError) -> str:
+    """Return one line that names the file, or the limit that was reached."""
+    where = error.filename or "operating system"
+    text = f"error: {where}: {error.strerror or error}"
+    if error.errno == errno.EMFILE:
+        limit = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+        text += f" (this process may open {limit}; raise it with 'ulimit -n')"
     return text
 
 

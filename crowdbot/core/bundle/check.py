@@ -65,7 +65,8 @@ def claimed_runs(archive: Archive) -> tuple[list[ClaimedRun], list[str]]:
             problems.append(_without(archive, error))
             continue
         found.append(run)
-        problems += [f"{entry.directory}: {text}" for text in run_problems(run, archive.manifest)]
+        texts = [*run_problems(run, archive.manifest), *_digest_problems(archive, run)]
+        problems += [f"{entry.directory}: {text}" for text in texts]
     return found, problems
 
 
@@ -96,6 +97,14 @@ def _claimed(archive: Archive, entry: BundledRun) -> ClaimedRun:
         scores=tuple(r.score for r in rows),
         planners=frozenset(r.planner for r in rows),
     )
+
+
+def _digest_problems(archive: Archive, run: ClaimedRun) -> Iterator[str]:
+    """Yield files that the run's record has another digest of."""
+    for file, sha in run.record.digests.items():
+        member = archive.manifest.members.get(f"{run.entry.directory}/{file}")
+        if member is not None and member.sha256 != sha:
+            yield f"{file[:100]} was changed after the run: {files.RECORD} has another digest"
 
 
 def _list_problems(manifest: Manifest) -> Iterator[str]:

@@ -125,7 +125,7 @@ def _attachment_problems(
 
 
 def _is_record_of(run: ClaimedRun, content: bytes) -> bool:
-    plain = {k: v for k, v in run.record.document().items() if k != "files"}
+    plain = {k: v for k, v in run.record.document().items() if k not in files.OF_FILES}
     try:
         found = parse_json(content.decode())
     except ValueError:

@@ -154,10 +154,12 @@ def _record(place: Path) -> RunRecord | None:
         document = files.checked_record(place)
     except InputError:
         return None
-    if wrong := record_problems(document):
-        raise InputError(f"{place / files.RECORD}: damaged: {wrong[0]}; run it again")
+    if problems := record_problems(document):
+        raise InputError(f"{place / files.RECORD}: damaged: {problems[0]}; run it again")
     if (place / files.SCORES).is_file():  # missing files are reported with the others
         read_scores_csv(place / files.SCORES)
+    if wrong := files.changed(place, document, (*_OF_A_RUN, files.RECORDING)):
+        raise InputError(f"{place}: {wrong}; run it again")
     return RunRecord.parse(document, place)
 
 

@@ -21,6 +21,7 @@ from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.core.sim.references import make_reference
+from crowdbot.core.support.json_digest import digest
 from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import CrowdbotError, InputError, PlannerError, SimulationError
@@ -69,6 +70,8 @@ def _execute(
         request.scenario, registry, references=request.options.references, populate=populate
     )
     _check_loaded(job, request, prepared)
+    if not request.choice.died and digest(request.choice.spec_dump) != job.planner_digest:
+        raise InputError(f"{request.choice.origin}: the planner changed since the campaign began")
     if job.kind == "run":
         if prepared.run.spec != job.spec_hash:
             raise InputError(f"{job.source.spec} changed since the campaign began")

@@ -37,6 +37,7 @@ class Job:
     Attributes:
         key: id of its result; equal keys mean equal jobs.
         index: index of the scenario in its suite; ``spec_hash`` must match.
+        planner_digest: digest of all that defines the planner.
         planner, settings: arguments of `resolve_planner`, with absolute file names.
         label: the planner's folder.
         out: absolute root of the results.
@@ -53,6 +54,7 @@ class Job:
     scenario: str
     index: int
     spec_hash: str
+    planner_digest: str
     planner: str
     settings: tuple[str, ...]
     label: str

@@ -30,6 +30,7 @@ from crowdbot.core.runs.identity import (
 from crowdbot.core.runs.run import Request
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.sim.preflight import preflight
+from crowdbot.core.support.json_digest import digest
 from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError
 
@@ -255,6 +256,7 @@ class _PlanBuilder:
             scenario=request.scenario.id,
             index=request.entry.position,
             spec_hash=trial.spec,
+            planner_digest=digest(entry.choice.spec_dump),
             planner=entry.text,
             settings=entry.settings,
             label=entry.choice.label,

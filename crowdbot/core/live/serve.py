@@ -207,6 +207,7 @@ def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:
     )
     record = run.record.model_copy(update={"live": live})
     files.attach_files(run.directory, record.document())
-    record = record.model_copy(update={"files": files.sizes(run.directory)})
+    listed = {"files": files.sizes(run.directory), "digests": files.digests(run.directory)}
+    record = record.model_copy(update=listed)
     record.write(run.directory)
     return replace(run, record=record)

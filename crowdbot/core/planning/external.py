@@ -14,7 +14,8 @@ from crowdbot.core.planning.choice import PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.containment.declared import needs_of_program
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.process import foreign_main
-from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.planning.process.process_planner import NotLoaded, ProcessPlan, describe
+from crowdbot.core.planning.unchanged_files import UnchangedFiles
 from crowdbot.core.support.source_digest import (
     data_files,
     digest_of_files,
@@ -74,6 +75,10 @@ def external_choice(
         **({"parameters": parameters} if parameters else {}),
         **({"network": True} if program.needs.network else {}),
     }
+    if not isinstance(build, NotLoaded):
+        build = UnchangedFiles(
+            build, lambda: _Program(path, document).sha256, program.sha256, str(path)
+        )
     return PlannerChoice(
         name=program.name,
         spec_dump=dump,

@@ -18,7 +18,7 @@ from crowdbot.core.planning.external import external_choice, is_external
 from crowdbot.core.planning.fleet_choice import fleet_choice
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.planner import Planner
-from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.planning.process.process_planner import NotLoaded, ProcessPlan, describe
 from crowdbot.core.planning.python_file import (
     build_of_class,
     call_of_class,
@@ -28,6 +28,7 @@ from crowdbot.core.planning.python_file import (
     preloads,
 )
 from crowdbot.core.planning.registered import build_of_kind, find_kind, spec_of_kind
+from crowdbot.core.planning.unchanged_files import UnchangedFiles
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
@@ -284,9 +285,13 @@ def _from_class(
             beside=path.parent,
         )
         description, build = describe(plan, lenient=place.lenient)
+    digest = partial(source_digest, path, description.data)
+    sha256 = digest()
+    if not isinstance(build, NotLoaded):
+        build = UnchangedFiles(build, digest, sha256, str(path))
     dump = {
         "kind": f"{path.name}:{name}",
-        "sha256": source_digest(path, description.data),
+        "sha256": sha256,
         **({"parameters": dict(parameters)} if parameters else {}),
     }
     return PlannerChoice(

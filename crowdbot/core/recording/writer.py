@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container.mcap_file import McapFile
+from crowdbot.core.recording.container.own_file import Written
 from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
 from crowdbot.core.recording.joints import WheelMessages
 from crowdbot.core.recording.motion.candidates import Choosers
@@ -288,6 +289,11 @@ class RecordingWriter:
         now = self._now if until is None else ros.nanoseconds(until)
         self._file.put(Topic.END, now, end, latched=True)
         self._file.close()
+
+    @property
+    def written(self) -> Written | None:
+        """Return what was written to the file, once it is closed."""
+        return self._file.written
 
     def _catch_up(self) -> None:
         """Write all buffered data, samples first."""

@@ -11,7 +11,7 @@ import json
 import logging
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from operator import attrgetter
 from pathlib import Path
@@ -301,11 +301,12 @@ def _stamp(file: Path) -> str:
 
 
 def _stamp_of_run(run: Path) -> str:
-    """Return a stamp that changes with the record, or if another file is truncated or missing."""
+    """Return a stamp that changes with each of its files; the time of a change cannot be set."""
     parts = [_stamp(run / files.RECORD)]
-    for name in (files.RECORDING, files.SCORES):
+    for name in (files.RECORDING, files.SCORES, files.SCENARIO):
         try:
-            parts.append(str((run / name).stat().st_size))
+            about = (run / name).stat()
+            parts.append(f"{about.st_size} {about.st_ctime_ns}")
         except OSError:
             parts.append("-")
     return " ".join(parts)
@@ -318,8 +319,7 @@ def _read_row(run: Path, directory: str) -> RunRow:
         InputError: a part is missing, truncated or malformed.
     """
     document = files.checked_record(run)
-    listed = document.get("files")
-    files.check_whole(run, listed if isinstance(listed, Mapping) else {})
+    files.check_whole(run, document)
     return RunRow(record=RunRecord.parse(document, files.RECORD), directory=directory)
 
 

@@ -92,7 +92,9 @@ class Reference:
         record = ReferenceRecord.find(self.directory)
         if record is None or record.run_id != self.run_id:
             return None
-        return None if files.damage(self.directory, record.files, scores=False) else record
+        document = record.document()
+        wrong = files.damage(self.directory, document, scores=False, recording=True)
+        return None if wrong else record
 
     @property
     def complete(self) -> ReferenceRecord | None:
@@ -242,7 +244,7 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> RunReco
         return None
     try:
         record = RunRecord.parse(document, files.RECORD)
-        files.check_whole(place, record.files)
+        files.check_whole(place, document)
     except InputError as error:
         _LOG.warning("%s: %s; it is made again", place, error)
         return None

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from crowdbot.core.recording.container.own_file import Written
 from crowdbot.core.types.ending import Ending
 
 ARRIVED, TIMEOUT, TOPPLED = Ending.ARRIVED, Ending.TIMEOUT, Ending.TOPPLED
@@ -31,6 +32,7 @@ class Outcome:
         clamped: number of commands clamped to the robot's limits.
         planner_step_time: mean and largest wall time of a planner step.
         robots: outcome of each of several robots; empty in a run of one.
+        written: the recording, as the simulator wrote it.
     """
 
     status: str
@@ -43,6 +45,7 @@ class Outcome:
     clamped: int = 0
     planner_step_time: Mapping[str, float] = field(default_factory=dict)
     robots: Mapping[str, Outcome] = field(default_factory=dict)
+    written: Written | None = None
 
     @property
     def real_time_factor(self) -> float:

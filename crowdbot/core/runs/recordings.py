@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.runs.run_directory import RECORD, RECORDING, checked_record
+from crowdbot.core.runs.run_directory import RECORD, RECORDING, changed, checked_record
 from crowdbot.errors import InputError
 
 
@@ -18,6 +18,7 @@ class RecordingSource:
     Attributes:
         path: the user's path, or a run directory below it.
         planner: name of the planner; ``label`` also distinguishes its parameters.
+        hashes: trajectory hash of each calibration run, as the run's record has it.
     """
 
     path: Path
@@ -28,6 +29,7 @@ class RecordingSource:
     planner: str = ""
     label: str = ""
     seed: int | None = None
+    hashes: Mapping[str, str] = field(default_factory=dict)
 
 
 def expand_paths(paths: Iterable[Path]) -> list[Path]:
@@ -57,8 +59,10 @@ def find_source(
         found = RecordingSource(path=path, recording=path)
     else:
         raise InputError(f"{path}: no such run directory or recording")
+    given = {"robot_alone": robot_alone, "crowd_alone": crowd_alone}
     found = replace(
         found,
+        hashes={name: sha for name, sha in found.hashes.items() if given.get(name) is None},
         robot_alone=robot_alone or found.robot_alone,
         crowd_alone=crowd_alone or found.crowd_alone,
     )
@@ -76,11 +80,13 @@ def _is_run(record: Path, root: Path) -> bool:
 
 def _in_directory(folder: Path) -> RecordingSource:
     record = _record(folder)
+    if wrong := changed(folder, record, (RECORDING,)):
+        raise InputError(f"{folder}: {wrong}")
     references = record.get("references") or {}
     seed = record.get("seed")
     if not isinstance(references, Mapping) or not isinstance(seed, int | None):
         raise InputError(f"{folder / RECORD}: 'references' or 'seed' is malformed")
-    planner = record.get("planner")
+    planner, hashes = record.get("planner"), record.get("reference_hashes")
     return RecordingSource(
         path=folder,
         recording=folder / RECORDING,
@@ -90,6 +96,7 @@ def _in_directory(folder: Path) -> RecordingSource:
         planner=_name(planner, "name", "kind"),
         label=_name(planner, "label", "name", "kind"),
         seed=seed,
+        hashes=hashes if isinstance(hashes, Mapping) else {},
     )
 
 

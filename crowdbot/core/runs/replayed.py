@@ -102,7 +102,7 @@ def _record(folder: Path) -> RunRecord:
     if not (folder / files.RECORD).is_file():
         raise InputError(f"{folder}: no run directory, there is no readable {files.RECORD} in it")
     record = RunRecord.read(folder)
-    if damaged := files.damage(folder, record.files):
+    if damaged := files.damage(folder, record.document(), recording=True):
         raise InputError(f"{folder}: {damaged}")
     return record
 

@@ -13,7 +13,12 @@ from crowdbot.core.recording.reading.commands import read_commands
 from crowdbot.core.recording.recording import Recording, RobotRecording
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
-from crowdbot.core.runs.read_and_score import references_by_robot, score_robots
+from crowdbot.core.runs.provenance import trajectory_hash
+from crowdbot.core.runs.read_and_score import (
+    reference_hashes,
+    references_by_robot,
+    score_robots,
+)
 from crowdbot.core.runs.recordings import RecordingSource, find_source
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.trajectories.commands import Commands
@@ -112,8 +117,8 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
     scores = score(
         registry,
         run,
-        read(source.robot_alone, request.robot),
-        read(source.crowd_alone),
+        _of_run(source, ROBOT_ALONE, read(source.robot_alone, request.robot)),
+        _of_run(source, CROWD_ALONE, read(source.crowd_alone)),
         commands=_commands(request, request.commands, source),
         commands_baseline=_commands(request, request.commands_baseline, None),
         questionnaires=_answers(request.questionnaires),
@@ -144,6 +149,8 @@ def _whole_fleet(
         raise _cut(source.recording, until)
     named = {ROBOT_ALONE: source.robot_alone, CROWD_ALONE: source.crowd_alone}
     paths = {name: path for name, path in named.items() if path is not None}
+    for name, sha in reference_hashes(paths).items():
+        _check_reference(source, name, sha)
     scores = score_robots(
         registry,
         {name: one.run for name, one in fleet.items()},
@@ -152,6 +159,25 @@ def _whole_fleet(
         variants=request.variants,
     )
     return Rescored(source=source, scores=tuple(scores), until=until, complete=complete)
+
+
+def _of_run(source: RecordingSource, name: str, run: Trajectories | None) -> Trajectories | None:
+    """Return a calibration run, if it is the one that the run was scored with.
+
+    Raises:
+        InputError: it is another one.
+    """
+    if run is not None and name in source.hashes:
+        _check_reference(source, name, trajectory_hash(run))
+    return run
+
+
+def _check_reference(source: RecordingSource, name: str, sha: str) -> None:
+    if source.hashes.get(name, sha) != sha:
+        raise InputError(
+            f"{source.path}: its {name} is another one than it was scored with: "
+            f"{getattr(source, name)} was changed or replaced"
+        )
 
 
 def _cut(file: Path, until: float) -> IncompleteError:

@@ -96,8 +96,10 @@ class Run:
         """Return the original scores, read from ``scores.csv``.
 
         Raises:
-            InputError: they cannot be read.
+            InputError: they cannot be read, or were changed.
         """
+        if wrong := files.changed(self.directory, self.record.document(), (files.SCORES,)):
+            raise InputError(f"{self.directory}: {wrong}")
         rows = read_scores_csv(self.directory / files.SCORES)
         return Scores(tuple(r.score for r in rows), self.scenario, self.planner, self.seed)
 

@@ -7,21 +7,28 @@ import fcntl
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.source_digest import file_digest
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.core.support.text_files import read_text
 from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from crowdbot.core.recording.container.own_file import Written
 
 RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
     "run.json", "run.mcap", "scenario.yaml", "scores.csv", "replay.html",
 )  # fmt: skip
 _LOCK = ".lock"
 _NEEDED = (RECORDING, SCENARIO, SCORES)
+#: Keys of the record that describe the other files.
+OF_FILES = ("files", "digests")
 
 
 def checked_record(directory: Path) -> dict[str, Any]:
@@ -42,21 +49,24 @@ def checked_record(directory: Path) -> dict[str, Any]:
     return record
 
 
-def attach_files(folder: Path, record: Mapping[str, Any]) -> None:
+def attach_files(folder: Path, record: Mapping[str, Any]) -> bytes:
     """Attach scenario, scores and ``run.json`` to the recording, which is then self-contained.
 
     Args:
         folder: folder of a run with its recording.
-        record: the record as written later, without file sizes.
+        record: the record as written later, without sizes and digests of files.
+
+    Returns:
+        What now comes after the recorded data.
     """
     from crowdbot.core.recording.container.attachments import (
         attach,  # numpy, which listing does not need
     )
 
-    plain = {k: v for k, v in record.items() if k != "files"}
+    plain = {k: v for k, v in record.items() if k not in OF_FILES}
     document = (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()
     found = {n: (folder / n).read_bytes() for n in (SCENARIO, SCORES) if (folder / n).is_file()}
-    attach(folder / RECORDING, {**found, RECORD: document})
+    return attach(folder / RECORDING, {**found, RECORD: document})
 
 
 def sizes(folder: Path) -> dict[str, int]:
@@ -64,15 +74,42 @@ def sizes(folder: Path) -> dict[str, int]:
     return {name: (folder / name).stat().st_size for name in _NEEDED if (folder / name).is_file()}
 
 
-def damage(directory: Path, listed: Mapping[str, int], *, scores: bool = True) -> str:
-    """Describe missing or truncated files in the directory of a run; empty if there are none.
+def digests(folder: Path, known: Mapping[str, str] = MappingProxyType({})) -> dict[str, str]:
+    """Return name -> SHA-256 of all files of a run but its record, for its record.
+
+    Args:
+        folder: of the run.
+        known: digests that are known already.
+    """
+    names = (n for n in (*_NEEDED, REPLAY) if (folder / n).is_file())
+    return {name: known.get(name) or file_digest(folder / name) for name in names}
+
+
+def check_recorded(folder: Path, written: Written | None) -> dict[str, str]:
+    """Return the recording's digest by its name, if the recording is what the simulator wrote.
+
+    Raises:
+        InputError: another process changed or replaced it.
+    """
+    if written is None:
+        return {}
+    written.check(folder / RECORDING)
+    return {RECORDING: written.sha256}
+
+
+def damage(
+    directory: Path, record: Mapping[str, Any], *, scores: bool = True, recording: bool = False
+) -> str:
+    """Describe missing, cut or changed files in the directory of a run; empty if there are none.
 
     Args:
         directory: of a run, or of a calibration run.
-        listed: bytes of its files, as its record says.
+        record: its record, with the size and digest of each file; older ones have no digests.
         scores: False for a calibration run, which has none.
+        recording: True to hash the recording, too, and not only scenario and scores.
     """
-    for name in _NEEDED if scores else _NEEDED[:2]:
+    listed, names = _mapping(record, "files"), _NEEDED if scores else _NEEDED[:2]
+    for name in names:
         try:
             size = (directory / name).stat().st_size
         except OSError:
@@ -80,17 +117,38 @@ def damage(directory: Path, listed: Mapping[str, int], *, scores: bool = True) -
         wanted = listed.get(name)
         if wanted is not None and size != wanted:
             return f"{name} has {size} bytes instead of {wanted}"
+    return changed(directory, record, names if recording else names[1:])
+
+
+def changed(directory: Path, record: Mapping[str, Any], names: Sequence[str]) -> str:
+    """Describe a file that differs from the one of which the record has a digest; empty if none.
+
+    Args:
+        directory: of a run, or of a calibration run.
+        record: its record.
+        names: files to look at, if they are there.
+    """
+    hashed = _mapping(record, "digests")
+    for name in names:
+        file = directory / name
+        if name in hashed and file.is_file() and file_digest(file) != hashed[name]:
+            return f"{name} was changed after the run: {RECORD} has another digest"
     return ""
 
 
-def check_whole(directory: Path, listed: Mapping[str, int]) -> None:
+def check_whole(directory: Path, record: Mapping[str, Any], *, recording: bool = False) -> None:
     """Refuse a run that is damaged.
 
     Raises:
-        InputError: what is missing or cut.
+        InputError: what is missing, cut or changed.
     """
-    if wrong := damage(directory, listed):
+    if wrong := damage(directory, record, recording=recording):
         raise InputError(wrong)
+
+
+def _mapping(record: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    found = record.get(key)
+    return found if isinstance(found, Mapping) else {}
 
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:
@@ -119,9 +177,14 @@ def partial(final: Path) -> Iterator[Path]:
             raise NotADirectoryError(errno.ENOTDIR, f"{final.name} is a file")
         folder, lock = _claim(final)
     except OSError as error:
-        raise InputError(f"{final.parent}: cannot be written: {error.strerror}") from error
+        where, why = error.filename or final.parent, error.strerror or error
+        raise InputError(f"{where}: cannot be written: {why}") from error
     try:
         yield folder
+    except OSError as error:
+        if error.filename or not error.strerror:
+            raise
+        raise InputError(f"{folder}: cannot be written: {error.strerror}") from error
     finally:
         with suppress(OSError):
             if _is_ours(lock, folder):  # once published, the name may belong to another process
@@ -134,6 +197,7 @@ def publish(folder: Path, final: Path) -> None:
     for file in folder.iterdir():
         _sync(file)
     old = final.with_name(f"{final.name}.old-{os.getpid()}")
+    _remove(old)
     with suppress(FileNotFoundError):
         final.rename(old)
     try:
@@ -141,12 +205,21 @@ def publish(folder: Path, final: Path) -> None:
     except OSError as error:
         if error.errno not in (errno.EEXIST, errno.ENOTEMPTY):
             raise
-        shutil.rmtree(old, ignore_errors=True)  # another process finished the same run first
+        _remove(old)  # another process finished the same run first
         folder.rename(old)
     with suppress(OSError):  # only now: the folder must stay locked until it is renamed
         (final / _LOCK).unlink()
     _sync(final.parent)
-    shutil.rmtree(old, ignore_errors=True)
+    _remove(old)
+
+
+def _remove(path: Path) -> None:
+    """Delete a file, a folder, or a link but not what it points at, as far as possible."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        with suppress(OSError):
+            path.unlink()
 
 
 def _claim(final: Path) -> tuple[Path, int]:
@@ -158,7 +231,7 @@ def _claim(final: Path) -> tuple[Path, int]:
             continue
         for leftover in folder.iterdir():
             if leftover.name != _LOCK:
-                shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
+                _remove(leftover)
         return folder, lock
     raise InputError(f"{final}: a thousand runs of it are going on already")
 
@@ -167,8 +240,10 @@ def _lock(folder: Path) -> int | None:
     """Create and lock a folder; return None if another process has it."""
     while True:
         try:
+            if folder.is_symlink():
+                raise InputError(f"{folder}: is a link, which is not followed; delete it")
             folder.mkdir(exist_ok=True)
-            lock = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+            lock = _opened(folder)
         except (FileNotFoundError, FileExistsError):  # published in between
             if folder.is_file():
                 raise
@@ -181,6 +256,19 @@ def _lock(folder: Path) -> int | None:
         if _is_ours(lock, folder):
             return lock
         os.close(lock)  # the lock of a folder that was renamed meanwhile
+
+
+def _opened(folder: Path) -> int:
+    """Open the lock in a folder, neither of which may be a link."""
+    here = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    try:
+        flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC
+        return os.open(_LOCK, flags, 0o644, dir_fd=here)
+    except OSError as error:
+        error.filename = str(folder / _LOCK)
+        raise
+    finally:
+        os.close(here)
 
 
 def _is_ours(lock: int, folder: Path) -> bool:

@@ -57,6 +57,7 @@ class _Record(CostPart):
 
     run_id: Hash
     files: dict[str, Count] = Field(default_factory=dict)
+    digests: dict[str, Hash] = Field(default_factory=dict)
 
     @classmethod
     def parse(cls, document: Mapping[str, Any], what: object) -> Self:

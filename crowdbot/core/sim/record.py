@@ -66,10 +66,11 @@ def record_robots(
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
         blocks = build_diagram(robots, engine, logs.people, seed=setup.seed)
-        return run(
+        outcome = run(
             blocks, stage=setup.stage, progress=setup.progress, stop=setup.stop,
             on_begin=lambda root: setup.on_begin and setup.on_begin(partial(_seen, blocks, root)),
         )  # fmt: skip
+    return replace(outcome, written=logs.people.writer.written)
 
 
 def _seen(blocks: Blocks, root: Any) -> dict[str, Observation]:

@@ -46,6 +46,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
         else:
             outcome = _record_alone(setup)
         check_interrupted(outcome, folder)
+        recorded = files.check_recorded(folder, outcome.written)
         if outcome.status == PLANNER_FAILED:
             _LOG.warning("%s: the planner failed: %s", reference.name, outcome.reason)
         write_scenario(folder, reference.trial.scenario, request.registry)
@@ -54,6 +55,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
             **{n: getattr(reference.identity, n) for n in reference.identity.model_fields_set},
             **ending(outcome),
             files=files.sizes(folder),
+            digests=files.digests(folder, recorded),
         ).write(folder)
         files.publish(folder, reference.directory)
     return outcome

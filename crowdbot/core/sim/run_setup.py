@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -93,7 +93,7 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
             cpu_time=time.process_time() - cpu,
         )
         ending.append(outcome)
-    return outcome
+    return replace(outcome, written=writer.written)
 
 
 @contextmanager

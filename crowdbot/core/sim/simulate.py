@@ -12,6 +12,7 @@ from crowdbot.core.crowd.compile_ahead import crowd_compiled_ahead
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.choice import NO_ROBOT
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
+from crowdbot.core.recording.container.own_file import Written
 from crowdbot.core.recording.reading.images import ImageCollector, ReplayImages
 from crowdbot.core.recording.reading.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
@@ -214,6 +215,7 @@ def _record_run(
         setup = _setup(request, prepared, folder, identity)
         outcome = record_robots(setup, builts) if builts else record_crowd(setup, identity.duration)
         check_interrupted(outcome, folder)
+        files.check_recorded(folder, outcome.written)
         images = _images(request, builts, folder / files.RECORDING)
         names = tuple(builts) or ("",)
         seen = read_robots(folder / files.RECORDING, names, REPLAY_RATE, images)
@@ -229,7 +231,8 @@ def _record_run(
             request, identity, people, references, outcome, runs, scores, parts=parts
         )
         shown = [] if images is None else images.images()
-        record = _write_files(request, builts, folder, seen, shown, scores, record)
+        _write_files(request, builts, folder, seen, shown, scores, record)
+        record = _finish(folder, record, outcome.written)
         files.publish(folder, final)
     return record
 
@@ -259,15 +262,21 @@ def _write_files(
     images: Sequence[ReplayImages],
     scores: Scores,
     record: RunRecord,
-) -> RunRecord:
-    """Write everything, the record last; it says how large the other files are."""
+) -> None:
+    """Write everything but the record."""
     scenario = request.scenario
     write_scenario(folder, scenario, request.registry)
     write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
     if request.options.replay:
         _write_replay(request, builts, folder, seen, images, scores, record)
-    files.attach_files(folder, record.document())
-    whole = record.model_copy(update={"files": files.sizes(folder)})
+
+
+def _finish(folder: Path, record: RunRecord, written: Written | None) -> RunRecord:
+    """Write the record, with sizes and digests of the other files."""
+    ending = files.attach_files(folder, record.document())
+    recorded = {} if written is None else {files.RECORDING: written.with_ending(ending)}
+    listed = {"files": files.sizes(folder), "digests": files.digests(folder, recorded)}
+    whole = record.model_copy(update=listed)
     whole.write(folder)
     return whole
 

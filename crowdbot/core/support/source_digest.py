@@ -7,6 +7,7 @@ import hashlib
 import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from importlib.machinery import all_suffixes
 from pathlib import Path
 
@@ -16,6 +17,8 @@ _FOREIGN = {*sys.stdlib_module_names, "crowdbot"}
 #: Functions whose first argument, if text, is a module name.
 _BY_NAME = ("import_module", "__import__")
 _MOST_DATA = 10_000
+#: Size from which digests are remembered until a file changes, bytes.
+_LARGE = 4 << 20
 
 
 def source_digest(file: Path, data: Sequence[str] = ()) -> str:
@@ -59,9 +62,21 @@ def file_digest(file: Path) -> str:
     """
     try:
         with file.open("rb") as opened:
-            return hashlib.file_digest(opened, "sha256").hexdigest()
+            about = os.fstat(opened.fileno())
+            if about.st_size < _LARGE:
+                return hashlib.file_digest(opened, "sha256").hexdigest()
+            state = (about.st_dev, about.st_ino, about.st_size, about.st_ctime_ns)
+            return _digest_of_state(file.absolute(), state)
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+
+
+@lru_cache(maxsize=1024)
+def _digest_of_state(file: Path, state: tuple[int, ...]) -> str:
+    """Return the digest of a large file; the time of its last change cannot be set."""
+    del state
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()
 
 
 def data_files(folder: Path, patterns: Iterable[str]) -> dict[str, Path]:

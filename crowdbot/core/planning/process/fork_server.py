@@ -282,7 +282,7 @@ def _take_descriptors(given: Sequence[int]) -> None:
     """Put messages at 3 and 4, memory at 5, output at 1 and 2; close all others."""
     import fcntl
 
-    high = [fcntl.fcntl(one, fcntl.F_DUPFD, 64) for one in given]
+    high = [fcntl.fcntl(one, fcntl.F_DUPFD, 2 * _TARGETS[-1]) for one in given]
     *lines, output = high
     for target, one in zip(_TARGETS, lines, strict=False):
         os.dup2(one, target)

@@ -158,8 +158,11 @@ class ProcessPlanner:
         _check_containment(plan)
         self._server: ServerHandle | None = None
         self._why = ""
-        self._memory = SharedMemory() if has_shared_memory() else None
-        self._line = self._start()
+        try:
+            self._memory = SharedMemory() if has_shared_memory() else None
+            self._line = self._start()
+        except OSError as error:
+            raise InputError(f"{plan.who}: its process cannot be started: {error}") from None
         said = self._ask("load", self._hello(), RESET_LIMIT, "hello")
         try:
             if said.get("protocol") != PROTOCOL:

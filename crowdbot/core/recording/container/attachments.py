@@ -25,15 +25,18 @@ _HEAD = 9
 _TYPES = {".json": "application/json", ".yaml": "application/yaml", ".csv": "text/csv"}
 
 
-def attach(path: Path, files: Mapping[str, bytes]) -> None:
+def attach(path: Path, files: Mapping[str, bytes]) -> bytes:
     """Attach files to a complete recording, replacing earlier ones.
 
     Args:
         path: the recording; if the process is killed meanwhile, it can be recovered.
         files: name -> content.
 
+    Returns:
+        What now comes after the recorded data.
+
     Raises:
-        InputError: it has no index, because it is incomplete.
+        InputError: it cannot be written, or has no index, because it is incomplete.
     """
     index, end = _index(path)
     data, found = b"", []
@@ -44,12 +47,17 @@ def attach(path: Path, files: Mapping[str, bytes]) -> None:
         data += record
     statistics = replace(index.statistics, attachment_count=len(found))
     index = replace(index, statistics=statistics, attachments=found)
-    with path.open("r+b") as file:
-        file.seek(end)
-        file.truncate()
-        file.write(data + ending(index, end + len(data)))
-        file.flush()
-        os.fsync(file.fileno())
+    data += ending(index, end + len(data))
+    try:
+        with path.open("r+b") as file:
+            file.seek(end)
+            file.truncate()
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    return data
 
 
 def attached(path: Path) -> list[tuple[str, bytes]]:

@@ -6,8 +6,6 @@ runs give equal bytes. Layout: https://mcap.dev/spec.
 
 from __future__ import annotations
 
-import os
-import stat
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,8 +15,8 @@ from mcap.writer import MCAP0_MAGIC
 
 from crowdbot.core.recording.container.chunk import OpenChunk, Piece, serialised
 from crowdbot.core.recording.container.ending import FileIndex, ending
+from crowdbot.core.recording.container.own_file import OwnFile, Written
 from crowdbot.core.recording.messages import definition, to_cdr
-from crowdbot.errors import InputError
 
 CHUNK_SIZE = 256 * 1024
 
@@ -50,7 +48,11 @@ class _Topic:
 
 
 class McapFile:
-    """An MCAP file; topics are created by their first message."""
+    """An MCAP file; topics are created by their first message.
+
+    Attributes:
+        written: what was written, once the file is closed.
+    """
 
     def __init__(self, path: Path) -> None:
         """Start the file.
@@ -58,10 +60,8 @@ class McapFile:
         Raises:
             InputError: the path cannot be written.
         """
-        try:
-            self._stream = path.open("wb")
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        self._stream = OwnFile(path)
+        self.written: Written | None = None
         self._schemas: dict[str, Schema] = {}
         self._topics: dict[str, _Topic] = {}
         self._chunk, self._chunks = OpenChunk(), list[ChunkIndex]()
@@ -105,18 +105,15 @@ class McapFile:
         return opened
 
     def flush(self) -> None:
-        """Finish the open chunk and pass all bytes to the operating system."""
+        """Finish the open chunk; the operating system has all bytes then."""
         self._finish_chunk()
-        self._stream.flush()
 
     def close(self) -> None:
         """Write index and footer; flush everything to disk."""
         self._finish_chunk()
+        self._stream.mark()  # attachments come here
         self._stream.write(ending(self._index(), self._stream.tell()))
-        self._stream.flush()
-        if not stat.S_ISCHR(os.fstat(self._stream.fileno()).st_mode):  # /dev/null stores nothing
-            os.fsync(self._stream.fileno())
-        self._stream.close()
+        self.written = self._stream.close()
 
     def _open(self, topic: str, msgtype: str, latched: bool) -> _Topic:
         schema = self._schemas.get(msgtype)
