@@ -35,6 +35,8 @@ class Agents:
         first: (N + 1,) rows of ``route`` that belong to agent i: first[i] to first[i + 1].
         ignores_robot: (N,) True if the agent ignores robots until they touch.
         late: (N,) True if the agent notices robots late, if people notice them at all.
+        attention: (N,) from 0 to 1, of the people who do not ignore robots: the more, the larger
+            their clearance.
         goal_area: (W, 3) size along own x and y (m) and rotation (rad) of the area around each
             point of ``route``; zeros: the point itself is the goal.
         pause: (W,) time at each point, s.
@@ -64,6 +66,7 @@ class Agents:
     first: NDArray[np.int64]
     ignores_robot: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
     late: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+    attention: Array = field(default_factory=lambda: np.zeros(0))
     goal_area: Array = field(default_factory=lambda: np.zeros((0, 3)))
     pause: Array = field(default_factory=lambda: np.zeros(0))
     ahead: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
@@ -78,6 +81,7 @@ class Agents:
         for name, usual in (
             ("ignores_robot", np.zeros(count, np.bool_)),
             ("late", np.zeros(count, np.bool_)),
+            ("attention", np.full(count, 0.5)),
             ("goal_area", np.zeros((points, 3))),
             ("pause", np.zeros(points)),
             ("ahead", np.full(count, -1, np.int64)),
@@ -111,6 +115,7 @@ class Agents:
         routes: Sequence[Sequence[tuple[float, float]]] | None = None,
         ignores_robot: ArrayLike = False,
         late: ArrayLike = False,
+        attention: ArrayLike = 0.5,
         goal_areas: Sequence[Sequence[tuple[float, ...]]] | None = None,
         pauses: Sequence[Sequence[float]] | None = None,
         ahead: ArrayLike = -1,
@@ -155,6 +160,7 @@ class Agents:
             first=np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]),
             ignores_robot=row(ignores_robot, np.bool_),
             late=row(late, np.bool_),
+            attention=row(attention),
             goal_area=_along(routes, goal_areas, (0.0, 0.0, 0.0)).reshape(-1, 3),
             pause=_along(routes, pauses, 0.0),
             ahead=row(ahead, np.int64),
@@ -184,6 +190,8 @@ class Agents:
                 raise ValueError(f"{name} of agents must be finite and above 0")
         if np.any(self.preferred_speed < 0.0):
             raise ValueError("preferred_speed of agents must not be negative")
+        if not np.all((self.attention >= 0.0) & (self.attention <= 1.0)):
+            raise ValueError("attention of agents must be from 0 to 1")
         if np.any((self.at_goal < PORTAL) | (self.at_goal > ONWARD)):
             raise ValueError(
                 "at_goal of agents must be PORTAL, STOP, REMOVE, LOOP, RETURN or ONWARD"

@@ -99,6 +99,7 @@ class CrowdEngine:
         dt = self._ticks_per_decision * TICK
         self._steering = parts_of(world.steering)
         self._heeds_robots = ~agents.ignores_robot
+        self._room = 2.0 * agents.attention - 1.0
         self._evades = world.response.by_decision(dt)
         self._router = (
             None
@@ -301,8 +302,8 @@ class CrowdEngine:
             return
         now = float(flat[s.TICK]) * TICK
         evade_robots(
-            people, self.agents.radius, self._heeds_robots, self.agents.late, robots, outlines,
-            self._evades, now,
+            people, self.agents.radius, self._heeds_robots, self.agents.late, self._room,
+            self.agents.preferred_speed, robots, outlines, self._evades, now,
         )  # fmt: skip
 
     def _view(

@@ -99,6 +99,8 @@ def _agents(
         ignores_robot=drawn.attention < response.ignoring,
         group=drawn.group,
         late=drawn.attention < response.ignoring + (1.0 - response.ignoring) * response.late,
+        attention=np.maximum(0.0, drawn.attention - response.ignoring)
+        / max(1.0 - response.ignoring, 1e-9),
         goal_areas=drawn.goal_areas,
         pauses=drawn.pauses,
         ahead=_ahead(drawn.queue),

@@ -6,10 +6,10 @@ For the sources of the numbers, see docs/reference/crowd.md.
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from crowdbot.dsl.spec.quantities import (
     NonNegativeDuration,
@@ -26,7 +26,7 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 class RobotResponse(Spec):
-    """People notice a robot, react after a delay, and evade it as fast as people can.
+    """People's response to a robot: fields that all kinds have.
 
     They look ahead, step aside in time and brake; some notice late. People who ignore the robot
     walk as if it were not there, until they touch it. Distracted people ignore a moving robot, but
@@ -34,7 +34,9 @@ class RobotResponse(Spec):
     """
 
     category: ClassVar[str] = "robot response"
-    kind: Literal["human"] = Field(default="human", description="Name of the response.")
+    #: The default kind of response.
+    usual: ClassVar[str] = "human"
+    kind: str = Field(description="Name of the response.")
     reaction: Literal["yield", "ignore", "mixed", "distracted"] = Field(
         default="yield",
         description="Who notices the robot: all, none, or some; with `distracted`, "
@@ -145,3 +147,94 @@ class RobotResponse(Spec):
     def late(self) -> float:
         """Return the fraction of late ones among people who do not ignore the robot."""
         return self.late_fraction
+
+
+class HumanResponse(RobotResponse):
+    """People notice a robot, react after a delay, and evade it as fast as people can."""
+
+    kind: Literal["human"] = Field(default="human", description="Name of the response.")
+
+
+class GivingWay(RobotResponse):
+    """People respond as recorded near robots and vehicles: they give way, the more the faster.
+
+    The numbers are fitted to recordings of two robots, a golf cart and cars; see
+    docs/explanation/people_near_robots.md.
+    """
+
+    kind: Literal["giving_way"] = Field(default="giving_way", description="Name of the response.")
+    late_fraction: Annotated[float, Ge(0), Le(1)] = Field(
+        default=0.01,
+        description="Fraction who notice late, of those who do not ignore the robot; the least "
+        "attentive ones. Recorded: 0 to 1 % (NavWareSet, VCI-CITR, VCI-DUT).",
+    )
+    sight_time: NonNegativeDuration = Field(
+        default=5.0,
+        description="Time to contact within which attentive people notice a robot beyond `sight`, "
+        "s. Recorded onsets: 2.4 to 4 s, at 5 to 16 m (VCI-CITR, VCI-DUT).",
+    )
+    hears: bool = Field(
+        default=True,
+        description="Whether people hear robots faster than `clearance_speed` that come from "
+        "behind, as those in VCI-CITR did.",
+    )
+    hearing_time: PositiveDuration = Field(
+        default=4.0, description="Time to contact within which they hear them, s."
+    )
+    horizon: PositiveDuration = Field(
+        default=4.0, description="How far ahead in time people look, s."
+    )
+    clearance: NonNegativeLength = Field(
+        default=0.17,
+        description="Surface gap that people want when they pass a slow robot, m; the mean over "
+        "people. Recorded: median 0.17 m at 0.8 to 1.2 m/s (NavWareSet).",
+    )
+    clearance_range: NonNegativeLength = Field(
+        default=0.25,
+        description="How much more the most attentive person wants, and how much less the least "
+        "attentive, m; never less than 0.02 m in all.",
+    )
+    clearance_growth: NonNegativeDuration = Field(
+        default=0.5,
+        description="Growth of the clearance with the robot's speed above `clearance_speed`, s. "
+        "Recorded: 0.27 to 0.41 s on average up to 6 m/s, steeper below 3 m/s.",
+    )
+    clearance_speed: NonNegativeSpeed = Field(
+        default=1.0, description="A faster robot is a vehicle to people, m/s."
+    )
+    most_clearance: NonNegativeLength = Field(
+        default=1.2,
+        description="Largest clearance by that growth, m. Recorded: medians of 1.17 m at 3 to "
+        "4 m/s and 1.4 m above (VCI-CITR).",
+    )
+    yield_time: NonNegativeDuration = Field(
+        default=0.6,
+        description="People pass behind a crossing robot if that way is longer by less than the "
+        "robot drives in this time, s; behind a vehicle they leave more room.",
+    )
+    speeding_up: PositiveAcceleration = Field(
+        default=0.6, description="Largest acceleration ahead to pass first, m/s^2."
+    )
+    intent: NonNegativeDuration = Field(
+        default=0.5,
+        description="People who slowed down expect to walk on: time over which what they want "
+        "counts in what they predict, s.",
+    )
+    lateral_acceleration: PositiveAcceleration = Field(
+        default=1.2,
+        description="Largest acceleration sideways, m/s^2. Recorded: 95 % below 0.9 to 1.3.",
+    )
+
+
+def _usual(value: Any) -> Any:
+    """Return a response whose default kind is written out."""
+    return {"kind": RobotResponse.usual, **value} if isinstance(value, dict) else value
+
+
+#: One of the responses, or the default kind.
+RobotResponseChoice = Annotated[
+    Annotated[HumanResponse | GivingWay, Field(discriminator="kind")],
+    BeforeValidator(_usual),
+]
+
+__all__ = ["GivingWay", "HumanResponse", "RobotResponse", "RobotResponseChoice"]

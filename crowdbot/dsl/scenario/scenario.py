@@ -23,7 +23,7 @@ from pydantic import (
 from crowdbot.dsl.scenario.group_forces import GroupForces
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.scenario.people_kinds import PeopleKind
-from crowdbot.dsl.scenario.robot_response import RobotResponse
+from crowdbot.dsl.scenario.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.scenario.routing import RoutingChoice
 from crowdbot.dsl.scenario.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.scenario.steering import SteeringSpec, unset
@@ -156,8 +156,8 @@ class Crowd(Spec):
         description="Where in a portal people go on each trip: anywhere, so that ways cross, or "
         "straight ahead of where they come in or start.",
     )
-    robot_response: RobotResponse = Field(
-        default=RobotResponse(), description="How people respond to the robot."
+    robot_response: RobotResponseChoice = Field(
+        default=HumanResponse(), description="How people respond to the robot."
     )
     routing: RoutingChoice | None = Field(
         default=None,

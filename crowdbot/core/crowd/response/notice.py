@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from crowdbot.core.crowd.contact.robot_contact import (
     RobotRecord,
     corners_of,
@@ -54,10 +56,11 @@ def reacts(
             away2, around = dx * dx + dy * dy, extent_of(outline) + reach
             if away2 < (FAR + _FASTEST * response.decision + around) ** 2:
                 agents[i].beside = 1.0
-            if away2 > (response.sight + around) ** 2:
+            sight = _sight(agents, i, robots[r], response)
+            if away2 > (sight + around) ** 2:
                 continue
             depth, nx, ny, _, _ = overlap(robots[r].yaw, outline, dx, dy, reach)
-            if depth < -response.sight:
+            if depth < -sight:
                 continue
             near = True
             if agents[i].noticed == UNAWARE and not found:
@@ -68,6 +71,15 @@ def reacts(
         agents[i].noticed = now
     noticed: float = agents[i].noticed
     return noticed != UNAWARE and now - noticed >= float(response.reaction_time)
+
+
+@kernel
+def _sight(agents: People, i: int, robot: RobotRecord, response: DecisionResponse) -> float:
+    """Return the gap within which agent i may notice a robot, m: farther the faster both move."""
+    if response.sight_time == 0.0:
+        return response.sight
+    speed = math.hypot(robot.vx, robot.vy) + math.hypot(agents[i].vx, agents[i].vy)
+    return max(float(response.sight), float(response.sight_time * speed))
 
 
 @kernel
@@ -82,11 +94,13 @@ def _sees(
     response: DecisionResponse,
 ) -> bool:
     """Return True if agent i notices a robot within sight, in the direction n, now."""
+    closing = (agents[i].vx - robot.vx) * nx + (agents[i].vy - robot.vy) * ny
     if nx * agents[i].dir_x + ny * agents[i].dir_y < response.view_cosine:
-        return False  # what is behind is not seen
+        # what is behind is not seen, but vehicles are heard
+        loud = math.hypot(robot.vx, robot.vy) > response.clearance_speed
+        return loud and gap < response.hearing_time * closing
     if not late:
         return True
-    closing = (agents[i].vx - robot.vx) * nx + (agents[i].vy - robot.vy) * ny
     share = stands(robot, 0.0, response.seen_standing, response.seen_moving)
     time = response.late_time + share * (response.late_time_standing - response.late_time)
     return gap < max(float(response.late_gap), float(time * closing))

@@ -35,6 +35,15 @@ class DecisionResponse:
     seen_standing: float
     seen_moving: float
     all_stop: float
+    sight_time: float
+    hearing_time: float
+    clearance_range: float
+    clearance_growth: float
+    clearance_speed: float
+    most_clearance: float
+    yield_time: float
+    speeding_up: float
+    intent: float
 
 
 class TickResponse:
@@ -73,6 +82,20 @@ class Human:
         standing_stiffness: stiffness of that gap, 1/s^2.
         shown_to_policies: True if policies of attentive people also see robots.
         all_stop_short: True if people who ignore robots stop in front of a standing one.
+        sight_time: time to contact within which attentive people notice beyond ``sight``, s.
+        hearing_time: the same for robots faster than ``clearance_speed`` that come from behind,
+            s; 0: people do not hear.
+        clearance_range: half the range of the desired gap over people, m: attentive people keep
+            more, inattentive ones less.
+        clearance_growth: growth of the desired gap with the robot's speed above
+            ``clearance_speed``, s.
+        clearance_speed: m/s.
+        most_clearance: largest desired gap by growth, m.
+        yield_time: people pass behind a crossing robot, even by a longer way, if it is longer by
+            less than the robot drives in this time, s.
+        speeding_up: largest acceleration in one's own direction by which people evade, m/s^2.
+        intent: time over which people's desired acceleration counts in their prediction, s: who
+            waits expects to walk on.
     """
 
     sight: float = 6.0
@@ -93,6 +116,15 @@ class Human:
     standing_stiffness: float = 100.0
     shown_to_policies: bool = False
     all_stop_short: bool = False
+    sight_time: float = 0.0
+    hearing_time: float = 0.0
+    clearance_range: float = 0.0
+    clearance_growth: float = 0.0
+    clearance_speed: float = 1.0
+    most_clearance: float = 0.0
+    yield_time: float = 0.0
+    speeding_up: float = math.inf
+    intent: float = 0.0
 
     def by_decision(self, dt: float) -> Rows[DecisionResponse]:
         """(1,) the numbers for decisions that come every ``dt`` seconds."""
@@ -114,6 +146,15 @@ class Human:
             seen_standing=self.standing_speed,
             seen_moving=self.moving_speed,
             all_stop=self.all_stop_short,
+            sight_time=self.sight_time,
+            hearing_time=self.hearing_time,
+            clearance_range=self.clearance_range,
+            clearance_growth=self.clearance_growth,
+            clearance_speed=self.clearance_speed,
+            most_clearance=self.most_clearance,
+            yield_time=self.yield_time,
+            speeding_up=self.speeding_up,
+            intent=self.intent,
         )
         return rows_in(numbers, DECISION_RESPONSE)
 

@@ -15,7 +15,7 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sim.build_crowd import build_crowd
-from crowdbot.dsl.scenario.robot_response import RobotResponse
+from crowdbot.dsl.scenario.robot_response import HumanResponse
 from tests.core.crowd.crowd_reference import Array
 from tests.core.crowd.crowd_worlds import TICKS, Straight, rows, walkers
 
@@ -151,4 +151,4 @@ def test_the_scenario_says_it(words: str, ignoring: float, late: float) -> None:
 )
 def test_what_makes_no_sense_is_refused(given: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
-        RobotResponse(**given)  # type: ignore[arg-type]
+        HumanResponse(**given)  # type: ignore[arg-type]
