@@ -18,13 +18,19 @@ if TYPE_CHECKING:
 
     from crowdbot.core.realism.calibrate import Fit, Generation
     from crowdbot.core.registry.registry import Registry
+    from crowdbot.dsl.scenario.scenario import Crowd
 
 _PLACES = ("speed", "body", "policy", "costs", "steering")
 
 
 def calibrate(
     crowd: Annotated[
-        str, typer.Argument(metavar="POLICY", help="A named crowd, a part, or a kind of policy.")
+        str,
+        typer.Argument(
+            metavar="POLICY",
+            help="A named crowd, a part, or a kind of policy; with --robot also a kind of "
+            "response.",
+        ),
     ],
     reference: Annotated[
         list[Path] | None,
@@ -40,6 +46,10 @@ def calibrate(
             metavar="KEY=LOW..HIGH", help="Fit this number, SI units; default: all of them."
         ),
     ] = None,
+    robot: Annotated[
+        bool,
+        typer.Option("--robot", help="Fit the response to robots to people near robots."),
+    ] = False,
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd first; repeatable."),
@@ -62,33 +72,37 @@ def calibrate(
 ) -> None:
     """Fit a crowd to recorded people and write it as a part; resumes an interrupted fit.
 
-    Example: crowdbot calibrate power_law --fit costs.avoid.k=0.2..4 --generations 20 --jobs 2
+    Examples: crowdbot calibrate power_law --fit costs.avoid.k=0.2..4 --generations 20 --jobs 2
+
+        crowdbot calibrate giving_way --robot --fit clearance=0.1..0.4 --generations 5
     """
     from crowdbot.cli.shared.campaign_run import worker_count
     from crowdbot.core.realism.calibrate import FitTask
     from crowdbot.core.realism.calibrate import fit as run
+    from crowdbot.core.realism.near_robots.calibrate import RobotFitTask
     from crowdbot.core.realism.parameters import parameters_of
-    from crowdbot.core.scenarios.named_crowds import open_crowd
 
     check_ending(out, ".yaml", ".yml")
     registry = installed(plugin, no_plugins)
-    task = FitTask(
+    task = (RobotFitTask if robot else FitTask)(
         crowd=str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,
         overrides=tuple(overrides or ()),
         plugins=tuple(str(p.resolve()) for p in plugin or ()),
         allowed=() if no_plugins else None,
         files=tuple(str(f.resolve()) for f in reference or ()),
     )
-    parameters = parameters_of(open_crowd(task.crowd, registry, task.overrides), fit or ())
+    parameters = parameters_of(
+        _opened(task.crowd, registry, task.overrides, robot), fit or (), robot=robot
+    )
     if not parameters:
         raise InputError(f"{crowd}: it has no number to fit")
-    ceiling = task.reference.ceiling.score  # reads the files before simulating
+    ceiling = task.ceiling  # reads the files before simulating
     typer.echo(f"{len(parameters)} numbers, recorded people reach {ceiling:.3f}", err=True)
     found = run(
         task, parameters, out.with_suffix(".fit.jsonl"), generations=generations,
         population=population, seed=seed, jobs=worker_count(jobs), watch=_show,
     )  # fmt: skip
-    atomic_write(out, _part(task.crowd, registry, task.overrides, found))
+    atomic_write(out, _part(task.crowd, registry, task.overrides, found, robot))
     typer.echo(json.dumps(_facts(found, out), indent=2) if as_json else _text(found, out))
 
 
@@ -98,22 +112,32 @@ def _show(step: Generation) -> None:
     typer.echo(f"step {step.number + 1}: best loss {best:.4f}, mean {mean:.4f}{note}", err=True)
 
 
-def _part(crowd: str, registry: Registry, overrides: Sequence[str], found: Fit) -> str:
+def _opened(crowd: str, registry: Registry, overrides: Sequence[str], robot: bool) -> Crowd:
+    from crowdbot.core.realism.near_robots.responses import open_responding
     from crowdbot.core.scenarios.named_crowds import open_crowd
+
+    return (open_responding if robot else open_crowd)(crowd, registry, overrides)
+
+
+def _part(crowd: str, registry: Registry, overrides: Sequence[str], found: Fit, robot: bool) -> str:
     from crowdbot.dsl.text.plain_yaml import to_yaml
 
     changes = [f"{key}={float(f'{value:.4g}')!r}" for key, value in found.values.items()]
-    fitted = open_crowd(crowd, registry, [*overrides, *changes])
-    content = fitted.model_dump(mode="json", include=set(_PLACES), exclude_defaults=True)
+    fitted = _opened(crowd, registry, [*overrides, *changes], robot)
+    places = (*_PLACES, "robot_response") if robot else _PLACES
+    content = fitted.model_dump(mode="json", include=set(places), exclude_defaults=True)
     content["policy"]["kind"] = fitted.policy.kind
     for name, cost in fitted.costs.items():
         content["costs"][name]["kind"] = cost.kind
+    if robot:
+        content.setdefault("robot_response", {})["kind"] = fitted.robot_response.kind
     head = (
-        f"# Fitted by `crowdbot calibrate {Path(crowd).stem}`: {found.held_out:.3f} beside "
-        f"recordings that were\n# held out, {found.training:.3f} beside those it was fitted to; "
+        f"# Fitted by `crowdbot calibrate {Path(crowd).stem}{' --robot' * robot}`: "
+        f"{found.held_out:.3f} beside recordings that were\n"
+        f"# held out, {found.training:.3f} beside those it was fitted to; "
         f"recorded people reach {found.ceiling:.3f}.\n"
     )
-    return head + to_yaml({"crowd": {n: content[n] for n in _PLACES if content.get(n)}})
+    return head + to_yaml({"crowd": {n: content[n] for n in places if content.get(n)}})
 
 
 def _facts(found: Fit, out: Path) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""``crowdbot realism``: compare a crowd with people recorded in corridors."""
+"""``crowdbot realism``: compare a crowd with people recorded in corridors or near robots."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ def realism(
         str,
         typer.Argument(
             metavar="POLICY|SUITE|RUNS",
-            help="A named crowd, a part, the kind of a policy, a suite, or a folder of runs.",
+            help="A named crowd, a part, the kind of a policy, a suite, or a folder of runs; with "
+            "--robot also human or giving_way.",
         ),
     ],
     reference: Annotated[
@@ -40,7 +41,20 @@ def realism(
             "UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
         ),
     ] = None,
-    seeds: Annotated[str, typer.Option(metavar="1,2,3|1..5", help="Draws.")] = "1..16",
+    robot: Annotated[
+        bool,
+        typer.Option(
+            "--robot", help="Compare how people respond to a robot with people near robots."
+        ),
+    ] = False,
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            metavar="1,2,3|1..5",
+            help="Draws; default 1..16, with --robot 1..2.",
+            show_default=False,
+        ),
+    ] = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd; repeatable."),
@@ -55,13 +69,22 @@ def realism(
 ) -> None:
     """Compare a crowd with recorded people: an index with its parts, ceiling and floor.
 
-    Example: crowdbot realism calibrated --out calibrated.html
+    Examples: crowdbot realism calibrated --out calibrated.html
+
+        crowdbot realism --robot giving_way
     """
     from crowdbot.cli.shared.campaign_run import read_seeds
+    from crowdbot.cli.shared.robot_realism import DRAWS, robot_realism
     from crowdbot.core.realism.page import render
 
     check_ending(out, ".html")
     registry = installed(plugin, no_plugins)
+    if robot:
+        draws = read_seeds(seeds or f"1..{DRAWS}")
+        robot_realism(
+            crowd, reference or [], registry, overrides or [], draws, out=out, as_json=as_json
+        )
+        return
     beside = _reference(reference)
     path = Path(crowd)
     if path.is_dir() or path.suffix.lower() == ".mcap":
@@ -69,7 +92,7 @@ def realism(
             raise UsageError(f"--set: {crowd} are runs, which cannot be changed any more")
         found = [_of_runs(path, beside)]
     else:
-        found = _simulated(crowd, registry, beside, overrides or [], read_seeds(seeds))
+        found = _simulated(crowd, registry, beside, overrides or [], read_seeds(seeds or "1..16"))
     if out is not None:
         atomic_write(out, render(crowd, found))
     typer.echo(_json(found) if as_json else "\n\n".join(_text(one) for one in found))

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from cmaes import CMA
@@ -69,6 +69,44 @@ class FitTask:
         """Return the recorded people: the first half for the fit, the second held out."""
         return _reference(self.files)
 
+    @property
+    def ceiling(self) -> float:
+        """Return the score of one half of the recordings against the other."""
+        return self.reference.ceiling.score
+
+    @property
+    def what(self) -> list[Any]:
+        """Return what tells this fit from others in its log."""
+        return [self.crowd, self.overrides, [digest(Path(f)) for f in self.files]]
+
+    def loss(self, overrides: Sequence[str], seed: int) -> float:
+        """Return the loss of a crowd, see `loss`."""
+        return loss(self, overrides, seed)
+
+    def scores(self, overrides: Sequence[str]) -> tuple[float, float]:
+        """Return the scores against both halves, with held-out draws."""
+        own = _walk(self, overrides, HELD_OUT_DRAWS, 6.0, 10.0)
+        first, second = self.reference.halves
+        return score(own, first).score, score(own, second).score
+
+
+class Fitted(Protocol):
+    """A fit in plain values that can be sent to workers."""
+
+    @property
+    def ceiling(self) -> float:
+        """Return the score of one half of the recordings against the other."""
+
+    @property
+    def what(self) -> list[Any]:
+        """Return what tells this fit from others in its log."""
+
+    def loss(self, overrides: Sequence[str], seed: int) -> float:
+        """Return the loss with some parameters in one draw."""
+
+    def scores(self, overrides: Sequence[str]) -> tuple[float, float]:
+        """Return the scores against both halves of the recordings."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
@@ -99,7 +137,7 @@ class Generation:
 
 
 def fit(
-    task: FitTask,
+    task: Fitted,
     parameters: Sequence[Parameter],
     log: Path,
     *,
@@ -162,7 +200,7 @@ def loss(task: FitTask, overrides: Sequence[str], seed: int) -> float:
 def _walk(
     task: FitTask, overrides: Sequence[str], seeds: Sequence[int], warm_up: float, duration: float
 ) -> Statistics:
-    registry = _registry(task.plugins, task.allowed)
+    registry = registry_of(task.plugins, task.allowed)
     crowd = open_crowd(task.crowd, registry, [*task.overrides, *overrides])
     model = model_of(crowd, registry)
     return statistics_of(
@@ -174,35 +212,35 @@ def _walk(
     )
 
 
-def _result(task: FitTask, parameters: Sequence[Parameter], strategy: CMA, generations: int) -> Fit:
+def _result(task: Fitted, parameters: Sequence[Parameter], strategy: CMA, generations: int) -> Fit:
     """Return the mean of the last generation, since a single best draw is luck."""
     mean = np.clip(np.asarray(strategy.mean, np.float64), 0.0, 1.0)
     deviation = strategy._sigma * np.sqrt(np.diag(strategy._C))
-    own = _walk(task, overrides_of(parameters, mean), HELD_OUT_DRAWS, 6.0, 10.0)
-    first, second = task.reference.halves
+    training, held_out = task.scores(overrides_of(parameters, mean))
     return Fit(
         values={p.key: p.value(float(m)) for p, m in zip(parameters, mean, strict=True)},
         spread={
             p.key: 0.5 * abs(p.value(float(m + d)) - p.value(float(m - d)))
             for p, m, d in zip(parameters, mean, deviation, strict=True)
         },
-        training=score(own, first).score,
-        held_out=score(own, second).score,
-        ceiling=task.reference.ceiling.score,
+        training=training,
+        held_out=held_out,
+        ceiling=task.ceiling,
         evaluations=generations * strategy.population_size,
     )
 
 
-def _head(task: FitTask, parameters: Sequence[Parameter], seed: int, size: int) -> str:
+def _head(task: Fitted, parameters: Sequence[Parameter], seed: int, size: int) -> str:
     """Return the first line that a log of this fit must have."""
     what = [
-        task.crowd, task.overrides, [_digest(Path(f)) for f in task.files], seed, size,
+        *task.what, seed, size,
         [(p.key, p.start, p.low, p.high) for p in parameters],
     ]  # fmt: skip
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()
 
 
-def _digest(path: Path) -> str:
+def digest(path: Path) -> str:
+    """Return the SHA-256 of a file, hexadecimal."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
@@ -230,22 +268,23 @@ _Asked = Sequence[tuple[Sequence[str], int]]
 
 
 @contextmanager
-def _losses(task: FitTask, jobs: int) -> Iterator[Callable[[_Asked], list[float]]]:
+def _losses(task: Fitted, jobs: int) -> Iterator[Callable[[_Asked], list[float]]]:
     """Yield a function for the losses of a generation: in this process or in several."""
     if jobs <= 1:
-        yield lambda asked: [loss(task, overrides, seed) for overrides, seed in asked]
+        yield lambda asked: [task.loss(overrides, seed) for overrides, seed in asked]
         return
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
 
         def all_of(asked: _Asked) -> list[float]:
-            waiting = [pool.submit(loss, task, list(o), seed) for o, seed in asked]
+            waiting = [pool.submit(task.loss, list(o), seed) for o, seed in asked]
             return [one.result() for one in waiting]
 
         yield all_of
 
 
 @cache
-def _registry(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Registry:
+def registry_of(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Registry:
+    """Return the installed components, discovered once per process."""
     return discover(extra=[Path(p) for p in plugins], allow=allowed)
 
 
@@ -254,4 +293,4 @@ def _reference(files: tuple[str, ...]) -> RealismReference:
     return read_reference([Path(f) for f in files]) if files else shipped()
 
 
-__all__ = ["Fit", "FitTask", "Generation", "fit", "loss"]
+__all__ = ["Fit", "FitTask", "Fitted", "Generation", "digest", "fit", "loss", "registry_of"]

@@ -18,6 +18,11 @@ _FIXED = (
     "mass", "max_speed", "max_acceleration", "height", "range", "angle", "contact_stiffness",
 )  # fmt: skip
 _PLACES = ("policy", "costs", "steering", "speed", "body")
+_RESPONSE = ("robot_response",)
+#: Numbers of a response to robots that are fitted by default: those that encounters depend on most.
+_FITTED_RESPONSE = (
+    "clearance", "clearance_range", "clearance_growth", "most_clearance", "yield_time", "horizon",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,28 +56,32 @@ class Parameter:
         return (value - self.low) / (self.high - self.low)
 
 
-def parameters_of(crowd: Crowd, chosen: Sequence[str] = ()) -> list[Parameter]:
+def parameters_of(
+    crowd: Crowd, chosen: Sequence[str] = (), *, robot: bool = False
+) -> list[Parameter]:
     """Return the chosen parameters, or all positive ones from half to twice their value.
 
     Args:
         crowd: the crowd with the parameters.
+        robot: take parameters of its response to robots.
         chosen: ``key=low..high`` texts; ``crowd.`` is optional; default bounds: half to twice.
 
     Raises:
         UnknownNameError: the crowd has no such parameter.
         InputError: the bounds are invalid.
     """
-    known = dict(numbers(crowd))
+    known = dict(numbers(crowd, _RESPONSE if robot else _PLACES))
     if not chosen:
-        keys = [k for k in known if known[k] > 0.0 and not _is_fixed(k)]
+        kept = _is_fitted_response if robot else _is_free
+        keys = [k for k in known if known[k] > 0.0 and kept(k)]
         return [_around(k, known[k]) for k in keys]
     return [_chosen(text, known) for text in chosen]
 
 
-def numbers(crowd: Crowd) -> Iterator[tuple[str, float]]:
-    """Yield key and value of every number that describes a crowd."""
-    content = crowd.model_dump(mode="json", include=set(_PLACES))
-    for place in _PLACES:
+def numbers(crowd: Crowd, places: Sequence[str] = _PLACES) -> Iterator[tuple[str, float]]:
+    """Yield key and value of every number that describes a crowd, in some of its fields."""
+    content = crowd.model_dump(mode="json", include=set(places))
+    for place in places:
         if isinstance(content.get(place), Mapping):
             yield from _numbers(f"crowd.{place}", content[place])
 
@@ -97,8 +106,12 @@ def _numbers(above: str, content: Mapping[str, Any]) -> Iterator[tuple[str, floa
             yield f"{above}.{name}", value
 
 
-def _is_fixed(key: str) -> bool:
-    return any(word in _FIXED for word in key.split(".")[1:])
+def _is_free(key: str) -> bool:
+    return not any(word in _FIXED for word in key.split(".")[1:])
+
+
+def _is_fitted_response(key: str) -> bool:
+    return key.rpartition(".")[2] in _FITTED_RESPONSE
 
 
 def _around(key: str, value: float) -> Parameter:
@@ -108,6 +121,8 @@ def _around(key: str, value: float) -> Parameter:
 def _chosen(text: str, known: Mapping[str, float]) -> Parameter:
     key, equals, bounds = text.partition("=")
     key = key.strip() if key.startswith("crowd.") else f"crowd.{key.strip()}"
+    within = f"crowd.robot_response.{key.removeprefix('crowd.')}"
+    key = within if within in known else key
     if key not in known:
         raise UnknownNameError("number of the crowd", key, sorted(known))
     if not equals:

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from crowdbot.core.geometry.footprint import Footprint
+from crowdbot.core.realism.tracks import NothingToCompareError
 from crowdbot.core.trajectories.footprint_of_run import footprint_of
 from crowdbot.core.trajectories.resample import interpolated
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
-from crowdbot.errors import InputError
 
 #: Samples per second, and standard deviation of the smoothing of positions, s.
 RATE, SMOOTHING = 16.0, 0.3
@@ -68,13 +68,15 @@ def clip_of(run: Trajectories, name: str, site: str | None = None) -> Clip:
     """Convert a run with a robot and people to a clip.
 
     Raises:
-        InputError: robot or people are missing, or the run is shorter than 3 s.
+        NothingToCompareError: robot or people are missing, or the run is shorter than 3 s.
     """
     if run.robot is None or run.agents is None or not run.agents.x.size:
         missing = "robot" if run.robot is None else "people"
-        raise InputError(f"{name}: there is no {missing} in it")
+        raise NothingToCompareError(f"{name}: there is no {missing} in it")
     if run.t[-1] - run.t[0] < 3.0:
-        raise InputError(f"{name}: {run.t[-1] - run.t[0]:.1f} s are too short, 3 s are needed")
+        raise NothingToCompareError(
+            f"{name}: {run.t[-1] - run.t[0]:.1f} s are too short, 3 s are needed"
+        )
     footprint = footprint_of(run) or Footprint(np.zeros((0, 2)), run.robot.radius)
     robot, agents = run.robot, run.agents
     t = np.arange(run.t[0], run.t[-1], 1.0 / RATE)
@@ -109,7 +111,15 @@ def smoothed(values: Array, dt: float) -> Array:
     known = np.isfinite(values).all(axis=1)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], known.astype(np.int8), [0]])))
     for begin, end in edges.reshape(-1, 2):
-        out[begin:end] = gaussian_filter1d(
-            values[begin:end], SMOOTHING / dt, axis=0, mode="nearest"
-        )
+        out[begin:end] = _smoothed(values[begin:end], SMOOTHING / dt)
     return out
+
+
+def _smoothed(values: Array, sigma: float) -> Array:
+    """Smooth values that go on beyond both ends as point reflections: steady motion stays."""
+    pad = min(len(values) - 1, round(4.0 * sigma))
+    before = 2.0 * values[0] - values[pad:0:-1]
+    after = 2.0 * values[-1] - values[-2 : -2 - pad : -1]
+    longer = np.concatenate([before, values, after])
+    smooth = gaussian_filter1d(longer, sigma, axis=0, mode="nearest")
+    return np.asarray(smooth[pad : pad + len(values)])

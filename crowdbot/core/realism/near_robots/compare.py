@@ -38,9 +38,9 @@ class Similarity:
     parts: Mapping[str, float]
 
 
-def compared(recorded: Mapping[Cell, CellStatistics]) -> list[Cell]:
+def compared(recorded: Mapping[Cell, CellStatistics], least: int = LEAST) -> list[Cell]:
     """Return the cells with enough recorded encounters."""
-    return [cell for cell, found in recorded.items() if found.count >= LEAST]
+    return [cell for cell, found in recorded.items() if found.count >= least]
 
 
 def similarity(

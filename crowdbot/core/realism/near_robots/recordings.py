@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core.geometry.footprint import Footprint
 from crowdbot.core.realism.near_robots.clip import RATE, Clip, clip_from_arrays, clip_of
 from crowdbot.core.realism.near_robots.encounters import BODY
+from crowdbot.core.realism.tracks import NothingToCompareError
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.own_recordings import columns_of
 from crowdbot.core.trajectories.raw_table import RawTable, read_table
@@ -59,6 +60,24 @@ def clips_of_run(path: Path) -> list[Clip]:
     with Recording(path) as recording:
         runs = [recording.trajectories(name) for name in recording.robots or (None,)]
     return [clip_of(run, str(path)) for run in runs]
+
+
+def clips_of_runs(files: Sequence[Path]) -> tuple[list[Clip], list[str]]:
+    """Return the clips of finished runs, and why others are left out.
+
+    Raises:
+        InputError: a recording cannot be read, or all are left out.
+    """
+    found: list[Clip] = []
+    without: list[str] = []
+    for file in files:
+        try:
+            found += clips_of_run(file)
+        except NothingToCompareError as error:
+            without.append(str(error))
+    if not found:
+        raise InputError(without[0])
+    return found, without
 
 
 def _table(path: Path) -> Clip:

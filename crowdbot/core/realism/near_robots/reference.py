@@ -98,23 +98,28 @@ def shipped() -> RobotReference:
 
 
 def reference_of(
-    encounters: Sequence[Encounter], sources: Sequence[str], *, scenes: bool = False
+    encounters: Sequence[Encounter],
+    sources: Sequence[str],
+    *,
+    scenes: bool = False,
+    least: int = LEAST,
 ) -> RobotReference:
     """Build a reference from recorded encounters.
 
     Args:
         scenes: keep distributions to draw scenes from instead of the encounters.
+        least: encounters that a cell needs.
 
     Raises:
         InputError: no cell has enough encounters.
     """
     features = features_of(encounters, [e.person for e in encounters])
     whole = statistics_of(encounters, features)
-    cells = compared(whole)
+    cells = compared(whole, least)
     if not cells:
         raise InputError(
             f"{', '.join(sources)}: {len(encounters)} meetings of people and robot; "
-            f"{LEAST} of one kind and speed are needed"
+            f"{least} of one kind and speed are needed"
         )
     members = {c: [e for e in encounters if cell_of(e) == c] for c in cells}
     return RobotReference(

@@ -21,8 +21,6 @@ from crowdbot.core.types.arrays import Array
 
 #: Distance of the goal, straight on, m.
 _FAR = 1e4
-#: Straight walk added at both ends before smoothing, s.
-_PAD = 1.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,17 +69,7 @@ def _walk(response: Response, e: Encounter, attention: float, key: int) -> Array
         found[k] = rows[0, s.X : s.Y + 1]
         for tick in range(per if k + 1 < len(e.t) else 0):
             engine.advance(flat, robots[k * per + tick : k * per + tick + 1], outline)
-    return _smoothed(found, e)
-
-
-def _smoothed(person: Array, e: Encounter) -> Array:
-    """Return positions smoothed as recorded ones are, which go on beyond both ends, m."""
-    dt = float(e.t[1] - e.t[0])
-    pad = round(_PAD / dt)
-    ahead = dt * np.arange(1, pad + 1)[:, np.newaxis]
-    before = person[0] - ahead[::-1] * e.velocity
-    after = person[-1] + ahead * (person[-1] - person[-2]) / dt
-    return smoothed(np.concatenate([before, person, after]), dt)[pad:-pad]
+    return smoothed(found, float(e.t[1] - e.t[0]))
 
 
 def _engine(response: Response, e: Encounter, attention: float, key: int) -> CrowdEngine:

@@ -1,0 +1,60 @@
+"""The index of a response as rows of text."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.realism.near_robots.features import FEATURES, SHARES
+from crowdbot.core.realism.near_robots.measure import RobotRealism
+
+_MIDDLE = 9  # of the 19 quantiles
+_NAMES = {
+    "gap": "smallest gap, m",
+    "onset_ttc": "onset before they would meet, s",
+    "onset_gap": "gap at the onset, m",
+    "deviation": "off the straight line, m",
+    "lateral_acceleration": "sideways, 95 %, m/s²",
+    "braking": "braking, 95 %, m/s²",
+    "slowest": "slowest, of the initial speed",
+    "evades": "share who evade",
+    "passes_first": "share who pass first",
+}
+CELL_HEAD = ["encounter", "recorded", "index", "these people", "recorded people", "ignore it"]
+FEATURE_HEAD = ["encounter", "feature", "these people", "recorded"]
+
+
+def cell_rows(found: RobotRealism) -> list[list[str]]:
+    """Return rows: cell, recorded encounters, index, score, ceiling and floor."""
+    rows = [
+        ["all", str(sum(found.reference.weights.values())), f"{found.index:.2f}"]
+        + [f"{v:.3f}" for v in (found.score, found.ceiling, found.floor)]
+    ]
+    for cell, (index, *scores) in found.cells.items():
+        count = str(found.reference.whole[cell].count)
+        rows.append([" ".join(cell), count, _two(index), *(f"{v:.3f}" for v in scores)])
+    return rows
+
+
+def part_rows(found: RobotRealism) -> list[list[str]]:
+    """Return rows: feature, similarity of these people and of those who ignore the robot."""
+    return [[_NAMES[n], f"{a:.3f}", f"{b:.3f}"] for n, (a, b) in found.parts.items()]
+
+
+def feature_rows(found: RobotRealism) -> list[list[str]]:
+    """Return rows: cell, feature, median or share of these people and of recorded people."""
+    rows = []
+    for cell in found.cells:
+        own, recorded = found.statistics.get(cell), found.reference.whole[cell]
+        for name in FEATURES:
+            values = [
+                np.nan if s is None
+                else s.shares[name] if name in SHARES else s.quantiles[name][_MIDDLE]
+                for s in (own, recorded)
+            ]  # fmt: skip
+            if np.isfinite(values[1]):
+                rows.append([" ".join(cell), _NAMES[name], *(_two(float(v)) for v in values)])
+    return rows
+
+
+def _two(value: float) -> str:
+    return f"{value:.2f}" if np.isfinite(value) else "–"
