@@ -78,6 +78,20 @@ def test_a_subset_of_the_challenge_is_three_lines(tmp_path: Path) -> None:
     assert mine.items() <= whole.items()
 
 
+def test_to_the_letter_policies_see_the_robot_and_people_fill_the_loop() -> None:
+    one, other = (open_spec(n, REGISTRY) for n in ("challenge-2020", "challenge-2020-letter"))
+    assert [s.id for s in one.scenarios] == [s.id for s in other.scenarios]
+    for scenario in other.scenarios:
+        crowd = scenario.crowd
+        assert crowd is not None
+        assert crowd.flow is not None
+        assert crowd.robot_response.shown_to_policies
+        loop = scenario.environment.zones[crowd.flow.area]
+        ends = [scenario.environment.portals[name] for name in "ab"]
+        assert (loop.x, loop.y) == ((ends[0].x[0], ends[1].x[1]), (-5.0, 5.0))
+        assert crowd.flow.density * loop.area in (65.0, 130.0, 260.0)
+
+
 def test_the_literal_challenge_differs_in_one_field() -> None:
     one, other = (open_spec(n, REGISTRY) for n in ("challenge-2020", "challenge-2020-literal"))
     assert ids(one) == ids(other)

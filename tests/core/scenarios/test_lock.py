@@ -305,9 +305,11 @@ def test_a_suite_with_the_agents_of_the_one_it_extends_shares_their_file(suite: 
     ("name", "count"),
     [
         ("challenge-2020", 162),
+        ("challenge-2020-letter", 162),
         ("challenge-2020-literal", 162),
         ("challenge-2020-robots", 5 * 162),
         ("challenge-2021", 144),
+        ("challenge-2021-2d", 12),
         ("challenge-2026", 162),
     ],
 )
