@@ -15,6 +15,7 @@ from typing import IO
 
 from crowdbot.core.bundle.manifest import MANIFEST, Manifest, Member, parse_manifest
 from crowdbot.core.support.atomic_write import atomic_path
+from crowdbot.dsl.text.bounded_files import open_file, reason_of
 from crowdbot.errors import InputError
 
 #: Allowed files in a bundle: suffix -> largest size, bytes.
@@ -157,9 +158,10 @@ def open_archive(path: Path) -> Iterator[Archive]:
         InputError: missing file, not a bundle, or not written by crowdbot.
     """
     try:
+        open_file(path).close()
         file = zipfile.ZipFile(path)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from None
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise InputError(f"{path} is not a bundle: {error}") from None
     with file:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections import defaultdict
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.crowd.agents import REMOVE, Agents
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -75,7 +77,7 @@ def read_record(path: Path) -> RecordedCrowd:
     """
     rows: dict[int, dict[float, tuple[float, float]]] = defaultdict(dict)
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
+        with io.StringIO(input_text(path, LARGEST_TABLE), newline="") as file:
             table = csv.reader(file)
             header = tuple(name.strip() for name in next(table, []))
             if header != COLUMNS:
@@ -88,7 +90,7 @@ def read_record(path: Path) -> RecordedCrowd:
                             f"{path}:{table.line_num}: id {who} is in two places at t = {t:g}"
                         )
                     rows[who][t] = (x, y)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except csv.Error as error:
         raise InputError(f"{path}: cannot be read: {error}") from error
     if not rows:
         raise InputError(f"{path}: the record is empty")

@@ -19,6 +19,7 @@ from crowdbot.core.planning.unchanged_files import UnchangedFiles
 from crowdbot.core.support.source_digest import (
     data_files,
     digest_of_files,
+    file_digest,
     source_digest,
     source_files,
 )
@@ -179,6 +180,8 @@ class _Program:
     def _named_files(self) -> Iterator[tuple[str, Path]]:
         patterns = self._words("files") if "files" in self._document else []
         for pattern in patterns:
+            if not pattern.strip("/. ") or Path(pattern).is_absolute() or ".." in pattern:
+                self._fail(f"files: '{pattern}' is not a name or pattern in {self._folder}")
             found = [p for p in sorted(self._folder.glob(pattern)) if p.is_file()]
             if not found:
                 self._fail(f"files: nothing in {self._folder} fits '{pattern}'")
@@ -222,4 +225,4 @@ def _sources(path: Path) -> set[Path]:
 def _file_digest(path: Path) -> str:
     if path.suffix == ".py":
         return source_digest(path)
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return file_digest(path)

@@ -15,10 +15,10 @@ from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
 from crowdbot.core.types.task import Task
-from crowdbot.errors import hidden_character
+from crowdbot.errors import PlannerError, hidden_character
 
-#: Largest length of a signal's name.
-_LONGEST_NAME = 200
+#: Largest length of a signal's name, and numbers of names and values in a run.
+_LONGEST_NAME, _MOST_SIGNALS, _MOST_VALUES = 200, 1000, 2_000_000
 
 
 def _ignore(name: str, value: float) -> None:
@@ -93,6 +93,26 @@ def named_signal(name: str, value: float) -> tuple[str, float]:
             f"not {name[:40]!a}"
         )
     return name, float(value)
+
+
+class SignalBounds:
+    """The number of signals in one run, which recordings and pages have to hold."""
+
+    def __init__(self) -> None:
+        self._names, self._values = set[str](), 0
+
+    def check(self, name: str) -> None:
+        """Count one value of a signal.
+
+        Raises:
+            PlannerError: the run has too many.
+        """
+        self._names.add(name)
+        self._values += 1
+        if len(self._names) > _MOST_SIGNALS:
+            raise PlannerError(f"log: more than {_MOST_SIGNALS} names of signals in a run")
+        if self._values > _MOST_VALUES:
+            raise PlannerError(f"log: more than {_MOST_VALUES} values of signals in a run")
 
 
 class NoValidCommand(Exception):  # noqa: N818 - a word of the planner contract

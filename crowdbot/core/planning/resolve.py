@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.containment.declared import needs_of_class, needs_of_kind
@@ -38,10 +36,8 @@ from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import PlannerRole, PlannerSpec
 from crowdbot.dsl.suite.settings import setting_texts
+from crowdbot.dsl.text.plain_document import parse_setting, read_document
 from crowdbot.errors import InputError
-
-#: Largest planner document, bytes.
-_LONGEST = 1_000_000
 
 __all__ = ["PlannerChoice", "PlannerPlace", "kinds_of_role", "resolve_planner", "select_sensors"]
 
@@ -221,38 +217,19 @@ def setting_values(settings: Sequence[str] | Mapping[str, Any]) -> dict[str, Any
     settings = setting_texts(settings)
     values: dict[str, Any] = {}
     for setting in settings:
-        key, equals, value = setting.partition("=")
+        key, equals, _ = setting.partition("=")
         if not equals or not key.strip():
             raise InputError(f"'{setting}' is not a setting; write key=value")
-        try:
-            values[key.strip()] = YAML(typ="safe", pure=True).load(value)
-        except YAMLError as error:
-            raise InputError(f"'{setting}': the value is not YAML: {_first(error)}") from None
+        name, value = parse_setting(setting, "--planner-set")
+        values[name] = value
     return values
 
 
 def _read(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > _LONGEST:
-            raise InputError(f"{path}: is larger than {_LONGEST // 1_000_000} MB")
-        document = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read: {_reason(error)}") from None
-    except YAMLError as error:
-        raise InputError(f"{path}: not valid YAML: {_first(error)}") from None
-    if not isinstance(document, dict) or not all(isinstance(k, str) for k in document):
+    document = read_document(path, str(path))
+    if not isinstance(document, dict):
         raise InputError(f"{path}: a planner is a mapping with 'kind' and parameters")
     return document
-
-
-def _reason(error: OSError | UnicodeDecodeError) -> str:
-    return str(getattr(error, "strerror", None) or error)
-
-
-def _first(error: YAMLError) -> str:
-    mark = getattr(error, "problem_mark", None)
-    problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-    return f"line {mark.line + 1}: {problem}" if mark is not None else str(problem)
 
 
 # --------------------------------------------------------------------- Python files

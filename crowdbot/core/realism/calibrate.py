@@ -31,6 +31,7 @@ from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes, input_text
 from crowdbot.errors import CrowdbotError, InputError
 
 #: Spread of the first generation, as a share of each parameter's range.
@@ -241,7 +242,7 @@ def _head(task: Fitted, parameters: Sequence[Parameter], seed: int, size: int) -
 
 def digest(path: Path) -> str:
     """Return the SHA-256 of a file, hexadecimal."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return hashlib.sha256(input_bytes(path, 4 * LARGEST_TABLE)).hexdigest()
 
 
 def _read_log(log: Path, head: str) -> list[list[float]]:
@@ -249,7 +250,7 @@ def _read_log(log: Path, head: str) -> list[list[float]]:
     if not log.exists():
         return []
     lines: list[Any] = []
-    for line in log.read_text(encoding="utf-8").splitlines():
+    for line in input_text(log).splitlines():
         try:
             lines.append(json.loads(line))
         except ValueError:

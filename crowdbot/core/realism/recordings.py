@@ -9,6 +9,7 @@ from crowdbot.core.realism.tracks import NothingToCompareError, Tracks, tracks_o
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.bag_tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.dsl.text.bounded_files import open_file
 from crowdbot.errors import InputError
 
 #: Separator between a bag and a topic in it.
@@ -97,7 +98,7 @@ def _run(path: Path) -> Trajectories:
 
 def _origin(path: Path) -> tuple[str, str]:
     """Return profile and library from a container's first record; empty if missing."""
-    with path.open("rb") as file:
+    with open_file(path) as file:
         head = file.read(_LONGEST)
     at, found = _HEAD, []
     for _ in range(2):

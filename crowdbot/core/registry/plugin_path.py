@@ -16,6 +16,7 @@ from typing import Any
 
 from crowdbot.core.registry.plugin import Plugin
 from crowdbot.core.support.source_digest import digest_of_files, package_files, source_digest
+from crowdbot.core.support.text_files import read_text
 from crowdbot.errors import InputError, PluginError
 
 #: Entry point group in which a distribution names its plugin module.
@@ -164,10 +165,10 @@ def _project(path: Path) -> tuple[Path, Mapping[str, str]] | None:
 
 def _declared(file: Path) -> dict[str, str]:
     try:
-        document = tomllib.loads(file.read_text(encoding="utf-8"))
+        document = tomllib.loads(read_text(file))
         entries = document.get("project", {}).get("entry-points", {}).get(GROUP, {})
         return {str(name): str(value) for name, value in entries.items()}
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, AttributeError) as error:
+    except (OSError, ValueError, AttributeError, RecursionError) as error:
         raise PluginError(f"{file}: cannot be read: {error}") from error
 
 

@@ -17,8 +17,10 @@ import numpy as np
 
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
 from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
+from crowdbot.core.support.text_files import LARGEST
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import DifferentialDrive
+from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.errors import PluginError, did_you_mean, nearest
 
 Format = Literal["sdf", "urdf"]
@@ -192,7 +194,8 @@ def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
         return source, None
     file = Path(source) if isinstance(source, str) else source
     try:
-        text = file.read_text(encoding="utf-8")
+        inside = None if isinstance(file, Path) else file.read_bytes()
+        text = (read_bytes(Path(str(file)), LARGEST) if inside is None else inside).decode()
     except (OSError, UnicodeDecodeError) as error:
         raise PluginError(f"robot description {file} cannot be read: {error}") from error
     return text, file.parent if isinstance(file, Path) else None

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core.robots.xml import numbers
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes
 from crowdbot.core.types.arrays import Array
 
 _HEAD, _FACE = 84, 50  # bytes of a binary STL's header, and of each triangle
@@ -29,7 +30,7 @@ def mesh_box(file: Path, scale: str = "1 1 1") -> tuple[Vector, Vector] | None:
     """
     read = {".stl": _stl, ".obj": _obj}.get(file.suffix.lower())
     factors = numbers(scale, "the scale of a mesh")
-    points = np.zeros((0, 3)) if read is None else read(file.read_bytes())
+    points = np.zeros((0, 3)) if read is None else read(input_bytes(file, LARGEST_TABLE))
     if not len(points) or len(factors) != 3 or not np.all(np.isfinite(points)):
         return None
     ends = np.stack([points.min(axis=0), points.max(axis=0)]) * factors

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.run_directory import RECORD, SCENARIO, SCORES
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scenarios.library import open_spec, pick, suite_names
+from crowdbot.core.support.text_files import read_text
 from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash
 from crowdbot.errors import InputError
 
@@ -99,7 +101,7 @@ def _run(folder: Path, registry: Registry, overrides: Sequence[str]) -> DiffSide
 
 def _scores(path: Path) -> dict[str, Any]:
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with io.StringIO(read_text(path), newline="") as file:
             rows = list(csv.DictReader(file))
         return {
             f"{row['metric']}.{row['variant']}": {

@@ -32,6 +32,7 @@ from crowdbot.dsl.suite.commitment import (
 )
 from crowdbot.dsl.suite.expand import expand_document
 from crowdbot.dsl.suite.suite import ParsedSuite
+from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError
 
@@ -168,8 +169,7 @@ def read_secret(path: Path) -> Secret:
         InputError: it cannot be read, or is not one.
     """
     try:
-        with path.open("rb") as file:
-            text = file.read(_LONGEST).decode()
+        text = read_bytes(path, _LONGEST).decode()
         return Secret.model_validate_json(text)
     except OSError as error:
         raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
@@ -189,7 +189,7 @@ def read_seed(path: Path) -> int:
         InputError: it cannot be read, or contains something else.
     """
     try:
-        text = path.read_bytes()[:_LONGEST].decode("ascii", errors="replace").strip()
+        text = read_bytes(path, _LONGEST).decode("ascii", errors="replace").strip()
     except OSError as error:
         raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     if not re.fullmatch(r"[0-9]{1,19}", text) or int(text) >= _SEEDS:

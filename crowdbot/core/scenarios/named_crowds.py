@@ -9,6 +9,7 @@ from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import installed, plugin_folders
+from crowdbot.core.support.text_files import input_bytes
 from crowdbot.dsl.scenario.scenario import Crowd
 from crowdbot.dsl.suite.expand import expand_document, load_document
 from crowdbot.dsl.text.diagnostics import Diagnostic
@@ -124,5 +125,5 @@ def _in_crowd(override: str) -> str:
 
 def _is_document(path: Path) -> bool:
     """Return True if a file is a suite or a scenario: parts have no ``crowdbot: 1``."""
-    text = path.read_text(encoding="utf-8", errors="replace")
+    text = input_bytes(path).decode(errors="replace")
     return any(line.startswith("crowdbot:") for line in text.splitlines())

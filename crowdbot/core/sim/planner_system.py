@@ -22,7 +22,7 @@ from pydrake.systems.framework import (
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
-from crowdbot.core.planning.planner import Observation, Truth, named_signal
+from crowdbot.core.planning.planner import Observation, SignalBounds, Truth, named_signal
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
@@ -126,7 +126,7 @@ class PlannerSystem(LeafSystem):
         self._bank = bank
         self._slots = {n: s for n, s in bank.slots.items() if n in visible}
         self._odometry = next((s for s in bank.slots.values() if is_odometry(s.info)), None)
-        self._on_step, self._on_signal = on_step, on_signal
+        self._on_step, self._on_signal, self._bounds = on_step, on_signal, SignalBounds()
         self._port = self.DeclareVectorInputPort(
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
         )
@@ -199,6 +199,10 @@ class PlannerSystem(LeafSystem):
         ]
         return self._people.truth(robot, crowd, others)
 
+    def _signal(self, t: float, name: str, value: float) -> None:
+        self._bounds.check(name)
+        self._on_signal(t, name, value)
+
     def _observe(self, bank: Array, t: float, truth: Truth | None) -> Observation:
         pose, twist, sideways = self._task.start, (0.0, 0.0), [0.0]
         if self._odometry is not None:
@@ -216,7 +220,7 @@ class PlannerSystem(LeafSystem):
                 for n, s in self._slots.items()
                 if bank[s.stamp] >= 0.0
             },
-            log=lambda name, value: self._on_signal(t, *named_signal(name, value)),
+            log=lambda name, value: self._signal(t, *named_signal(name, value)),
             truth=truth,
         )
 

@@ -13,6 +13,7 @@ from crowdbot.core.results.rows import RunRow
 from crowdbot.core.statistics.floors import Lead, lead_over, primary_name
 from crowdbot.core.statistics.table import Table
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.text_files import input_text
 from crowdbot.errors import InputError
 
 #: Format version of the file.
@@ -203,11 +204,7 @@ def read_audit(path: Path) -> Audit:
     Raises:
         InputError: it cannot be read, or holds something else.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: cannot be read: {why}") from error
+    text = input_text(path)
     try:
         return Audit.model_validate_json(text)
     except ValidationError as error:

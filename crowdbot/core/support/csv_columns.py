@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from pathlib import Path
 
 import numpy as np
 
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -22,7 +24,7 @@ def read_columns(
             names the line).
     """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
+        with io.StringIO(input_text(path, LARGEST_TABLE), newline="") as file:
             reader = csv.DictReader(file, strict=True)
             header = reader.fieldnames or ()
             missing = [name for name in needed if name not in header]
@@ -30,9 +32,7 @@ def read_columns(
                 raise InputError(f"{path}:1: the column {', '.join(missing)} is missing")
             names = [*needed, *(n for n in optional if n in header)]
             rows = [[_cell(path, reader.line_num, n, row[n]) for n in names] for row in reader]
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except (csv.Error, UnicodeDecodeError) as error:
+    except csv.Error as error:
         raise InputError(f"{path}: not a table: {error}") from error
     table = np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
     return {name: table[:, i] for i, name in enumerate(names)}

@@ -10,7 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.machinery import all_suffixes
 from pathlib import Path
+from typing import Any, cast
 
+from crowdbot.dsl.text.bounded_files import open_file, read_bytes, reason_of
 from crowdbot.errors import InputError
 
 _FOREIGN = {*sys.stdlib_module_names, "crowdbot"}
@@ -19,6 +21,8 @@ _BY_NAME = ("import_module", "__import__")
 _MOST_DATA = 10_000
 #: Size from which digests are remembered until a file changes, bytes.
 _LARGE = 4 << 20
+#: Largest file of a planner, such as weights, and largest source whose imports are read, bytes.
+_LARGEST, _LARGEST_SOURCE = 32 * 10**9, 20_000_000
 
 
 def source_digest(file: Path, data: Sequence[str] = ()) -> str:
@@ -61,14 +65,16 @@ def file_digest(file: Path) -> str:
         InputError: it cannot be read.
     """
     try:
-        with file.open("rb") as opened:
+        with open_file(file) as opened:
             about = os.fstat(opened.fileno())
+            if about.st_size > _LARGEST:
+                raise OSError(f"is larger than {_LARGEST // 10**9} GB")
             if about.st_size < _LARGE:
-                return hashlib.file_digest(opened, "sha256").hexdigest()
+                return hashlib.file_digest(cast(Any, opened), "sha256").hexdigest()
             state = (about.st_dev, about.st_ino, about.st_size, about.st_ctime_ns)
             return _digest_of_state(file.absolute(), state)
     except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+        raise InputError(f"{file}: cannot be read: {reason_of(error)}") from None
 
 
 @lru_cache(maxsize=1024)
@@ -162,8 +168,8 @@ def _helpers_of(folder: Path, files: Iterable[Path], own: set[str]) -> set[Path]
 def _imported(file: Path) -> set[str]:
     """Return the top module names that a file imports."""
     try:
-        nodes = list(ast.walk(ast.parse(file.read_bytes())))
-    except (SyntaxError, ValueError, RecursionError, OSError):
+        nodes = list(ast.walk(ast.parse(read_bytes(file, _LARGEST_SOURCE))))
+    except (SyntaxError, ValueError, RecursionError, MemoryError, OSError):
         return set()  # importing it gives the reason
     names = {alias.name for n in nodes if isinstance(n, ast.Import) for alias in n.names}
     names |= {n.module for n in nodes if isinstance(n, ast.ImportFrom) and n.module and not n.level}

@@ -36,6 +36,37 @@ def parse_json(text: str) -> Any:
     return content
 
 
+def parse_foreign_json(text: str) -> Any:
+    """Return the content of a document that another program wrote, such as GeoJSON.
+
+    Repeated keys, hidden characters and NaN are left to the reader; depth and numbers are bounded.
+
+    Raises:
+        ValueError: it is not JSON, too deep, or a number is too long; the message says where.
+    """
+    try:
+        content = json.loads(text.removeprefix("\ufeff"), parse_int=_whole)
+    except json.JSONDecodeError as error:
+        raise ValueError(f"line {error.lineno}, column {error.colno}: {error.msg}") from None
+    except RecursionError:
+        raise ValueError(f"it is nested deeper than {DEEPEST} brackets") from None
+    if _is_deeper(content, DEEPEST):
+        raise ValueError(f"it is nested deeper than {DEEPEST} brackets")
+    return content
+
+
+def _is_deeper(content: Any, most: int) -> bool:
+    """Return True if lists and objects are nested deeper than ``most``."""
+    waiting = [(content, 0)]
+    while waiting:
+        value, depth = waiting.pop()
+        if depth > most:
+            return True
+        inner = value.values() if isinstance(value, dict) else value
+        waiting += [(v, depth + 1) for v in inner if isinstance(v, (dict, list))]
+    return False
+
+
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):

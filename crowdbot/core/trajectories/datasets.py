@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.trajectories.raw_table import RawTable
 from crowdbot.errors import InputError, UnknownNameError
 
@@ -130,9 +131,4 @@ def _once(table: RawTable) -> RawTable:
 
 
 def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a text file: {error}") from error
+    return input_text(path, LARGEST_TABLE)

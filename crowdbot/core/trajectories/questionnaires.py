@@ -6,6 +6,7 @@ The metrics report invalid answers as a reason, so that one wrong form does not 
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.support.arguments import path_of
+from crowdbot.core.support.text_files import input_text
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Scales of the NASA task load index; a low rating of performance is good.
@@ -83,16 +85,14 @@ class Questionnaires:
         """
         path = path_of("path", path)
         try:
-            with path.open(encoding="utf-8-sig", newline="") as file:
+            with io.StringIO(input_text(path), newline="") as file:
                 reader = csv.DictReader(file, strict=True)
                 if not set(_COLUMNS) <= set(reader.fieldnames or ()):
                     raise InputError(f"{path}:1: expected the columns {','.join(_COLUMNS)}")
                 cells: dict[tuple[str, str], Answer] = {}
                 for row in reader:
                     _add_cell(cells, f"{path}:{reader.line_num}", row)
-        except OSError as error:
-            raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-        except (csv.Error, UnicodeDecodeError) as error:
+        except csv.Error as error:
             raise InputError(f"{path}: not a table: {error}") from error
         return cls._from_cells(cells)
 

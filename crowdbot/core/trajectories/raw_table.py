@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.support.arguments import expect, number_of
-from crowdbot.core.support.text_files import suggest_files
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
 
@@ -183,13 +183,7 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     Raises:
         InputError: it cannot be read, is not a table, or lacks a named column.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        near = suggest_files(path) if isinstance(error, FileNotFoundError) else ""
-        raise InputError(f"{path}: cannot be read: {error.strerror}{near}") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a table: {error}") from error
+    text = input_text(path, LARGEST_TABLE)
     lines = text.splitlines()
     if not lines:
         raise InputError(f"{path}:1: the file is empty")

@@ -18,8 +18,11 @@ from pydantic import Field, ValidationError, model_validator
 from crowdbot.dsl.scenario.agent_tables import is_plain, split_tables, table_hash
 from crowdbot.dsl.scenario.field_hashes import Values, changed_fields
 from crowdbot.dsl.spec.spec import Spec
+from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.errors import InputError
 
+#: Largest lock, or table of agents, bytes.
+_LARGEST = 256_000_000
 #: Version of the lock format of this release.
 LOCK = 2
 
@@ -210,8 +213,9 @@ def _check_format(content: dict[str, Any], name: str, spec: str) -> None:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_bytes().decode()
+        return read_bytes(path, _LARGEST).decode()
     except OSError as error:
-        raise InputError(f"{path.name}: {(error.strerror or str(error)).lower()}") from None
+        why = (error.strerror or str(error)).lower()
+        raise InputError(f"{path.name}: {why}") from None
     except UnicodeDecodeError:
         raise InputError(f"{path.name} is not UTF-8 text") from None

@@ -20,16 +20,9 @@ def read_text(path: Path, name: str) -> str:
         SpecError: E001, there is no such file or it is not a text of reasonable size.
     """
     try:
-        with open_file(path) as file:
-            raw = file.read(MAX_BYTES + 1)
-    except IsADirectoryError:
-        raise _unreadable(name, "is a folder, not a file") from None
+        raw = read_bytes(path)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        reason = "no such file" if isinstance(error, FileNotFoundError) else reason
-        raise _unreadable(name, reason) from None
-    if len(raw) > MAX_BYTES:
-        raise _unreadable(name, f"is larger than {MAX_BYTES // 1_000_000} MB")
+        raise _unreadable(name, reason_of(error)) from None
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise _unreadable(name, "is UTF-16; save it as UTF-8")
     if b"\0" in raw:
@@ -40,6 +33,42 @@ def read_text(path: Path, name: str) -> str:
         line = raw.count(b"\n", 0, error.start) + 1
         raise _unreadable(name, f"is not UTF-8 (line {line}); save it as UTF-8") from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
+    """Return the content of a plain file.
+
+    Args:
+        path: the file.
+        most: largest size, bytes.
+
+    Raises:
+        OSError: it cannot be read, is something else, such as a pipe, or is larger.
+        ValueError: the path is not one.
+    """
+    with open_file(path) as file:
+        if os.fstat(file.fileno()).st_size > most:
+            raise OSError(f"is larger than {_size(most)}")
+        return file.read(most)
+
+
+def reason_of(error: Exception) -> str:
+    """Return why a file cannot be read, in lower case."""
+    if isinstance(error, FileNotFoundError):
+        return "no such file"
+    if isinstance(error, IsADirectoryError):
+        return "is a folder, not a file"
+    if isinstance(error, UnicodeDecodeError):
+        return "is not UTF-8 text"
+    text = getattr(error, "strerror", None) or str(error)
+    return text[:1].lower() + text[1:]
+
+
+def _size(most: int) -> str:
+    for unit, size in (("GB", 10**9), ("MB", 10**6)):
+        if most >= size:
+            return f"{most // size} {unit}"
+    return f"{most} bytes"
 
 
 def open_file(path: Path) -> BinaryIO:

@@ -25,6 +25,7 @@ CODES = {
     "E013": "neither suite nor scenario",
     "E014": "version of a component",
     "E015": "table of agents",
+    "E016": "hidden character",
     "E102": "unknown field",
     "E103": "missing field",
     "E110": "bad quantity",

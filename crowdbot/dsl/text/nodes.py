@@ -15,7 +15,7 @@ from typing import Any
 
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
 from crowdbot.dsl.text.yaml_events import events_of
-from crowdbot.errors import SpecError
+from crowdbot.errors import SpecError, hidden_character
 
 MAX_DEPTH = 32
 
@@ -226,6 +226,7 @@ class _Builder:
             if key is None:
                 self._node(event, depth + 1)
             else:
+                self._refuse_hidden(key, mark)
                 self._refuse_indirection(event, mark)
             node = self._node(self._next(), depth + 1)
             if self._usable(key, event, mark, entries):
@@ -244,8 +245,15 @@ class _Builder:
             return True
         return False
 
+    def _refuse_hidden(self, text: str, mark: Mark) -> None:
+        """Refuse characters that one cannot see, which results and bundles refuse, too."""
+        if hidden := hidden_character(text):
+            hint = "it comes from a web page or an editor; write the text again"
+            self._add("E016", f"the text has the hidden character {hidden}", mark, hint)
+
     def _scalar(self, event: Any, mark: Mark) -> Scalar:
         text: str = event.value
+        self._refuse_hidden(text, mark)
         if not event.implicit[0]:
             return text
         if text in _WORDS:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -15,6 +15,8 @@ import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
 
+from crowdbot.core.support.strict_json import DEEPEST, parse_foreign_json
+from crowdbot.core.support.text_files import input_text
 from crowdbot.plugin import Face, InputError, Place, Solid, outlines
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_units_build import (
@@ -32,6 +34,8 @@ from crowdbot.plugins.environments.ros_map_build import (
 )
 
 _LOG = logging.getLogger(__name__)
+#: Largest file of a vector plan, bytes.
+_LARGEST = 8_000_000
 #: Largest number of corners that can be simulated.
 MOST_CORNERS = 20_000
 #: Largest length or width of a plan, m; the usual cause of more is a wrong unit.
@@ -146,13 +150,7 @@ def _read(
 ) -> _Plan:
     if spec.read_as == "ros_map":
         return _Plan(walkable=[_read_ros_map(spec, file, image)])
-    if file is None:
-        text = spec.wkt or ""
-    else:
-        try:
-            text = file.read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"{name}: cannot be read as text: {error}") from error
+    text = spec.wkt or "" if file is None else input_text(file, _LARGEST, name)
     if spec.read_as == "wkt":
         found, crs = [(_from_wkt(text, name), dict[str, Any]())], ""
     else:
@@ -181,19 +179,31 @@ def _read_ros_map(spec: FloorPlanFields, file: Path | None, image: Path | None) 
 
 # ------------------------------------------------------------------------- vector formats
 def _from_wkt(text: str, name: str) -> Any:
+    _check_depth(text, name)
     try:
         return shapely.from_wkt(text.strip())
     except shapely.errors.ShapelyError as error:
         raise InputError(f"{name}: is not well-known text: {error}") from error
 
 
+def _check_depth(text: str, name: str) -> None:
+    """Refuse geometries that are nested deeper than the library's stack allows."""
+    depth = 0
+    for found in re.finditer(r"[()]", text):
+        depth += 1 if found[0] == "(" else -1
+        if depth > DEEPEST:
+            line = text.count("\n", 0, found.start()) + 1
+            column = found.start() - text.rfind("\n", 0, found.start())
+            raise InputError(
+                f"{name}: line {line}, column {column}: nested deeper than {DEEPEST} brackets"
+            )
+
+
 def _from_json(text: str, name: str) -> Any:
     try:
-        return json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        where = getattr(error, "lineno", None)
-        at = f"line {where}: " if where else ""
-        raise InputError(f"{name}: {at}is not JSON: {getattr(error, 'msg', error)}") from error
+        return parse_foreign_json(text)
+    except ValueError as error:
+        raise InputError(f"{name}: is not JSON: {error}") from error
 
 
 def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:

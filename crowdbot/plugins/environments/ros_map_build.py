@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 from numpy.typing import NDArray
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes
+from crowdbot.dsl.text.plain_document import read_document
+from crowdbot.errors import SpecError
 from crowdbot.plugin import InputError, did_you_mean, nearest
 
 #: Largest image, px; anything larger is a mistake.
@@ -65,8 +66,8 @@ def read_map(file: Path) -> RosMap:
         InputError: it is not a valid map; the message says why.
     """
     try:
-        content = YAML(typ="safe", pure=True).load(file.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, YAMLError) as error:
+        content = read_document(file, file.name)
+    except SpecError as error:
         raise InputError(f"{file.name}: is not a map.yaml: {error}") from error
     if not isinstance(content, dict) or "image" not in content:
         raise InputError(f"{file.name}: is not a map.yaml: it names no image")
@@ -120,10 +121,7 @@ def read_grey(file: Path, *, see_through: bool = False) -> NDArray[np.float64]:
     Raises:
         InputError: it is neither PGM nor PNG.
     """
-    try:
-        content = file.read_bytes()
-    except OSError as error:
-        raise InputError(f"{file.name}: cannot be read: {error.strerror}") from error
+    content = input_bytes(file, LARGEST_TABLE, file.name)
     if content[:2] in (b"P2", b"P5"):
         return _read_pgm(file.name, content)
     if content[:4] == b"\x89PNG":

@@ -114,9 +114,15 @@ def test_unknown_kind(registry: Registry) -> None:
         (["speed=fast"], "planner 'tiny': speed: Input should be a valid number"),
         (["speed"], "'speed' is not a setting; write key=value"),
         (["=1"], "'=1' is not a setting"),
-        (["speed=[1"], r"'speed=\[1': the value is not YAML"),
+        (["speed=[1"], r"--planner-set:1:\d+: error\[E002\]"),
+        (["speed=&a 1"], r"--planner-set:1:7: error\[E004\]"),
+        (["speed=" + "9" * 6000], r"--planner-set:1:7: error\[E008\]"),
+        (["speed=" + "[" * 900 + "]" * 900], r"--planner-set:1:46: error\[E009\]"),
         (["length=3 s"], "length: '3 s' is not a quantity of length"),
-        (["speed=.nan"], "speed: Input should be a finite number"),
+        (
+            ["speed=.nan"],
+            r"--planner-set:1:7: error\[E008\] .nan is not allowed; numbers are finite",
+        ),
         (["speed=-1", "sped=1"], "(?s)speed:.*'sped'"),
     ],
 )
@@ -146,11 +152,16 @@ def test_yaml_file(registry: Registry, tmp_path: Path) -> None:
         ("kind: 3\n", "'kind' is missing"),
         ("- kind: tiny\n", "a planner is a mapping"),
         ("", "a planner is a mapping"),
-        ("3: tiny\n", "a planner is a mapping"),
+        ("3: tiny\n", "'kind' is missing"),
         ("kind: tny\n", "did you mean 'tiny'"),
         ("kind: tiny\nsped: 1\n", "no parameter 'sped'"),
-        ("kind: [tiny\n", "not valid YAML: line 2"),
-        ("kind: tiny\nkind: tiny\n", "not valid YAML: line 2"),
+        ("kind: [tiny\n", r"mine.yml:2:1: error\[E002\]"),
+        ("kind: tiny\nkind: tiny\n", r"mine.yml:2:1: error\[E003\]"),
+        ("kind: tiny\nspeed: &a 1\n", r"mine.yml:2:8: error\[E004\]"),
+        ("kind: tiny\nspeed: !!binary aGk=\n", r"mine.yml:2:8: error\[E005\]"),
+        ("kind: tiny\nspeed: " + "9" * 6000, r"mine.yml:2:8: error\[E008\]"),
+        ("kind: tiny\nspeed: " + "[" * 900 + "]" * 900, r"mine.yml:2:40: error\[E009\]"),
+        ("kind: tiny\n" + "#" * 1_000_001, r"mine.yml:1:1: error\[E001\] is larger than 1 MB"),
     ],
 )
 def test_wrong_yaml_files(registry: Registry, tmp_path: Path, text: str, message: str) -> None:
@@ -162,12 +173,12 @@ def test_wrong_yaml_files(registry: Registry, tmp_path: Path, text: str, message
 
 
 def test_unreadable_yaml_files(registry: Registry, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"none.yaml: cannot be read: No such file"):
+    with pytest.raises(InputError, match=r"none.yaml:1:1: error\[E001\] no such file"):
         resolve_planner(str(tmp_path / "none.yaml"), registry)
     (tmp_path / "bin.yaml").write_bytes(b"\xff\xfe\x00\xd8")
-    with pytest.raises(InputError, match=r"bin.yaml: cannot be read"):
+    with pytest.raises(InputError, match=r"bin.yaml:1:1: error\[E001\] is UTF-16"):
         resolve_planner(str(tmp_path / "bin.yaml"), registry)
-    with pytest.raises(InputError, match=r"cannot be read: Is a directory"):
+    with pytest.raises(InputError, match=r"error\[E001\] is a folder"):
         resolve_planner(f"{tmp_path}/", registry)
 
 

@@ -50,6 +50,7 @@ BEYOND = {
     "E007": "several documents, or a directive",
     "E010_draw": "a name that is taken only beside another key",
     "E015": "another file",
+    "E016": "characters that are escaped",
     "E142": "what an environment is like",
     "E143": "where ways lead",
     "E144": "another file, or its text",

@@ -107,7 +107,7 @@ def test_a_bow_tie_is_repaired_with_a_warning(caplog: pytest.LogCaptureFixture) 
     [
         ("a.wkt", "POLYGON ((0 0, 1", "is not well-known text"),
         ("a.wkt", "POINT (1 1)", "neither a floor nor a wall"),
-        ("a.geojson", '{"type": "FeatureCollection",\n "features": [', "line 2: is not JSON"),
+        ("a.geojson", '{"type": "FeatureCollection",\n "features": [', "is not JSON: line 2, column 15"),
         ("a.geojson", '{"type": "Topology"}', "type 'Topology'"),
         ("a.geojson", '{"type": "Polygon", "coordinates": [[1]]}', "a Polygon is damaged"),
         ("a.geojson", "[" * 100_000, "is not JSON"),
@@ -116,7 +116,7 @@ def test_a_bow_tie_is_repaired_with_a_warning(caplog: pytest.LogCaptureFixture) 
             '{"type": "Polygon", "coordinates": [[[0, 0], [NaN, 0], [9, 8], [0, 0]]]}',
             "a coordinate is not finite",
         ),
-        ("a.geojson", b"\xff\xfe", "cannot be read as text"),
+        ("a.geojson", b"\xff\xfe", "cannot be read: is not UTF-8"),
         ("map.yaml", "resolution: 0.1\n", "names no image"),
         ("map.yaml", "image: m.pgm\nresolution: 0\norigin: [0, 0, 0]\n", "above 0"),
         ("map.yaml", "image: m.pgm\nresolution: 0.1\n", "origin is missing"),

@@ -18,6 +18,7 @@ from mcap.records import Attachment, AttachmentIndex
 
 from crowdbot.core.recording.container.chunk import serialised
 from crowdbot.core.recording.container.ending import END_OF_DATA_SIZE, FileIndex, ending
+from crowdbot.dsl.text.bounded_files import open_file
 from crowdbot.errors import InputError
 
 #: Header of a record: its type and length.
@@ -67,7 +68,7 @@ def attached(path: Path) -> list[tuple[str, bytes]]:
         InputError: they cannot be read, or their checksums are wrong.
     """
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             summary = SeekingReader(file).get_summary()
             if summary is None or summary.statistics is None:
                 raise ValueError("it has no index")
@@ -91,7 +92,7 @@ def _index(path: Path) -> tuple[FileIndex, int]:
     """Return the file's index, and where attachments, or else the end of data, start."""
     problem = InputError(f"{path}: not a complete recording: it has no index")
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             summary = SeekingReader(file).get_summary()
             file.seek(-37, os.SEEK_END)
             begin = int.from_bytes(file.read(37)[9:17], "little")

@@ -36,6 +36,7 @@ from mcap.records import (
 from mcap.stream_reader import MAGIC_SIZE, read_magic
 
 import crowdbot.core.recording.messages as ros
+from crowdbot.dsl.text.bounded_files import open_file, reason_of
 from crowdbot.errors import InputError
 
 #: Our chunks have 256 KiB plus one message. Larger ones are refused before decompression.
@@ -102,11 +103,11 @@ class Records:
                 decompressed.
         """
         try:
-            with self._path.open("rb") as file, _mapped(file.fileno()) as data:
+            with open_file(self._path) as file, _mapped(file.fileno()) as data:
                 self._left = MAX_RECORDS + 2 * len(data)
                 yield from self._records(data)
         except OSError as error:
-            raise InputError(f"{self._path}: cannot be read: {error.strerror}") from error
+            raise InputError(f"{self._path}: cannot be read: {reason_of(error)}") from error
 
     def channel(self, topic: str) -> Opened:
         """Return the file's description of a topic with messages; the latest of its channels."""
