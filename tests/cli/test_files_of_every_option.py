@@ -1,60 +1,174 @@
-"""Every argument and option that takes a file: what is no plain, small text ends with an error.
+"""Each argument and option that takes a file: a pipe, a device and a huge file end as an error.
 
-The options are those that the commands have, so that a new one is tested, too.
+The table below must name every parameter of every command, so that a new one is thought of.
 """
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import os
+import resource
 import signal
+import typing
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import click
 import pytest
-import typer.main
+import typer
 
 from crowdbot.cli import main
-from crowdbot.cli.app.typer_app import app
+from crowdbot.cli.app.command_names import command_names
+from tests.paths import DATA
 
-#: Words that name files although they are text, by metavar or name of the parameter.
-_NAMES_OF_FILES = ("SPEC", "FILE", "RUN", "BUNDLE", "PATH", "CSV", "YAML", "MCAP")
-#: Parameters that are written, or whose text is no file: reasons why they are left out.
-_WRITTEN = {"out", "save"}
-_OTHER = {
-    ("plugins", "new"): "makes a project",
-    ("draws", "make_public"): "is no file",
-}
-#: What has to be given as well, per command.
-_ALSO: dict[str, list[str]] = {}
-#: Seconds until an invocation counts as one that waits for ever.
-_PATIENCE = 20
+SHORT, TABLE = str(DATA / "short_way.yaml"), str(DATA / "recordings" / "format_3.mcap")
+#: Command and parameter -> command line, ``{}`` is the file; the ending of its name.
+TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
+    ("audit", "suite"): (".yaml", "audit", "{}"),
+    ("bundle", "root"): ("", "bundle", "{}"),
+    ("bundle", "suite"): (".yaml", "bundle", "RUNS", "--suite", "{}"),
+    ("bundle", "source"): (".yaml", "bundle", "RUNS", "--check", "--source", "{}"),
+    ("calibrate", "crowd"): (".yaml", "calibrate", "{}"),
+    ("calibrate", "reference"): (".csv", "calibrate", "rvo", "--reference", "{}"),
+    ("campaign", "suites"): (".yaml", "campaign", "{}", "--planner", "dwa", "--out", "RUNS"),
+    ("campaign", "planner"): (
+        ".yaml", "campaign", SHORT, "--planner", "{}", "--out", "RUNS", "--no-floors",
+    ),
+    ("campaign", "crowds"): (
+        ".yaml", "campaign", SHORT, "--planner", "dwa", "--crowds", "{}", "--out", "RUNS",
+    ),
+    ("diff", "a"): (".yaml", "diff", "{}", SHORT),
+    ("diff", "b"): (".yaml", "diff", SHORT, "{}"),
+    ("draws commit", "suite"): (".yaml", "draws", "commit", "{}"),
+    ("draws commit", "seed_file"): (
+        ".txt", "draws", "commit", SHORT, "--seed-file", "{}", "--print", "--secret", "RUNS/s",
+    ),
+    ("draws reveal", "suite"): (".yaml", "draws", "reveal", "{}"),
+    ("draws reveal", "secret"): (".json", "draws", "reveal", SHORT, "--secret", "{}"),
+    ("draws check", "suite"): (".yaml", "draws", "check", "{}"),
+    ("evaluate", "runs"): (".mcap", "evaluate", "{}"),
+    ("evaluate", "robot_alone"): (".mcap", "evaluate", TABLE, "--robot-alone", "{}"),
+    ("evaluate", "crowd_alone"): (".mcap", "evaluate", TABLE, "--crowd-alone", "{}"),
+    ("evaluate", "commands"): (".csv", "evaluate", TABLE, "--commands", "{}"),
+    ("evaluate", "commands_baseline"): (".csv", "evaluate", TABLE, "--commands-baseline", "{}"),
+    ("evaluate", "questionnaires"): (".csv", "evaluate", TABLE, "--questionnaires", "{}"),
+    ("expand", "spec"): (".yaml", "expand", "{}"),
+    ("export", "run"): (".mcap", "export", "{}", "--to", "csv"),
+    ("export-map", "spec"): (".yaml", "export-map", "{}"),
+    ("export-urdf", "spec"): (".yaml", "export-urdf", "robot", "--spec", "{}"),
+    ("info", "file"): (".mcap", "info", "{}"),
+    ("leaderboard", "folder"): ("", "leaderboard", "{}", "--out", "RUNS/l.html"),
+    ("leaderboard", "audit"): (".json", "leaderboard", "RUNS", "--audit", "{}"),
+    ("lock", "spec"): (".yaml", "lock", "{}"),
+    ("realism", "crowd"): (".yaml", "realism", "{}"),
+    ("realism", "reference"): (".csv", "realism", "rvo", "--reference", "{}"),
+    ("recover", "file"): (".mcap", "recover", "{}"),
+    ("report", "root"): ("", "report", "{}"),
+    ("report", "reference"): ("", "report", "RUNS", "--reference", "{}"),
+    ("report", "audit"): (".json", "report", "RUNS", "--audit", "{}"),
+    ("results export", "out"): ("", "results", "export", "{}"),
+    ("results failures", "out"): ("", "results", "failures", "{}"),
+    ("results atlas", "out"): ("", "results", "atlas", "{}"),
+    ("serve", "spec"): (".yaml", "serve", "{}"),
+    ("simulate", "spec"): (".yaml", "simulate", "{}", "--out", "RUNS"),
+    ("simulate", "planner"): (".yaml", "simulate", SHORT, "--out", "RUNS", "--planner", "{}"),
+    ("validate", "specs"): (".yaml", "validate", "{}"),
+    ("verify", "bundle"): (".cbz", "verify", "{}"),
+    ("verify", "suite"): (".yaml", "verify", "RUNS/none.cbz", "--suite", "{}"),
+    ("view", "spec"): (".yaml", "view", "{}"),
+    ("view", "others"): (".yaml", "view", "RUNS", "{}", "--out", "RUNS/v.html"),
+}  # fmt: skip
+#: Parameters that name no file to read: names, numbers, addresses, and what is written.
+NO_FILES = {
+    "accept", "allow_origin", "axes", "by", "cluster", "command_topic", "commitment", "connect",
+    "contact", "csv", "distro", "fit", "folder", "host", "id_", "kind", "md", "metrics", "name",
+    "one", "only", "out", "overrides", "page", "parquet", "planner", "planner_set", "robot",
+    "scenario", "search", "secret", "seeds", "suite", "team", "title", "token", "user_topic",
+    "variant", "zenoh", "floor", "source",
+}  # fmt: skip
+#: Read after something else that an empty folder lacks, by a reader that the others test.
+NOT_REACHED = {
+    ("bundle", "source"), ("leaderboard", "audit"), ("report", "reference"), ("report", "audit"),
+    ("verify", "suite"),
+}  # fmt: skip
+#: Seconds after which a command counts as one that waits for ever.
+PATIENCE = 30
 
 
-def _commands(group: click.Group, path: tuple[str, ...] = ()) -> Iterator[tuple[str, click.Command]]:
-    for name, command in group.commands.items():
-        if isinstance(command, click.Group):
-            yield from _commands(command, (*path, name))
-        else:
-            yield " ".join((*path, name)), command
+def _parameters() -> Iterator[tuple[str, str, Any]]:
+    for name in command_names():
+        module = name.replace("-", "_")
+        found = getattr(importlib.import_module(f"crowdbot.cli.commands.{module}"), module)
+        functions = [(name, found)]
+        if isinstance(found, typer.Typer):
+            named = ((c.name, c.callback) for c in found.registered_commands)
+            functions = [(f"{name} {n or getattr(f, '__name__', '')}", f) for n, f in named]
+        for shown, function in functions:
+            for parameter in inspect.signature(function, eval_str=True).parameters.values():
+                yield shown, parameter.name, typing.get_args(parameter.annotation)[0]
 
 
-def _takes_a_file(parameter: click.Parameter) -> bool:
-    if parameter.name in _WRITTEN or getattr(parameter, "hidden", False):
-        return False
-    if isinstance(parameter.type, click.Path) or "Path" in type(parameter.type).__name__:
-        return True
-    shown = (parameter.metavar or "").upper()
-    return any(word in shown for word in _NAMES_OF_FILES)
+def test_the_table_names_each_parameter() -> None:
+    known = {(command, name) for command, name, _ in _parameters()}
+    assert set(TAKEN) <= known
+    for command, name, kind in _parameters():
+        if name == "plugin" or not ("Path" in str(kind) or "str" in str(kind)):
+            continue  # plugins: tests/cli/test_plugin_paths.py
+        assert (command, name) in TAKEN or name in NO_FILES, (command, name)
 
 
-def _places() -> list[tuple[str, str]]:
-    group = typer.main.get_command(app())
-    assert isinstance(group, click.Group)
-    return [
-        (name, str(parameter.name))
-        for name, command in _commands(group)
-        for parameter in command.params
-        if _takes_a_file(parameter)
-    ]
+@pytest.fixture(autouse=True)
+def _bounded() -> Iterator[None]:
+    """End a test that waits for a pipe, or reads a device into memory."""
+
+    def late(*_: object) -> None:
+        raise AssertionError("the command waits for ever")
+
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (used + (4 << 30), before[1]))
+    usual = signal.signal(signal.SIGALRM, late)
+    signal.alarm(PATIENCE)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, usual)
+    resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+def _pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def _device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+def _huge(path: Path) -> None:
+    with path.open("wb") as file:
+        file.truncate(2 << 40)
+
+
+def _binary(path: Path) -> None:
+    path.write_bytes(bytes(range(256)) * 10)
+
+
+@pytest.mark.parametrize("make", [_pipe, _device, _huge, _binary])
+@pytest.mark.parametrize("place", TAKEN, ids=lambda place: " ".join(place))
+def test_no_plain_text_is_an_error(
+    place: tuple[str, str],
+    make: Any,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ending, *words = TAKEN[place]
+    file = tmp_path / f"given{ending}"
+    make(file)
+    (tmp_path / "RUNS").mkdir()
+    code = main([word.format(file) for word in words])
+    said = capsys.readouterr().err
+    assert code in (1, 2), said
+    assert "internal error" not in said
+    assert place in NOT_REACHED or "given" in said or "/dev/zero" in said

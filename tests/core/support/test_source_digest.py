@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -11,6 +12,8 @@ from crowdbot.core.support.source_digest import (
     data_files,
     declared_data,
     digest_of_files,
+    file_digest,
+    imported_names,
     package_files,
     source_digest,
 )
@@ -104,3 +107,25 @@ def test_what_is_a_declaration() -> None:
     assert [declared_data(c) for c in (One, Field, Word, Number, object)] == [
         ("a", "b"), (), ("a.npz",), (), (),
     ]  # fmt: skip
+
+
+def test_a_source_that_no_parser_takes_imports_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "p.py"
+    file.write_text("x = " + "-" * 100_000 + "1\n")
+    assert imported_names(file) == set()
+
+
+@pytest.mark.parametrize("kind", ["sparse", "pipe", "device"])
+def test_a_file_without_an_end_has_no_digest(kind: str, tmp_path: Path) -> None:
+    file = tmp_path / "weights.bin"
+    if kind == "sparse":
+        with file.open("wb") as opened:
+            opened.truncate(2 << 40)
+    elif kind == "pipe":
+        os.mkfifo(file)
+    else:
+        file.symlink_to("/dev/zero")
+    with pytest.raises(
+        InputError, match=r"cannot be read: is (larger than 32 GB|a device or pipe)"
+    ):
+        file_digest(file)

@@ -106,8 +106,22 @@ def test_a_bow_tie_is_repaired_with_a_warning(caplog: pytest.LogCaptureFixture) 
     ("name", "content", "message"),
     [
         ("a.wkt", "POLYGON ((0 0, 1", "is not well-known text"),
+        (
+            "a.wkt",
+            "\n" + "GEOMETRYCOLLECTION (" * 100 + ")" * 100,
+            "line 2, column 1300: nested deeper than 64 brackets",
+        ),
+        ("a.wkt", " " * 8_000_001, "is larger than 8 MB"),
+        ("a.geojson", '{"type": "Polygon", "coordinates": [[[' + "9" * 6000, "digits"),
+        ("a.geojson", '{"a": ' * 100 + "1" + "}" * 100, "deeper than 64 brackets"),
+        ("a.geojson", " " * 8_000_001, "is larger than 8 MB"),
+        ("map.yaml", "image: &a m.pgm\n", r"map.yaml:1:8: error\[E004\]"),
         ("a.wkt", "POINT (1 1)", "neither a floor nor a wall"),
-        ("a.geojson", '{"type": "FeatureCollection",\n "features": [', "is not JSON: line 2, column 15"),
+        (
+            "a.geojson",
+            '{"type": "FeatureCollection",\n "features": [',
+            "is not JSON: line 2, column 15",
+        ),
         ("a.geojson", '{"type": "Topology"}', "type 'Topology'"),
         ("a.geojson", '{"type": "Polygon", "coordinates": [[1]]}', "a Polygon is damaged"),
         ("a.geojson", "[" * 100_000, "is not JSON"),
