@@ -28,6 +28,18 @@ settings.register_profile("explore", _any_time, derandomize=False, max_examples=
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _own_key(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """A key for signatures that is not the user's."""
+    place = tmp_path_factory.mktemp("key", numbered=True) / "organiser.key"
+    usual = os.environ.get("CROWDBOT_KEY")
+    os.environ["CROWDBOT_KEY"] = str(place)
+    yield
+    os.environ.pop("CROWDBOT_KEY")
+    if usual is not None:
+        os.environ["CROWDBOT_KEY"] = usual
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Iterator[None]:
     """Import and list the tests without looking for cycles among 600 000 objects that all stay.

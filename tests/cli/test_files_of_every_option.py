@@ -27,7 +27,7 @@ SHORT, TABLE = str(DATA / "short_way.yaml"), str(DATA / "recordings" / "format_3
 TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("audit", "suite"): (".yaml", "audit", "{}"),
     ("bundle", "root"): ("", "bundle", "{}"),
-    ("bundle", "suite"): (".yaml", "bundle", "RUNS", "--suite", "{}"),
+    ("bundle", "suite"): (".yaml", "bundle", "RUNS", "--suite", "{}", "--planner", "dwa"),
     ("bundle", "source"): (".yaml", "bundle", "RUNS", "--check", "--source", "{}"),
     ("calibrate", "crowd"): (".yaml", "calibrate", "{}"),
     ("calibrate", "reference"): (".csv", "calibrate", "rvo", "--reference", "{}"),

@@ -70,7 +70,7 @@ def bundle(
 
     Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --check
     """
-    from crowdbot.cli.commands.verify import print_verdict, verify_bundle
+    from crowdbot.cli.commands.verify import Asked, print_verdict, verify_bundle
     from crowdbot.core.bundle.pack import Submission, other_seeds, pack
     from crowdbot.core.planning.choice import ANYWHERE
     from crowdbot.core.scenarios.library import open_suite
@@ -96,9 +96,10 @@ def bundle(
     if more := other_seeds(submission, expansion):
         seeds = ", ".join(map(str, more))
         typer.echo(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
-    verdict = (
-        verify_bundle(target, registry, suite, (source, ANYWHERE), sample, seed) if check else None
-    )
+    own = tuple(plugin.name for plugin in registry.plugins)  # the team trusts its plugins
+    asked = Asked(size=sample, seed=seed, trusted=own)
+    place = source, ANYWHERE
+    verdict = verify_bundle(target, registry, suite, place, asked) if check else None
     if as_json:
         document = {"bundle": str(target), **manifest.model_dump(mode="json")}
         typer.echo(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))

@@ -32,6 +32,12 @@ def leaderboard(
             metavar="FILE", help="Audit of a suite; repeatable. Default: FOLDER/*audit.json."
         ),
     ] = None,
+    key: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="HEX", help="Believe records that this public key signed; repeatable."
+        ),
+    ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The order as JSON on stdout.")] = False,
@@ -45,6 +51,7 @@ def leaderboard(
     """
     from crowdbot.core.bundle.entries import load_entries
     from crowdbot.core.bundle.leaderboard import write_leaderboard
+    from crowdbot.core.bundle.signature import check_public_key, own_public_key
     from crowdbot.core.bundle.standings import set_apart, standings
     from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, read_audit
@@ -54,7 +61,11 @@ def leaderboard(
     registry = installed(plugin, no_plugins)
     if by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
-    entries, left_out = load_entries(folder, registry)
+    trusted = {check_public_key(text) for text in key or ()} | {own_public_key()} - {""}
+    entries, left_out = load_entries(folder, registry, trusted)
+    for entry in entries:
+        if entry.doubt:
+            typer.echo(printable(f"warning: {entry.doubt}"), err=True)
     entries, apart = set_apart(entries, accept or ())
     left_out = dict(sorted((left_out | apart).items()))
     audits = [read_audit(path) for path in audit or sorted(folder.glob(f"*{AUDIT}"))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import secrets
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
 _SAYS = {
     "verified": "every run that was made again is the same, bit by bit",
     "within tolerance": "runs differ no more than processors and software explain",
+    "nondeterministic": "the planner does not give the same run twice here: rule 4 of the suites",
+    "worse on new people": "the scores are not those of the planner in general",
+    "not contained": "the planner's plugin is loaded into the simulator and can change its results",
     "not comparable": "scores are of other versions of metrics than those that are installed here",
     "suspicious": "ask the team before anything else; see above what does not fit",
     "cannot be re-run": "nothing was simulated",
@@ -63,8 +67,21 @@ def verify(
         str | None, typer.Option(metavar="SPEC", help="The suite, where it is not a packaged one.")
     ] = None,
     save: Annotated[
-        bool, typer.Option("--save", help="Write the outcome to NAME.verified.json beside it.")
+        bool,
+        typer.Option("--save", help="Write the signed outcome to NAME.verified.json beside it."),
     ] = False,
+    trust: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="PLUGIN", help="You have read the code of this planner's plugin; repeatable."
+        ),
+    ] = None,
+    fresh_draws: Annotated[
+        int,
+        typer.Option(
+            min=0, metavar="N", help="Also make N runs with new people, and compare the means."
+        ),
+    ] = 0,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,
     not_contained: Annotated[
@@ -86,8 +103,11 @@ def verify(
 
     place = planner_place(in_process, planner_memory, contained=not not_contained)
     registry = installed(plugin, no_plugins)
-    size = None if everything else sample
-    document = verify_bundle(bundle, registry, suite, (source or planner, place), size, seed)
+    asked = Asked(
+        size=None if everything else sample, seed=seed, trusted=tuple(trust or ()),
+        fresh=fresh_draws,
+    )  # fmt: skip
+    document = verify_bundle(bundle, registry, suite, (source or planner, place), asked)
     if save:
         save_verification(bundle, document)
     if as_json:
@@ -97,13 +117,29 @@ def verify(
     raise typer.Exit(0 if document["ok"] else 1)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """What is verified.
+
+    Attributes:
+        size: number of runs to repeat; None: all.
+        seed: seed of the sample; None: random.
+        trusted: plugins of planners whose code the user has read.
+        fresh: number of runs with new people.
+    """
+
+    size: int | None
+    seed: int | None = None
+    trusted: Sequence[str] = ()
+    fresh: int = 0
+
+
 def verify_bundle(
     bundle: Path,
     registry: Registry,
     suite: str | None,
     planner: tuple[str | None, PlannerPlace],
-    sample: int | None,
-    seed: int | None,
+    asked: Asked,
 ) -> dict[str, Any]:
     """Return the verdict on a bundle as a document, also used by `crowdbot bundle --check`.
 
@@ -112,20 +148,24 @@ def verify_bundle(
         registry: the installed components.
         suite: value of the option ``--suite``.
         planner: value of the option ``--source``, and where it runs.
-        sample: number of runs to repeat; None: all.
-        seed: seed of the sample; None: random.
+        asked: what is verified.
     """
     from crowdbot.core.bundle.archive import open_archive
+    from crowdbot.core.bundle.odds import odds_of_finding
     from crowdbot.core.bundle.verification import content_hash
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
-    seed = secrets.randbelow(2**32) if seed is None else seed
+    seed = secrets.randbelow(2**32) if asked.seed is None else asked.seed
+    asked = replace(asked, seed=seed)
     with open_archive(bundle) as archive, stdout_to_stderr():
         digest = content_hash(bundle)
-        verdict = _verify(archive, registry, suite, planner, (sample, seed, digest))
+        verdict = _verify(archive, registry, suite, planner, asked, digest)
         manifest = archive.manifest
     names = {"planner": manifest.label, "edition": manifest.edition_name}
-    return names | _document(verdict, seed, digest)
+    odds = odds_of_finding(len(manifest.runs), len(verdict.relations))
+    return names | _document(verdict, seed, digest) | {
+        "odds": {str(k): round(p, 4) for k, p in odds.items()}, "trusted": list(asked.trusted),
+    }  # fmt: skip
 
 
 def _verify(
@@ -133,7 +173,8 @@ def _verify(
     registry: Registry,
     suite: str | None,
     planner: tuple[str | None, PlannerPlace],
-    sample: tuple[int | None, int, str],
+    asked: Asked,
+    digest: str,
 ) -> RerunVerdict:
     from crowdbot.core.bundle.check import problems_of
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict
@@ -142,9 +183,29 @@ def _verify(
     runs, problems = problems_of(archive, expansion, registry)
     if problems:
         return RerunVerdict(outcome="invalid", findings=tuple(problems))
-    if sample[0] == 0:
+    if asked.size == 0 and not asked.fresh:
         return RerunVerdict(outcome="not re-run")
-    return _make_reruns(archive, expansion, registry, planner, runs, sample)
+    verdict = _make_reruns(archive, expansion, registry, planner, suite, runs, asked, digest)
+    return _contained(archive, registry, verdict, asked.trusted)
+
+
+def _contained(
+    archive: Archive, registry: Registry, verdict: RerunVerdict, trusted: Sequence[str]
+) -> RerunVerdict:
+    """Return the verdict; a fine one is withheld if the planner's plugin could have made it."""
+    from crowdbot.core.bundle.rerun_verdict import FINE
+    from crowdbot.core.campaign.verify import foreign_owners
+
+    owners = {n: o for n, o in foreign_owners(archive.manifest, registry).items()
+              if n not in trusted}  # fmt: skip
+    if not owners or verdict.outcome not in FINE:
+        return verdict
+    findings = tuple(
+        f"the planner comes with plugin '{name}' ({origin}), which is loaded into the simulator; "
+        f"read its code, then --trust {name}, or have the planner handed in as a file (--source)"
+        for name, origin in owners.items()
+    )
+    return replace(verdict, outcome="not contained", findings=(*verdict.findings, *findings))
 
 
 def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion:
@@ -169,11 +230,14 @@ def _make_reruns(
     expansion: Expansion,
     registry: Registry,
     planner: tuple[str | None, PlannerPlace],
+    suite: str | None,
     runs: Sequence[ClaimedRun],
-    sample: tuple[int | None, int, str],
+    asked: Asked,
+    digest: str,
 ) -> RerunVerdict:
     from crowdbot.cli.shared.one_run import end_hung_process, import_simulate, interruptible
     from crowdbot.cli.shared.progress import show_progress
+    from crowdbot.core.bundle.fresh_verdict import with_fresh
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict, verdict_of
 
     import_simulate()  # reports what is missing if Drake cannot be imported
@@ -182,22 +246,25 @@ def _make_reruns(
         RerunSetup,
         choose_planner,
         draw_sample,
-        make_rerun,
+        make_fresh,
+        make_reruns,
     )
 
     try:
         choice = choose_planner(archive.manifest, registry, *planner)
     except NotRunnable as error:
         return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
-    size, seed, content = sample
     with interruptible() as stop, show_progress() as progress:
         setup = RerunSetup(
             expansion=expansion, registry=registry, choice=choice, progress=progress, stop=stop,
             on_hang=end_hung_process,
         )  # fmt: skip
-        numbers = draw_sample(runs, size, seed, content)
-        reruns = [make_rerun(setup, runs[number]) for number in numbers]
-    return verdict_of(reruns)
+        numbers = draw_sample(runs, asked.size, asked.seed or 0, digest)
+        verdict = verdict_of(make_reruns(setup, [runs[number] for number in numbers]))
+        if not asked.fresh:
+            return verdict
+        name = suite or archive.manifest.edition.suite
+        return with_fresh(verdict, make_fresh(setup, name, runs, asked.fresh, asked.seed or 0))
 
 
 def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:
@@ -211,6 +278,8 @@ def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:
         "seed": seed,
         "findings": list(verdict.findings),
         "not_comparable": list(verdict.not_comparable),
+        "not_compared": list(verdict.not_compared),
+        "fresh": list(verdict.fresh),
         "runs": dict(verdict.relations),
         "crowdbot": provenance.versions()["crowdbot"],
         "machine": provenance.machine(),
@@ -223,6 +292,15 @@ def print_verdict(document: dict[str, Any]) -> None:
         typer.echo(printable(finding))
     for name, relation in document["runs"].items():
         typer.echo(f"{name}: {relation}")
+    for line in document["fresh"]:
+        typer.echo(printable(line))
+    if document["not_compared"]:
+        typer.echo(
+            f"not compared, since no tolerance is known: {', '.join(document['not_compared'])}"
+        )
+    if document["runs"]:
+        chances = (f"{k}: {100.0 * p:.0f} %" for k, p in document["odds"].items())
+        typer.echo(f"odds of finding edited runs with this sample, {', '.join(chances)}")
     head, outcome = f"{document['edition']}: {document['planner']}", document["outcome"]
     chosen = f", sample seed {document['seed']}" if document["runs"] else ""
     typer.echo(printable(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}"))

@@ -6,9 +6,12 @@ from collections.abc import Iterator, Mapping
 from importlib import metadata
 
 from crowdbot.core.bundle.archive import Archive
+from crowdbot.core.bundle.check_conditions import condition_problems
 from crowdbot.core.bundle.check_edition import edition_problems
+from crowdbot.core.bundle.check_planner import planner_problems
 from crowdbot.core.bundle.check_recordings import recording_problems
 from crowdbot.core.bundle.check_run import ClaimedRun, declared_problems, run_problems
+from crowdbot.core.bundle.check_scores import recorded_score_problems
 from crowdbot.core.bundle.manifest import LOCK, BundledRun, Manifest
 from crowdbot.core.bundle.pack import read_json
 from crowdbot.core.registry.registry import Registry
@@ -39,6 +42,8 @@ def problems_of(
     problems += check_suite(archive, expansion, registry)
     if not problems:  # damaged or inconsistent bundles need not be read to the end
         problems += recording_problems(archive, runs)
+    if not problems:
+        problems += recorded_score_problems(archive, runs, registry, expansion.metrics)
     return runs, list(dict.fromkeys(problems))
 
 
@@ -65,8 +70,15 @@ def claimed_runs(archive: Archive) -> tuple[list[ClaimedRun], list[str]]:
             problems.append(_without(archive, error))
             continue
         found.append(run)
-        texts = [*run_problems(run, archive.manifest), *_digest_problems(archive, run)]
-        problems += [f"{entry.directory}: {text}" for text in texts]
+        told = (
+            run_problems(run, archive.manifest),
+            _digest_problems(archive, run),
+            condition_problems(archive, run),
+        )
+        try:
+            problems += [f"{entry.directory}: {text}" for texts in told for text in texts]
+        except InputError as error:
+            problems.append(_without(archive, error))
     return found, problems
 
 
@@ -109,6 +121,7 @@ def _digest_problems(archive: Archive, run: ClaimedRun) -> Iterator[str]:
 
 def _list_problems(manifest: Manifest) -> Iterator[str]:
     """Yield runs that are listed twice or share a folder."""
+    yield from planner_problems(manifest.planner)
     if not manifest.runs:
         yield "there is no run in it"
     for what in ("directory", "run_id"):

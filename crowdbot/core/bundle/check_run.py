@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from crowdbot.core.bundle.check_fleet import arrivals, fleet_problems
 from crowdbot.core.bundle.manifest import BundledRun, Manifest
+from crowdbot.core.planning.watchdog import STEP_LIMIT
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.run_record import RunRecord
@@ -88,6 +89,9 @@ def _identity_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
         yield "its planner is not that of the manifest"
     if record.versions != manifest.versions:
         yield "its versions are not those of the manifest"
+    budget = record.step_budget
+    if budget is not None and not (type(budget) in (int, float) and 0.0 < budget < STEP_LIMIT):
+        yield f"its step_budget is {str(budget)[:40]}; it lies between 0 and {STEP_LIMIT:g} s"
     if record.pinned != manifest.pinned:
         yield f"the manifest says pinned: {manifest.pinned}, the run does not"
     if record.knows_truth != (manifest.classed == "privileged"):

@@ -4,27 +4,20 @@ from __future__ import annotations
 
 import unicodedata
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core.bundle.archive import Archive, open_archive
 from crowdbot.core.bundle.check import check_members, claimed_runs
-from crowdbot.core.bundle.check_recordings import (
-    ownership_problems,
-    read_member,
-    reference_members,
-)
 from crowdbot.core.bundle.check_run import ClaimedRun, declared_problems
 from crowdbot.core.bundle.manifest import Manifest
+from crowdbot.core.bundle.score_members import score_member
 from crowdbot.core.bundle.verification import content_hash, read_verification
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.identity import CROWD_ALONE, ROBOT_ALONE
-from crowdbot.core.runs.read_and_score import score_robots
 from crowdbot.core.runs.record_parts import MetricPart
-from crowdbot.core.scoring.metric import References
 from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError
 
@@ -38,7 +31,8 @@ class LeaderboardEntry:
     Attributes:
         name: team and planner, unique per entry.
         sha256: hash of the archive.
-        verification: the verification record beside it, or None.
+        verification: the signed verification record beside it, or None.
+        doubt: why a record beside it is not believed.
         rescored: metrics scored again from recordings, since their version has changed.
         outdated: metrics left out, since their version has changed and the bundle cannot be scored
             again.
@@ -52,6 +46,7 @@ class LeaderboardEntry:
     runs: tuple[ClaimedRun, ...] = field(repr=False)
     rescored: tuple[str, ...] = ()
     outdated: tuple[str, ...] = ()
+    doubt: str = ""
 
     @property
     def ranked(self) -> bool:
@@ -59,13 +54,26 @@ class LeaderboardEntry:
         return not self.manifest.missing
 
     @property
+    def is_verified(self) -> bool:
+        """Return True if an organiser has made runs of it again and accepted it."""
+        record = self.verification
+        return bool(record and record.get("ok") is True and record.get("runs"))
+
+    @property
     def failed(self) -> int:
         """Return the number of runs in which the planner failed."""
         return sum(has_failed(run.record.status) for run in self.runs)
 
 
-def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntry], dict[str, str]]:
+def load_entries(
+    folder: Path, registry: Registry, trusted: Collection[str] = ()
+) -> tuple[list[LeaderboardEntry], dict[str, str]]:
     """Return all bundles of a folder, by file name, and reasons for those left out.
+
+    Args:
+        folder: folder of the bundles.
+        registry: the installed components.
+        trusted: public keys of organisers, whose verification records are believed.
 
     Raises:
         InputError: no such folder, or no bundle in it.
@@ -76,7 +84,7 @@ def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntr
     entries, left_out = [], dict[str, str]()
     for path in paths:
         try:
-            entries.append(_entry(path, registry))
+            entries.append(_entry(path, registry, trusted))
         except InputError as error:
             left_out[path.name] = str(error).removeprefix(f"{path}: ")
         except Exception as error:  # any error concerns one bundle only
@@ -84,7 +92,7 @@ def load_entries(folder: Path, registry: Registry) -> tuple[list[LeaderboardEntr
     return _named_apart(entries), left_out
 
 
-def _entry(path: Path, registry: Registry) -> LeaderboardEntry:
+def _entry(path: Path, registry: Registry, trusted: Collection[str]) -> LeaderboardEntry:
     with open_archive(path) as archive:
         problems = list(check_members(archive))
         runs, wrong = claimed_runs(archive)
@@ -94,12 +102,14 @@ def _entry(path: Path, registry: Registry) -> LeaderboardEntry:
         if problems:
             raise InputError(f"{path}: {problems[0]}")
         manifest = archive.manifest
+        verification, doubt = read_verification(path, trusted)
         entry = LeaderboardEntry(
             path=path,
             name=" · ".join(part for part in (manifest.team, manifest.label) if part),
             manifest=manifest,
             sha256=content_hash(path),
-            verification=read_verification(path),
+            verification=verification,
+            doubt=doubt,
             runs=tuple(runs),
         )
         return _up_to_date(entry, archive, registry)
@@ -153,40 +163,10 @@ def _scored_again(
         metrics.pop(name, None)
     if again:
         known = registry.components("metric")
-        found = _score(archive, run, again, registry)
+        found = list(score_member(archive, run, again, registry))
         left += found
         metrics |= {s.metric: MetricPart(spec_version=known[s.metric].spec_version, **s.parameters)
                     for s in found}  # fmt: skip
     left.sort(key=lambda s: s.metric)
     record = run.record.model_copy(update={"metrics": metrics})
     return replace(run, scores=tuple(left), record=record)
-
-
-def _score(
-    archive: Archive, run: ClaimedRun, metrics: Sequence[str], registry: Registry
-) -> list[Any]:
-    """Score the recordings in the archive, with the available calibration runs.
-
-    Raises:
-        InputError: a recording cannot be read, or is not that of the run.
-    """
-    own = read_member(archive, f"{run.entry.directory}/{files.RECORDING}")
-    for problem in ownership_problems(run, own):
-        raise InputError(f"{run.entry.directory}/{files.RECORDING}: {problem}")
-    read = {
-        key: read_member(archive, name)
-        for key, name in reference_members(run).items()
-        if name in archive.names
-    }
-    for key, found in read.items():
-        if found.trajectory != run.record.reference_hashes.get(key):
-            raise InputError(f"{run.entry.directory}: its {key} is not the one that it names")
-    alone, crowd = read.get(ROBOT_ALONE), read.get(CROWD_ALONE)
-    references = {
-        name: References(
-            robot_alone=None if alone is None else alone.runs.get(name),
-            crowd_alone=None if crowd is None else crowd.runs.get(""),
-        )
-        for name in own.runs
-    }
-    return list(score_robots(registry, own.runs, references, metrics=metrics))

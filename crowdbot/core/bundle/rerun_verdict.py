@@ -6,8 +6,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from crowdbot.core.bundle.agreement import agree, name_of, shown
 from crowdbot.core.bundle.check import ClaimedRun
-from crowdbot.core.bundle.tolerances import SPREADS, WALL_CLOCK, are_equal, mean_limit, single_limit
+from crowdbot.core.bundle.tolerances import (
+    SPREADS,
+    WALL_CLOCK,
+    are_equal,
+    mean_limit,
+    single_limit,
+    variant_of,
+)
 from crowdbot.core.runs.record_parts import MetricPart
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.types.score import Score
@@ -15,6 +23,9 @@ from crowdbot.core.types.score import Score
 Outcome = Literal[
     "verified",
     "within tolerance",
+    "not contained",
+    "nondeterministic",
+    "worse on new people",
     "not comparable",
     "suspicious",
     "cannot be re-run",
@@ -59,10 +70,9 @@ class Rerun:
         """Return the relation of both trajectories."""
         if self.trajectory == self.claimed.entry.trajectory:
             return "identical"
-        if not self.same_platform:
-            return "different_platform"
-        nondeterministic = self.repeated is not None and self.repeated != self.trajectory
-        return "nondeterministic" if nondeterministic else "different"
+        if self.repeated is not None and self.repeated != self.trajectory:
+            return "nondeterministic"
+        return "different" if self.same_platform else "different_platform"
 
     @property
     def same_platform(self) -> bool:
@@ -76,12 +86,16 @@ class RerunVerdict:
 
     Attributes:
         not_comparable: metrics whose version or parameters differ from those here.
+        fresh: one line per main score on new people, with `verify --fresh-draws`.
+        not_compared: scores for which runs that differ have no tolerance.
     """
 
     outcome: Outcome
     findings: tuple[str, ...] = ()
     relations: Mapping[str, Relation] = field(default_factory=dict)
     not_comparable: tuple[str, ...] = ()
+    not_compared: tuple[str, ...] = ()
+    fresh: tuple[str, ...] = ()
 
 
 def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
@@ -108,6 +122,8 @@ def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
         outcome = "verified"
     if apart:
         outcome = "not comparable"
+    if "nondeterministic" in relations.values():
+        outcome = "nondeterministic"
     if findings:
         outcome = "suspicious"
     return RerunVerdict(
@@ -115,7 +131,15 @@ def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
         findings=(*findings, *apart.values()),
         relations=relations,
         not_comparable=tuple(apart),
+        not_compared=tuple(_not_compared([a for a in reruns if a.relation != "identical"])),
     )
+
+
+def _not_compared(others: Sequence[Rerun]) -> list[str]:
+    """Return scores of runs that differ which have no tolerance."""
+    found = {(s.metric, s.variant) for a in others for s in a.claimed.scores}
+    left = sorted((m, v) for m, v in found if m not in WALL_CLOCK and v != variant_of(m))
+    return [f"{metric}.{variant}" for metric, variant in left]
 
 
 def same_platform(claimed: RunRecord, record: RunRecord) -> bool:
@@ -234,11 +258,11 @@ def _unequal(rerun: Rerun) -> Iterator[str]:
             continue
         here = computed.get((score.metric, score.variant))
         if here is None:
-            yield f"{rerun.claimed.name}: {_name(score)} is claimed, but there is no such score"
-        elif not _agree(score, here):
+            yield f"{rerun.claimed.name}: {name_of(score)} is claimed, but there is no such score"
+        elif not agree(score, here):
             yield (
-                f"{rerun.claimed.name}: {_name(score)} is claimed to be {_said(score)}, "
-                f"but the same trajectory gives {_said(here)}"
+                f"{rerun.claimed.name}: {name_of(score)} is claimed to be {shown(score)}, "
+                f"but the same trajectory gives {shown(here)}"
             )
     claimed = {(s.metric, s.variant) for s in rerun.claimed.scores}
     for name in sorted(set(computed) - claimed):
@@ -251,16 +275,6 @@ def _comparable(rerun: Rerun, score: Score) -> bool:
     if score.metric in WALL_CLOCK or not _same_metric(rerun, score.metric):
         return False
     return rerun.own is None or (score.metric, score.variant) in rerun.own
-
-
-def _agree(a: Score, b: Score) -> bool:
-    for name in ("status", "symbol", "category", "unit", "better", "reason"):
-        if getattr(a, name) != getattr(b, name):
-            return False
-    ends = ((a.value, b.value), (a.lower, b.lower), (a.upper, b.upper))
-    return all(
-        x is y is None or (x is not None and y is not None and are_equal(x, y)) for x, y in ends
-    )
 
 
 def _same_metric(rerun: Rerun, metric: str) -> bool:
@@ -290,21 +304,12 @@ def _beyond(others: Sequence[Rerun]) -> Iterator[str]:
 
 
 def _gap(rerun: Rerun, metric: str) -> float | None:
-    """Return claimed minus computed corrected variant; None without a value."""
+    """Return claimed minus computed score; None without a value."""
     if not _same_metric(rerun, metric):
         return None
     found = []
     for scores in (rerun.claimed.scores, rerun.scores):
-        values = [s.value for s in scores if (s.metric, s.variant) == (metric, "corrected")]
+        values = [s.value for s in scores if (s.metric, s.variant) == (metric, variant_of(metric))]
         found.append(values[0] if values else None)
     a, b = found
     return None if a is None or b is None else a - b
-
-
-# ------------------------------------------------------------------------------ texts
-def _name(score: Score) -> str:
-    return f"{score.metric}.{score.variant}"
-
-
-def _said(score: Score) -> str:
-    return f"{score.value!r}" if score.value is not None else f"{score.status} ({score.reason})"

@@ -102,8 +102,8 @@ def set_apart(
 ) -> tuple[list[LeaderboardEntry], dict[str, str]]:
     """Return comparable entries, and reasons against the others, by file name.
 
-    Entries comparable with the most others of their edition and class stay; ties go to verified
-    entries, then to the first.
+    Verified entries stay before others, and of equals those that are comparable with the most
+    others of their edition and class; ties go to the first.
 
     Raises:
         UnknownNameError: there is no such confound.
@@ -135,9 +135,9 @@ def _strangers(group: Sequence[LeaderboardEntry], accept: tuple[str, ...]) -> di
         if not _difference((a, b), accept)
     }
 
-    def liked(entry: LeaderboardEntry) -> tuple[int, bool]:
-        verified = bool(entry.verification and entry.verification.get("ok"))
-        return sum(frozenset((entry.path, o.path)) in fits for o in left), verified
+    def liked(entry: LeaderboardEntry) -> tuple[bool, int]:
+        others = [o for o in left if frozenset((entry.path, o.path)) in fits]
+        return entry.is_verified, sum(o.is_verified for o in others) or len(others)
 
     kept: list[LeaderboardEntry] = []
     for entry in sorted(left, key=liked, reverse=True):  # stable for equal keys

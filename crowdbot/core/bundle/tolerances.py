@@ -29,7 +29,7 @@ EQUAL = 1e-9
 #: Scores that measure the machine instead of the run.
 WALL_CLOCK = ("max_planner_time", "mean_planner_time")
 
-#: Metric, corrected variant -> spread in its unit; success spreads are set, others measured.
+#: Metric, variant of `variant_of` -> spread in its unit; success spreads are set, others measured.
 SPREADS: Mapping[str, float] = {
     "ade_to_reference": 2.3,
     "avg_wall_clearance": 0.96,
@@ -67,6 +67,15 @@ SPREADS: Mapping[str, float] = {
     "time_to_goal_similarity": 0.48,
     "velocity_similarity": 0.04,
 }
+
+
+#: Variant of scores with a tolerance, where it is not the corrected one.
+_VARIANTS = {"push_work": "rate", "intrusion": "rate"}
+
+
+def variant_of(metric: str) -> str:
+    """Return the variant of a metric that has a tolerance; empty if none has."""
+    return _VARIANTS.get(metric, "corrected") if metric in SPREADS else ""
 
 
 def are_equal(a: float, b: float) -> bool:

@@ -1,12 +1,13 @@
-"""The record of a verification, stored beside the bundle for the leaderboard."""
+"""The record of a verification, signed by the organiser and stored beside the bundle."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, cast
 
+from crowdbot.core.bundle.signature import sign, signature_problem
 from crowdbot.core.runs.run_directory import write_json
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.core.support.text_files import read_text
@@ -33,20 +34,33 @@ def record_path(bundle: Path) -> Path:
 
 
 def save_verification(bundle: Path, record: Mapping[str, Any]) -> None:
-    """Write the record; it names the bundle by its hash.
+    """Write the record, signed with the user's key; it names the bundle by its hash.
 
     Raises:
-        InputError: it cannot be written.
+        InputError: it cannot be written, or the key cannot be read.
+        MissingLibraryError: the extra ``signing`` is not installed.
     """
-    write_json(record_path(bundle), record)
+    write_json(record_path(bundle), sign(record))
 
 
-def read_verification(bundle: Path) -> dict[str, Any] | None:
-    """Return the record of this bundle; None if there is none, or it is of another bundle."""
+def read_verification(bundle: Path, trusted: Collection[str]) -> tuple[dict[str, Any] | None, str]:
+    """Return the record of this bundle, and why there is none that is believed.
+
+    Both are empty if no record lies beside the bundle, or it is of another bundle.
+
+    Args:
+        bundle: the archive.
+        trusted: public keys of organisers.
+    """
+    path = record_path(bundle)
+    if not path.exists():
+        return None, ""
     try:
-        record = parse_json(read_text(record_path(bundle)))
-    except (OSError, ValueError):
-        return None
+        record = parse_json(read_text(path))
+    except (OSError, ValueError) as error:
+        return None, f"{path.name} is not believed: {error}"
     if not isinstance(record, dict) or record.get("sha256") != content_hash(bundle):
-        return None
-    return record
+        return None, ""
+    if problem := signature_problem(record, trusted):
+        return None, f"{path.name} is not believed: {problem}"
+    return record, ""

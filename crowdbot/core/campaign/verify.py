@@ -12,10 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.bundle.check import ClaimedRun
+from crowdbot.core.bundle.check_planner import planner_problems
 from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.rerun_verdict import Rerun
 from crowdbot.core.planning.choice import ANYWHERE, PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
+from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
@@ -23,6 +25,7 @@ from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.read_and_score import score_robots
 from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.runs.run_options import RunOptions
+from crowdbot.core.scenarios.fresh_draws import fresh_draws
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.sim.simulate import make_run
@@ -73,6 +76,8 @@ def choose_planner(
     """
     record = manifest.planner
     kind, digest = str(record.get("kind", "")), record.get("sha256")
+    if given is None and (problems := list(planner_problems(record))):
+        raise NotRunnable(problems[0])
     if given is None and digest is not None:
         raise NotRunnable(
             f"the planner is the class {kind} of a file that is not installed; get the file from "
@@ -117,19 +122,64 @@ def draw_sample(runs: Sequence[ClaimedRun], size: int | None, seed: int, content
     return sorted(rng.sample(range(len(runs)), size))
 
 
-def make_rerun(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
-    """Simulate and score one run of a bundle.
+def foreign_owners(manifest: Manifest, registry: Registry) -> dict[str, str]:
+    """Return plugins that provide the planner and are loaded into the simulator: name -> origin.
 
-    If the trajectory differs without a reason, the run is repeated once more, to check if the
-    planner is deterministic.
+    Such a plugin can change what the simulator computes, in its own favour.
+    """
+    robots = manifest.planner.get("robots")
+    parts = [manifest.planner, *(robots.values() if isinstance(robots, Mapping) else ())]
+    known = registry.components("planner")
+    owners = [registry.owner(known[k]) for p in parts if (k := str(p.get("kind", ""))) in known]
+    return {o.name: o.origin for o in owners if o.name != BUILTIN}
+
+
+def make_reruns(setup: RerunSetup, chosen: Sequence[ClaimedRun]) -> list[Rerun]:
+    """Simulate and score some runs of a bundle.
+
+    A run whose trajectory differs is made once more, to check if the planner is deterministic; of
+    runs that claim another processor or software only the first one.
 
     Raises:
-        CrowdbotError: it cannot be simulated.
+        CrowdbotError: one cannot be simulated.
     """
-    first = _simulate(setup, claimed)
-    if first.relation != "different":
-        return first
-    return replace(first, repeated=_simulate(setup, claimed).trajectory)
+    found: list[Rerun] = []
+    for claimed in chosen:
+        rerun = _simulate(setup, claimed)
+        elsewhere = rerun.relation == "different_platform"
+        known = any(r.repeated is not None for r in found)
+        if rerun.relation == "different" or (elsewhere and not known):
+            rerun = replace(rerun, repeated=_simulate(setup, claimed).trajectory)
+        found.append(rerun)
+    return found
+
+
+def make_fresh(
+    setup: RerunSetup, suite: str, runs: Sequence[ClaimedRun], count: int, seed: int
+) -> list[Rerun]:
+    """Simulate and score scenarios of a bundle with new people.
+
+    Args:
+        setup: as for the bundle's own runs.
+        suite: file or name of the suite.
+        runs: runs of the bundle.
+        count: number of runs; those of the bundle are taken several times if it has fewer.
+        seed: chosen by the verifier after the planner was handed in.
+
+    Raises:
+        InputError: the suite's people do not depend on a seed.
+        CrowdbotError: a run cannot be simulated.
+    """
+    found: list[Rerun] = []
+    order = random.Random(stream_seed(seed, "order", "verify.fresh")).sample(runs, len(runs))
+    for start in range(0, count, len(runs)):
+        root = stream_seed(seed, str(start), "verify.people") % 2**63
+        own = replace(setup, expansion=fresh_draws(suite, setup.registry, root))
+        found += [_simulate(own, run) for run in order[: count - start]]
+    people = [(f.record.hashes.realisation, f.claimed.record.hashes.realisation) for f in found]
+    if people and all(a == b for a, b in people):
+        raise InputError(f"{suite}: the people of its scenarios do not depend on the seed")
+    return found
 
 
 def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:

@@ -25,6 +25,15 @@ def read_document(path: Path, name: str) -> Any:
     return _content(text, Source(name, text.split("\n"), file=path))
 
 
+def parse_document(text: str, name: str) -> Any:
+    """Return the content of a YAML text as plain data.
+
+    Raises:
+        SpecError: it is too deep, or is not plain YAML.
+    """
+    return _content(text, Source(name, text.split("\n")))
+
+
 def parse_setting(text: str, option: str) -> tuple[str, Any]:
     """Return key and value of a ``key=value`` text whose value is YAML.
 

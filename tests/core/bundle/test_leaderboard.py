@@ -206,17 +206,17 @@ def test_confounds_are_left_out_unless_they_are_accepted(folder: Path, tmp_path:
     own = tmp_path / "own"
     own.mkdir()
     (own / "one.cbz").write_bytes((folder / "one.cbz").read_bytes())
-    content = changed_records(folder / "two.cbz", conditions={"rates.log": "8 Hz"})
+    content = changed_records(folder / "two.cbz", conditions={"perceived_radius": "1 m"})
     (own / "two.cbz").write_bytes(content)
     code, page = board(own, tmp_path / "page.html")
     assert code == 0
-    assert any("cannot be compared with one.cbz: rates" in w for w in page.words)
+    assert any("cannot be compared with one.cbz: perceived_radius" in w for w in page.words)
     entries, _ = load_entries(own, registry())
     assert [e.path.name for e in set_apart(entries, ())[0]] == ["one.cbz"]
-    assert len(set_apart(entries, ["rates"])[0]) == 2
-    code, page = board(own, tmp_path / "page.html", "--accept", "rates")
+    assert len(set_apart(entries, ["perceived_radius"])[0]) == 2
+    code, page = board(own, tmp_path / "page.html", "--accept", "perceived_radius")
     assert code == 0
-    assert any("rates.log" in w and "accepted" in w for w in page.words)
+    assert any("perceived_radius" in w and "accepted" in w for w in page.words)
 
 
 def test_metrics_of_older_versions_are_left_out_without_recordings(

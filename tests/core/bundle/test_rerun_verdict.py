@@ -10,9 +10,10 @@ import pytest
 
 from crowdbot.core.bundle.check import ClaimedRun
 from crowdbot.core.bundle.manifest import BundledRun
-from crowdbot.core.bundle.rerun_verdict import Rerun, verdict_of
-from crowdbot.core.bundle.tolerances import SPREADS
+from crowdbot.core.bundle.rerun_verdict import FINE, Rerun, verdict_of
+from crowdbot.core.bundle.tolerances import SPREADS, variant_of
 from crowdbot.core.runs.run_record import RunRecord
+from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.types.score import Score
 from tests.core.results.made_up_record import made_up_record
 
@@ -133,9 +134,30 @@ def test_another_trajectory_on_another_platform_is_not(there: dict[str, Any]) ->
 def test_planners_that_do_not_repeat_themselves_are_not_accused() -> None:
     found = verdict_of([rerun(claimed(), trajectory="x", repeated="y")])
     assert (found.outcome, found.relations) == (
-        "within tolerance",
+        "nondeterministic",
         {"s0 seed-0": "nondeterministic"},
     )
+    assert found.outcome not in FINE
+    assert found.findings == ()
+
+
+def test_another_processor_does_not_hide_a_planner_that_does_not_repeat_itself() -> None:
+    there = {"machine": {"processor": "skylake"}}
+    found = verdict_of([rerun(claimed(), trajectory="x", repeated="y", **there)])
+    assert found.outcome == "nondeterministic"
+    assert verdict_of([rerun(claimed(), trajectory="x", repeated="x", **there)]).outcome in FINE
+
+
+def test_scores_without_a_tolerance_are_named() -> None:
+    run = claimed(scored("risk"), scored("made_up"), scored("mean_planner_time"))
+    found = verdict_of([rerun(run, scored("risk"), trajectory="x", machine={"processor": "sky"})])
+    assert found.not_compared == ("made_up.corrected",)
+    assert verdict_of([rerun(run, *run.scores)]).not_compared == ()
+
+
+def test_each_main_score_has_a_tolerance() -> None:
+    for score in MAIN_SCORES:
+        assert variant_of(score.metric) == score.variant
 
 
 def test_equal_trajectories_on_another_platform_still_bear_out_their_scores() -> None:
