@@ -60,6 +60,9 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("info", "file"): (".mcap", "info", "{}"),
     ("leaderboard", "folder"): ("", "leaderboard", "{}", "--out", "RUNS/l.html"),
     ("leaderboard", "audit"): (".json", "leaderboard", "RUNS", "--audit", "{}"),
+    ("judge", "suite"): (".yaml", "judge", "{}", "RUNS"),
+    ("judge", "submissions"): ("", "judge", SHORT, "{}"),
+    ("judge-log", "log"): (".jsonl", "judge-log", "{}"),
     ("lock", "spec"): (".yaml", "lock", "{}"),
     ("realism", "crowd"): (".yaml", "realism", "{}"),
     ("realism", "reference"): (".csv", "realism", "rvo", "--reference", "{}"),
@@ -70,6 +73,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("results export", "out"): ("", "results", "export", "{}"),
     ("results failures", "out"): ("", "results", "failures", "{}"),
     ("results atlas", "out"): ("", "results", "atlas", "{}"),
+    ("seal", "planner"): (".yaml", "seal", "{}"),
     ("serve", "spec"): (".yaml", "serve", "{}"),
     ("simulate", "spec"): (".yaml", "simulate", "{}", "--out", "RUNS"),
     ("simulate", "planner"): (".yaml", "simulate", SHORT, "--out", "RUNS", "--planner", "{}"),
@@ -81,7 +85,8 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
 }  # fmt: skip
 #: Parameters that name no file to read: names, numbers, addresses, and what is written.
 NO_FILES = {
-    "accept", "allow_origin", "axes", "by", "cluster", "command_topic", "commitment", "connect",
+    "accept", "allow_origin", "environment", "include", "key", "known", "trust",
+    "axes", "by", "cluster", "command_topic", "commitment", "connect",
     "contact", "csv", "distro", "fit", "folder", "host", "id_", "kind", "md", "metrics", "name",
     "one", "only", "out", "overrides", "page", "parquet", "planner", "planner_set", "robot",
     "scenario", "search", "secret", "seeds", "suite", "team", "title", "token", "user_topic",

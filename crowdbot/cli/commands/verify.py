@@ -119,7 +119,7 @@ def verify(
 
 @dataclass(frozen=True, kw_only=True)
 class Asked:
-    """What is verified.
+    """The extent of a verification.
 
     Attributes:
         size: number of runs to repeat; None: all.
@@ -148,7 +148,7 @@ def verify_bundle(
         registry: the installed components.
         suite: value of the option ``--suite``.
         planner: value of the option ``--source``, and where it runs.
-        asked: what is verified.
+        asked: the extent of the verification.
     """
     from crowdbot.core.bundle.archive import open_archive
     from crowdbot.core.bundle.odds import odds_of_finding

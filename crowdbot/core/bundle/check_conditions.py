@@ -46,5 +46,5 @@ def _rates(text: str, name: str) -> dict[str, str]:
     if not isinstance(found, Mapping) or not all(
         isinstance(v, int | float) for v in found.values()
     ):
-        raise InputError(f"{name}: its rates are no numbers")
+        raise InputError(f"{name}: its rates are not numbers")
     return {f"{_PREFIX}{key}": f"{value:g} Hz" for key, value in found.items()}

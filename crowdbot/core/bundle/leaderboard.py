@@ -12,6 +12,7 @@ from urllib.parse import quote
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
+from crowdbot.core.bundle.verification import JUDGED
 from crowdbot.core.results.rows import processes
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
@@ -133,12 +134,19 @@ def _entry(table: Standings, entry: LeaderboardEntry, here: Path) -> dict[str, A
 
 
 def _state(entry: LeaderboardEntry) -> str:
+    """Return who computed an entry, and what an organiser has made again."""
     record = entry.verification
     if record is None:
-        return "not verified"
+        return "computed by the team, not verified"
+    if record.get("outcome") == JUDGED:
+        return f"judged: the organisers made all {len(entry.runs)} runs"
     runs = record.get("runs")
     count = len(runs) if isinstance(runs, Mapping) else 0
-    return f"{record.get('outcome', 'unknown')}, {count} of {len(entry.runs)} runs made again"
+    trusted = ", ".join(map(str, record.get("trusted") or ()))
+    trusting = f", trusting the plugin {trusted}" if trusted else ""
+    outcome = record.get("outcome", "unknown")
+    made = f"{count} of {len(entry.runs)} runs made again"
+    return f"computed by the team; {outcome}, {made}{trusting}"
 
 
 def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:

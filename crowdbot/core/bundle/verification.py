@@ -14,6 +14,9 @@ from crowdbot.core.support.text_files import read_text
 from crowdbot.dsl.text.bounded_files import open_file, reason_of
 from crowdbot.errors import InputError
 
+#: Outcome of a bundle whose runs the organisers made themselves.
+JUDGED = "judged"
+
 
 def content_hash(bundle: Path) -> str:
     """Return the SHA-256 of an archive.

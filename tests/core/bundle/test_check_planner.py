@@ -1,4 +1,4 @@
-"""A bundle names a planner; a place on the organiser's disk is no name."""
+"""A bundle names a planner; a place on the organiser's disk is not a name."""
 
 from __future__ import annotations
 

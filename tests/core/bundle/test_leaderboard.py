@@ -159,10 +159,10 @@ def test_verification_is_shown_for_the_very_bundle(folder: Path, tmp_path: Path)
     save_verification(path, record)
     try:
         _, page = board(folder, tmp_path / "page.html")
-        assert "verified, 1 of 6 runs made again" in page.words
+        assert "computed by the team; verified, 1 of 6 runs made again" in page.words
         save_verification(path, {**record, "sha256": "another one"})
         _, page = board(folder, tmp_path / "page.html")
-        assert page.words.count("not verified") == 3
+        assert page.words.count("computed by the team, not verified") == 3
     finally:
         record_path(path).unlink()
 

@@ -1,0 +1,81 @@
+"""``crowdbot judge``: run sealed planners on a suite's draws, as its organiser."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli.shared.campaign_run import run_plan, worker_count
+from crowdbot.cli.shared.options import (
+    MEMORY_GIB,
+    NoPlugins,
+    PlannerMemory,
+    Plugins,
+    installed,
+    planner_place,
+)
+from crowdbot.core.support.text import plural
+from crowdbot.errors import printable
+
+
+def judge(
+    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File or name of the suite.")],
+    submissions: Annotated[
+        Path,
+        typer.Argument(metavar="SUBMISSIONS", help="Folder of sealed planners (*.cbs)."),
+    ],
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Folder of the log, the runs and the bundles.")
+    ] = Path("judged"),
+    jobs: Annotated[int, typer.Option(min=0, metavar="N", help="Processes; 0: one per core.")] = 0,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster.")
+    ] = None,
+    planner_memory: PlannerMemory = MEMORY_GIB,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Receive sealed planners, and run them once the suite's draws are open.
+
+    While the draws are hidden, submissions are logged only; later ones are refused. Each planner
+    runs by itself; the same command goes on after an interruption. The log is checked by
+    crowdbot judge-log.
+
+    Example: crowdbot judge challenge.yaml submissions --out judged --jobs 4
+    """
+    from crowdbot.core.campaign.judge import Judge
+    from crowdbot.core.campaign.judge import judge as judge_all
+    from crowdbot.core.runs.run_options import RunOptions
+
+    place = planner_place(False, planner_memory, lenient=True)
+    setup = Judge(
+        suite=suite,
+        submissions=submissions,
+        out=out,
+        registry=installed(plugin, no_plugins),
+        run=lambda plan: run_plan(plan, worker_count(jobs), cluster),
+        options=RunOptions(place=place, replay=False),
+        plugins=plugin or (),
+    )
+    found = judge_all(setup)
+    for name, why in found.left_out.items():
+        typer.echo(printable(f"warning: {name} is left out: {why}"), err=True)
+    if as_json:
+        document = {
+            "received": found.received, "waits": found.waits, "left_out": found.left_out,
+            "judged": {name: str(path) for name, path in found.judged.items()},
+        }  # fmt: skip
+        typer.echo(json.dumps(document, indent=2))
+    else:
+        for name, path in found.judged.items():
+            typer.echo(printable(f"{name}: {path}"))
+        what = "the draws are hidden: nothing was run" if found.waits else (
+            f"{plural(len(found.judged), 'planner')} judged"
+        )  # fmt: skip
+        typer.echo(f"{plural(len(found.received), 'submission')} received; {what}")
+    if found.left_out:
+        raise typer.Exit(1)

@@ -1,0 +1,49 @@
+"""``crowdbot judge-log``: check the log of a judge."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.core.support.text import plural
+from crowdbot.errors import printable
+
+
+def judge_log(
+    log: Annotated[Path, typer.Argument(metavar="FILE", help="Log, or folder of a judge.")],
+    key: Annotated[
+        list[str] | None,
+        typer.Option(metavar="HEX", help="Public key of the organiser; default: your own."),
+    ] = None,
+    known: Annotated[
+        str | None,
+        typer.Option(metavar="SHA256", help="Hash of a line that was published before."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Check that no line of a judge's log was changed, removed or inserted, and list it.
+
+    Example: crowdbot judge-log judged --key 3d40...c7 --known 9f86...08
+    """
+    from crowdbot.core.bundle.judge_log import LOG, read_log
+    from crowdbot.core.bundle.signature import check_public_key, own_public_key
+    from crowdbot.errors import InputError
+
+    path = log / LOG if log.is_dir() else log
+    if not path.is_file():
+        raise InputError(f"{path}: no such log")
+    trusted = {check_public_key(text) for text in key or ()} or {own_public_key()} - {""}
+    lines = read_log(path, trusted)
+    if known is not None and known.lower() not in (line.sha256 for line in lines):
+        raise InputError(f"{path}: no line has the hash {known[:80]}; it is another log")
+    if as_json:
+        typer.echo(json.dumps([{**x.document, "sha256": x.sha256} for x in lines], indent=2))
+        return
+    for line in lines:
+        about = " ".join(str(line.document.get(k, ""))[:60] for k in ("submission", "team"))
+        typer.echo(printable(f"{line.document['time']} {line.event} {about}".rstrip()))
+    last = lines[-1].sha256 if lines else "none"
+    typer.echo(f"{plural(len(lines), 'line')}, all signed and in order; the last has {last}")

@@ -1,0 +1,81 @@
+"""``crowdbot seal``: pack a planner's files to hand it in."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.core.support.text import plural
+from crowdbot.errors import InputError, printable
+
+
+def seal(
+    planner: Annotated[str, typer.Argument(metavar="FILE.py:CLASS|FILE.yaml", help="The planner.")],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="File to write, .cbs; default: NAME.cbs.")
+    ] = None,
+    planner_set: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Parameter of the planner; repeatable."),
+    ] = None,
+    include: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATTERN", help="More files beside it, such as data; repeatable."),
+    ] = None,
+    environment: Annotated[
+        str, typer.Option(metavar="FILE", help="File beside it that lists needed libraries.")
+    ] = "",
+    team: Annotated[str, typer.Option(metavar="TEXT", help="Name of the team.")] = "",
+    contact: Annotated[str, typer.Option(metavar="TEXT", help="How to reach it.")] = "",
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Seal a planner: its files in one archive, whose hash fixes it before draws are revealed.
+
+    Modules beside the planner that it imports are included; name its data with --include. The
+    sealed copy is loaded once, to check that nothing is missing.
+
+    Example: crowdbot seal mine.py:Mine --include 'weights/*' --team 'Us' --out us.cbs
+    """
+    from crowdbot.core.bundle.manifest import name_problem
+    from crowdbot.core.bundle.submission import About, unpack_submission, write_submission
+    from crowdbot.core.planning.planner_files import planner_files
+    from crowdbot.core.planning.resolve import resolve_planner
+
+    for option, text in (("--team", team), ("--contact", contact)):
+        if problem := name_problem(text):
+            raise InputError(f"{option} {printable(text[:60])!r}: {problem}")
+    registry = installed(plugin, no_plugins)
+    choice = resolve_planner(planner, registry, planner_set or ())
+    files = planner_files(planner, [*(include or ()), *([environment] if environment else [])])
+    name = Path(planner).name
+    digest = str(choice.spec_dump["sha256"])
+    about = About(
+        team=team, contact=contact, planner=name, settings=list(planner_set or ()),
+        digest=digest, environment=environment, files={},
+    )  # fmt: skip
+    target = out or Path(f"{choice.name}.cbs")
+    check_ending(target, ".cbs")
+    sealed = write_submission(target, about, files)
+    with tempfile.TemporaryDirectory(prefix="crowdbot-sealed-") as folder:
+        _, colon, kind = name.partition(":")
+        copy = f"{unpack_submission(sealed, Path(folder))}{colon}{kind}"
+        try:
+            again = resolve_planner(copy, registry, planner_set or ())
+        except InputError as error:
+            target.unlink()
+            raise InputError(f"the sealed copy does not load: {error}; see --include") from None
+    if again.spec_dump.get("sha256") != digest:
+        target.unlink()
+        raise InputError("the sealed copy is another planner: a file is missing; see --include")
+    if as_json:
+        typer.echo(json.dumps({"file": str(target), "sha256": sealed.sha256,
+                               **sealed.about.model_dump()}, indent=2))  # fmt: skip
+        return
+    typer.echo(f"{target}: {plural(len(files), 'file')}, sha256 {sealed.sha256}")

@@ -1,0 +1,213 @@
+"""Judge sealed submissions: receive them before the draws are opened, then run each by itself."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.bundle.judge_log import LOG, LogLine, append, read_log
+from crowdbot.core.bundle.pack import Submission, pack
+from crowdbot.core.bundle.signature import own_public_key
+from crowdbot.core.bundle.submission import SUFFIX, Sealed, read_submission, unpack_submission
+from crowdbot.core.bundle.verification import JUDGED, content_hash, save_verification
+from crowdbot.core.campaign.plan import Plan, make_plan
+from crowdbot.core.campaign.request import CampaignRequest
+from crowdbot.core.campaign.run import State
+from crowdbot.core.planning.resolve import resolve_planner
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.run_options import USUAL, RunOptions
+from crowdbot.core.scenarios.library import open_suite
+from crowdbot.dsl.scenario.lock import LockFiles
+from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.errors import CrowdbotError, InputError
+
+_RECEIVED, _OPENED, _REFUSED, _INCOMPLETE = "received", "opened", "refused", "incomplete"
+_SHORT = 16
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judge:
+    """A judge of one suite.
+
+    Attributes:
+        suite: file or name of the suite.
+        submissions: folder of the sealed planners.
+        out: folder of the log, the runs and the bundles.
+        run: function that makes the missing runs of a plan, on this machine or a cluster.
+        options: options of the runs.
+    """
+
+    suite: str
+    submissions: Path
+    out: Path
+    registry: Registry
+    run: Callable[[Plan], State]
+    options: RunOptions = USUAL
+    plugins: Sequence[Path] = ()
+
+
+@dataclass(kw_only=True)
+class Judgement:
+    """The result of a call of `judge`.
+
+    Attributes:
+        received, judged: new ones of this time, by name of the file.
+        left_out: name of the file -> reason.
+        waits: True if the draws are hidden, so that nothing was run.
+    """
+
+    received: list[str] = field(default_factory=list)
+    judged: dict[str, Path] = field(default_factory=dict)
+    left_out: dict[str, str] = field(default_factory=dict)
+    waits: bool = False
+
+
+def judge(setup: Judge) -> Judgement:
+    """Receive new submissions; if the draws are open, run all that were received before.
+
+    Completed runs are not made again. Submissions are run one after another, each from a folder
+    of its own that exists only while it runs.
+
+    Raises:
+        InputError: the log was changed, is that of another suite, or the folder has no submission.
+        CrowdbotError: the suite is invalid, or runs cannot be made at all.
+    """
+    expansion, lock = open_suite(setup.suite, setup.registry)
+    path = setup.out / LOG
+    own = own_public_key()
+    lines = read_log(path, {own} - {""})
+    found = Judgement()
+    sealed = dict(_received(setup, path, lines, found))
+    if any(scenario.hidden for scenario in expansion.scenarios):
+        found.waits = True
+        return found
+    _open_draws(expansion, lock, path, lines)
+    done = {str(x.document["submission"]) for x in lines if x.event in (JUDGED, _REFUSED)}
+    for digest, one in sealed.items():
+        if digest not in done:
+            _judge_one(setup, (expansion, lock), one, path, lines, found)
+    return found
+
+
+def _received(
+    setup: Judge, path: Path, lines: list[LogLine], found: Judgement
+) -> Iterator[tuple[str, Sealed]]:
+    """Yield the submissions that were received in time, after logging new ones."""
+    files = sorted(setup.submissions.glob(f"*{SUFFIX}"))
+    if not files:
+        raise InputError(f"{setup.submissions}: no submissions (*{SUFFIX}) there")
+    known = {str(x.document["submission"]) for x in lines if x.event == _RECEIVED}
+    opened = any(x.event == _OPENED for x in lines)
+    for file in files:
+        try:
+            one = read_submission(file)
+        except InputError as error:
+            found.left_out[file.name] = str(error).removeprefix(f"{file}: ")
+            continue
+        if one.sha256 not in known:
+            if opened:
+                found.left_out[file.name] = "handed in after the draws were opened"
+                continue
+            about = one.about
+            append(
+                path, lines, _RECEIVED, submission=one.sha256, team=about.team,
+                planner=about.planner, settings=about.settings, digest=about.digest,
+            )  # fmt: skip
+            known.add(one.sha256)
+            found.received.append(file.name)
+        yield one.sha256, one
+
+
+def _open_draws(expansion: Expansion, lock: LockFiles, path: Path, lines: list[LogLine]) -> None:
+    """Log that the draws are known from now on, or check that they are those of the log."""
+    ids = "\n".join(s.id for s in expansion.scenarios)
+    there = lock.lock_path.exists()
+    about = {
+        "suite": expansion.suite_id,
+        "commitment": expansion.commitment,
+        "scenarios": hashlib.sha256(ids.encode()).hexdigest(),
+        "lock": content_hash(lock.lock_path) if there else "",
+        "seeds": list(expansion.run_seeds),
+    }
+    before = next((x.document for x in lines if x.event == _OPENED), None)
+    if before is None:
+        append(path, lines, _OPENED, **about)
+    elif other := [key for key, value in about.items() if before.get(key) != value]:
+        raise InputError(f"{path}: it is the log of another suite: {', '.join(other)} differ")
+
+
+def _judge_one(
+    setup: Judge,
+    suite: tuple[Expansion, LockFiles],
+    sealed: Sealed,
+    path: Path,
+    lines: list[LogLine],
+    found: Judgement,
+) -> None:
+    name, short = sealed.path.name, sealed.sha256[:_SHORT]
+    folder = setup.out / "planners" / short
+    try:
+        state, label = _run(setup, sealed, folder)
+    except CrowdbotError as error:
+        append(path, lines, _REFUSED, submission=sealed.sha256, reason=str(error)[:500])
+        found.left_out[name] = str(error)
+        return
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    if state.failures:
+        reason = f"{len(state.failures)} runs could not be made; the same command goes on"
+        append(path, lines, _INCOMPLETE, submission=sealed.sha256, reason=reason)
+        found.left_out[name] = reason
+        return
+    bundle = setup.out / f"{short}.cbz"
+    about = sealed.about
+    wanted = Submission(
+        root=state.plan.out, planner=label, team=about.team, contact=about.contact,
+        recordings=setup.options.record != "none",
+    )  # fmt: skip
+    manifest = pack(wanted, *suite, setup.registry, bundle)
+    record = _record(bundle, sealed, [f"{r.scenario} seed-{r.seed}" for r in manifest.runs])
+    save_verification(bundle, record)
+    append(
+        path, lines, JUDGED, submission=sealed.sha256, bundle=record["sha256"],
+        runs=len(manifest.runs), statuses=dict(Counter(state.statuses.values())),
+    )  # fmt: skip
+    found.judged[name] = bundle
+
+
+def _run(setup: Judge, sealed: Sealed, folder: Path) -> tuple[State, str]:
+    """Make the missing runs of one submission; return the state and the planner's label."""
+    if folder.exists():  # of an interrupted time
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True, mode=0o700)
+    about = sealed.about
+    _, colon, kind = about.planner.partition(":")
+    text = f"{unpack_submission(sealed, folder)}{colon}{kind}"
+    choice = resolve_planner(text, setup.registry, about.settings, setup.options.place)
+    if choice.spec_dump.get("sha256") != about.digest:
+        raise InputError(f"{about.planner} is not the planner that was sealed")
+    request = CampaignRequest(
+        suites=[setup.suite],
+        planners=[text],
+        planner_settings=about.settings,
+        out=setup.out / "runs" / sealed.sha256[:_SHORT],
+        options=setup.options,
+        plugins=setup.plugins,
+    )
+    return setup.run(make_plan(request, setup.registry)), choice.label
+
+
+def _record(bundle: Path, sealed: Sealed, names: Sequence[str]) -> dict[str, Any]:
+    """Return the record that lies beside the bundle, as after a verification."""
+    return {
+        "outcome": JUDGED,
+        "ok": True,
+        "sha256": content_hash(bundle),
+        "submission": sealed.sha256,
+        "runs": dict.fromkeys(names, JUDGED),
+    }
