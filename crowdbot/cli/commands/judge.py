@@ -34,6 +34,10 @@ def judge(
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster.")
     ] = None,
+    not_contained: Annotated[
+        bool,
+        typer.Option("--not-contained", help="Run planners that this system does not contain."),
+    ] = False,
     planner_memory: PlannerMemory = MEMORY_GIB,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -51,7 +55,7 @@ def judge(
     from crowdbot.core.campaign.judge import judge as judge_all
     from crowdbot.core.runs.run_options import RunOptions
 
-    place = planner_place(False, planner_memory, lenient=True)
+    place = planner_place(False, planner_memory, lenient=True, contained=not not_contained)
     setup = Judge(
         suite=suite,
         submissions=submissions,

@@ -35,7 +35,7 @@ _SAYS = {
     "within tolerance": "runs differ no more than processors and software explain",
     "nondeterministic": "the planner does not give the same run twice here: rule 4 of the suites",
     "worse on new people": "the scores are not those of the planner in general",
-    "not contained": "the planner's plugin is loaded into the simulator and can change its results",
+    "untrusted plugin": "the planner's plugin is loaded into the simulator, which it can change",
     "not comparable": "scores are of other versions of metrics than those that are installed here",
     "suspicious": "ask the team before anything else; see above what does not fit",
     "cannot be re-run": "nothing was simulated",
@@ -186,10 +186,10 @@ def _verify(
     if asked.size == 0 and not asked.fresh:
         return RerunVerdict(outcome="not re-run")
     verdict = _make_reruns(archive, expansion, registry, planner, suite, runs, asked, digest)
-    return _contained(archive, registry, verdict, asked.trusted)
+    return _trusting(archive, registry, verdict, asked.trusted)
 
 
-def _contained(
+def _trusting(
     archive: Archive, registry: Registry, verdict: RerunVerdict, trusted: Sequence[str]
 ) -> RerunVerdict:
     """Return the verdict; a fine one is withheld if the planner's plugin could have made it."""
@@ -205,7 +205,7 @@ def _contained(
         f"read its code, then --trust {name}, or have the planner handed in as a file (--source)"
         for name, origin in owners.items()
     )
-    return replace(verdict, outcome="not contained", findings=(*verdict.findings, *findings))
+    return replace(verdict, outcome="untrusted plugin", findings=(*verdict.findings, *findings))
 
 
 def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion:

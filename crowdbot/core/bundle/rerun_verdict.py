@@ -23,7 +23,7 @@ from crowdbot.core.types.score import Score
 Outcome = Literal[
     "verified",
     "within tolerance",
-    "not contained",
+    "untrusted plugin",
     "nondeterministic",
     "worse on new people",
     "not comparable",
