@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
-from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,6 +16,7 @@ from crowdbot.core.bundle.verification import content_hash, read_verification
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import MetricPart
+from crowdbot.core.support.look_alike import alike
 from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError
 
@@ -116,17 +115,10 @@ def _entry(path: Path, registry: Registry, trusted: Collection[str]) -> Leaderbo
 
 
 def _named_apart(entries: Sequence[LeaderboardEntry]) -> list[LeaderboardEntry]:
-    times = Counter(_looks(e.name) for e in entries)
+    similar = alike(e.name for e in entries)
     return [
-        e if times[_looks(e.name)] == 1 else replace(e, name=f"{e.name} ({e.path.stem})")
-        for e in entries
+        replace(e, name=f"{e.name} ({e.path.stem})") if e.name in similar else e for e in entries
     ]
-
-
-def _looks(name: str) -> str:
-    """Return a key that is equal for names that look alike."""
-    plain = unicodedata.normalize("NFKC", name).casefold()
-    return " ".join("".join(c for c in plain if unicodedata.category(c) != "Cf").split())
 
 
 # ------------------------------------------------------------------ metrics' versions
