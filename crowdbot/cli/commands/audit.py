@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
@@ -73,7 +74,7 @@ def audit(
         return
     state = run_plan(plan, worker_count(jobs), None)
     found, path = _judged(plan, registry)
-    typer.echo(json.dumps(found.model_dump(), indent=1) if as_json else _text(found, path))
+    say(json.dumps(found.model_dump(), indent=1) if as_json else _text(found, path))
     if state.exit_code or not found.tells_apart:
         raise typer.Exit(state.exit_code or 1)
 

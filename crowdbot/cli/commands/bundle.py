@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
 from crowdbot.dsl.suite.suite_entry import NO_SUITE
@@ -95,21 +96,21 @@ def bundle(
     manifest = pack(submission, expansion, lock, registry, target)
     if more := other_seeds(submission, expansion):
         seeds = ", ".join(map(str, more))
-        typer.echo(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
+        say(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
     own = tuple(plugin.name for plugin in registry.plugins)  # the team trusts its plugins
     asked = Asked(size=sample, seed=seed, trusted=own)
     place = source, ANYWHERE
     verdict = verify_bundle(target, registry, suite, place, asked) if check else None
     if as_json:
         document = {"bundle": str(target), **manifest.model_dump(mode="json")}
-        typer.echo(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))
+        say(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))
         raise typer.Exit(0 if verdict is None or verdict["ok"] else 1)
     lacking = f", {len(manifest.missing)} missing" if manifest.missing else ""
-    typer.echo(
+    say(
         f"{manifest.edition_name}: {manifest.label}, {plural(len(manifest.runs), 'run')}{lacking}, "
         f"{plural(len(manifest.members), 'file')}, {target.stat().st_size / 1e6:.1f} MB"
     )
-    typer.echo(f"wrote {target}")
+    say(f"wrote {target}")
     if verdict is not None:
         print_verdict(verdict)
         raise typer.Exit(0 if verdict["ok"] else 1)

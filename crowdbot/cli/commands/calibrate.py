@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError
@@ -97,19 +98,19 @@ def calibrate(
     if not parameters:
         raise InputError(f"{crowd}: it has no number to fit")
     ceiling = task.ceiling  # reads the files before simulating
-    typer.echo(f"{len(parameters)} numbers, recorded people reach {ceiling:.3f}", err=True)
+    say(f"{len(parameters)} numbers, recorded people reach {ceiling:.3f}", err=True)
     found = run(
         task, parameters, out.with_suffix(".fit.jsonl"), generations=generations,
         population=population, seed=seed, jobs=worker_count(jobs), watch=_show,
     )  # fmt: skip
     atomic_write(out, _part(task.crowd, registry, task.overrides, found, robot))
-    typer.echo(json.dumps(_facts(found, out), indent=2) if as_json else _text(found, out))
+    say(json.dumps(_facts(found, out), indent=2) if as_json else _text(found, out))
 
 
 def _show(step: Generation) -> None:
     best, mean = min(step.losses), sum(step.losses) / len(step.losses)
     note = ", from the log" if step.from_log else ""
-    typer.echo(f"step {step.number + 1}: best loss {best:.4f}, mean {mean:.4f}{note}", err=True)
+    say(f"step {step.number + 1}: best loss {best:.4f}, mean {mean:.4f}{note}", err=True)
 
 
 def _opened(crowd: str, registry: Registry, overrides: Sequence[str], robot: bool) -> Crowd:

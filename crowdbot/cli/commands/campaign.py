@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
@@ -123,10 +123,10 @@ def campaign(
     try:
         state = run_plan(plan, size, cluster)
     except KeyboardInterrupt:
-        print("interrupted; the same command makes the runs that are missing", file=sys.stderr)
+        say("interrupted; the same command makes the runs that are missing", err=True)
         raise
     if as_json:
-        typer.echo(json.dumps(_document(state), indent=2))
+        say(json.dumps(_document(state), indent=2))
     if state.exit_code:
         raise typer.Exit(state.exit_code)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def diff(
         found["run"] = list(differences(first.run, second.run))
         found["scores"] = list(differences(first.scores, second.scores))
     if as_json:
-        typer.echo(json.dumps(_document(first, second, found), indent=2, ensure_ascii=False))
+        say(json.dumps(_document(first, second, found), indent=2, ensure_ascii=False))
     else:
         _print(first, second, found)
     raise typer.Exit(1 if any(found.values()) else 0)
@@ -63,14 +64,14 @@ def _print(a: DiffSide, b: DiffSide, found: dict[str, list[Difference]]) -> None
     from crowdbot.core.support.json_diff import shown
 
     for letter, side in (("a", a), ("b", b)):
-        typer.echo(f"{letter}  {side.name}  {side.hash}")
+        say(f"{letter}  {side.name}  {side.hash}")
     for part, listed in found.items():
         if not listed:
-            typer.echo(f"{part}: equal")
+            say(f"{part}: equal")
             continue
         count = "1 difference" if len(listed) == 1 else f"{len(listed)} differences"
-        typer.echo(f"{part}: {count}")
+        say(f"{part}: {count}")
         rows = [(d.path, shown(d.a), shown(d.b)) for d in listed]
         widths = [min(_WIDEST, max(len(row[i]) for row in rows)) for i in range(2)]
         for path, left, right in rows:
-            typer.echo(f"  {path:<{widths[0]}}  {left:<{widths[1]}}  {right}")
+            say(f"  {path:<{widths[0]}}  {left:<{widths[1]}}  {right}")

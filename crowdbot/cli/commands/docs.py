@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Characters shown of a line that contains the search text.
@@ -44,24 +45,24 @@ def docs(
     if search is not None:
         found = [] if not search.strip() else list(_lines(folder, search))
         shown = [f"{f['page']}:{f['line']}: {_excerpt(str(f['text']), search)}" for f in found]
-        typer.echo(json.dumps(found, indent=2, ensure_ascii=False) if as_json else "\n".join(shown))
+        say(json.dumps(found, indent=2, ensure_ascii=False) if as_json else "\n".join(shown))
         if not found:
             raise InputError(f"no page holds '{search}'")
         return
     if page is None:
         titles = {name: _title(folder / f"{name}.md") for name in pages(folder)}
         if as_json:
-            typer.echo(json.dumps(titles, indent=2, ensure_ascii=False))
+            say(json.dumps(titles, indent=2, ensure_ascii=False))
         else:
             width = max(map(len, titles))
-            typer.echo("\n".join(f"{n:<{width}}  {t}" for n, t in titles.items()))
+            say("\n".join(f"{n:<{width}}  {t}" for n, t in titles.items()))
         return
     file = _file(folder, page)
     if as_json:
         text = file.read_text(encoding="utf-8")
-        typer.echo(json.dumps({"path": str(file), "text": text}, ensure_ascii=False))
+        say(json.dumps({"path": str(file), "text": text}, ensure_ascii=False))
     else:
-        typer.echo(str(file) if path else file.read_text(encoding="utf-8").rstrip())
+        say(str(file) if path else file.read_text(encoding="utf-8").rstrip())
 
 
 def documents() -> Path:

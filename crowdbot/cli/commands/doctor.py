@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import logging
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from crowdbot.cli.output.say import say
 
 
 def doctor(
@@ -31,14 +32,14 @@ def doctor(
     findings = list(_doctor.machine(out))
     if self_test:
         if logging.getLogger("crowdbot").level <= logging.INFO and not as_json:
-            print("simulating for a moment ...", file=sys.stderr)
+            say("simulating for a moment ...", err=True)
         findings.append(_doctor.self_test())
     if as_json:
-        typer.echo(json.dumps([f._asdict() for f in findings], indent=2))
+        say(json.dumps([f._asdict() for f in findings], indent=2))
     else:
         quiet = logging.getLogger("crowdbot").level > logging.INFO
         for found in findings:
             if not quiet or found.verdict != "ok":
-                typer.echo(f"{found.verdict:<8} {found.what:<12} {found.found}")
+                say(f"{found.verdict:<8} {found.what:<12} {found.found}")
     if any(f.verdict == "missing" for f in findings):
         raise typer.Exit(1)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
@@ -67,11 +68,11 @@ def commit(
             raise
     if as_json:
         document = {"suite": chosen.suite, "commitment": chosen.commitment, "secret": str(path)}
-        typer.echo(json.dumps(document | _what(change, print_only), indent=2))
+        say(json.dumps(document | _what(change, print_only), indent=2))
         return
     _say(change, print_only)
-    typer.echo(f"{chosen.suite}: publish {chosen.commitment}")
-    typer.echo(f"seed and salt are in {path}: keep it, and keep it to yourself, until the deadline")
+    say(f"{chosen.suite}: publish {chosen.commitment}")
+    say(f"seed and salt are in {path}: keep it, and keep it to yourself, until the deadline")
 
 
 @draws.command("reveal")
@@ -98,10 +99,10 @@ def reveal(
     if as_json:
         document = {"suite": found.suite, "commitment": found.commitment, "seed": found.seed}
         document |= {"salt": found.salt}
-        typer.echo(json.dumps(document | _what(change, print_only), indent=2))
+        say(json.dumps(document | _what(change, print_only), indent=2))
         return
     _say(change, print_only)
-    typer.echo(f"{found.suite}: seed {found.seed} is what was committed to; now: crowdbot lock")
+    say(f"{found.suite}: seed {found.seed} is what was committed to; now: crowdbot lock")
 
 
 @draws.command("check")
@@ -134,14 +135,14 @@ def check(
         state = "hidden" if found.hidden else "revealed"
     if as_json:
         row = {"suite": found.id, "commitment": found.commitment or None, "draws": state}
-        typer.echo(json.dumps(row, indent=2))
+        say(json.dumps(row, indent=2))
         return
     said = {
         "open": "its draws are open; nothing was committed to",
         "hidden": f"its draws are hidden, committed to by {found.commitment}",
         "revealed": f"its draws are revealed, and are those of {found.commitment}",
     }
-    typer.echo(f"{found.id}: {said[state]}")
+    say(f"{found.id}: {said[state]}")
 
 
 def _what(change: Change, print_only: bool) -> dict[str, object]:
@@ -150,6 +151,6 @@ def _what(change: Change, print_only: bool) -> dict[str, object]:
 
 def _say(change: Change, print_only: bool) -> None:
     for line in change.lines:
-        typer.echo(line)
+        say(line)
     if not print_only:
-        typer.echo(f"wrote {change.path}")
+        say(f"wrote {change.path}")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.errors import UnknownNameError, UsageError
 
@@ -150,7 +151,7 @@ def _one(request: RescoreRequest, registry: Registry, as_json: bool) -> Rescored
     except IncompleteError as error:
         if not as_json or request.path is None:
             raise
-        print(f"error: {error}", file=sys.stderr)
+        say(f"error: {error}", err=True)
         source = RecordingSource(path=request.path, recording=request.path)
         return Rescored(
             source=source, error=str(error), exit_code=1, until=error.until, complete=False
@@ -209,7 +210,7 @@ def _each(requests: list[RescoreRequest], registry: Registry, jobs: int) -> list
             advance(failed)
     for result in results:
         if result.error:
-            print(f"error: {result.error}", file=sys.stderr)
+            say(f"error: {result.error}", err=True)
     return results
 
 
@@ -219,7 +220,7 @@ def _tell(results: list[Rescored], out: Path | None, as_json: bool) -> None:
     if out is not None:
         write_file(out, results)
     if as_json:
-        typer.echo(json.dumps([as_document(r) for r in results], indent=2, allow_nan=False))
+        say(json.dumps([as_document(r) for r in results], indent=2, allow_nan=False))
     elif out is None:
         for result in results:
             if not result.error:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.output.scenario_list import hash_of, print_scenarios
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
@@ -49,11 +50,11 @@ def expand(
     registry = installed(plugin, no_plugins)
     expansion = open_spec(spec, registry, overrides or ())
     if one is not None:
-        typer.echo(_one(expansion, one, registry, as_json=as_json, explain=explain), nl=False)
+        say(_one(expansion, one, registry, as_json=as_json, explain=explain), nl=False)
         return
     scenarios = _matching(expansion, only or ())
     if as_json and not count:
-        typer.echo(json.dumps([_row(expansion, s, registry) for s in scenarios], indent=2))
+        say(json.dumps([_row(expansion, s, registry) for s in scenarios], indent=2))
     else:
         print_scenarios(scenarios, registry, count=count)
 
@@ -82,7 +83,7 @@ def _one(
 
     scenario = pick(expansion, pattern)
     if scenario.hidden:
-        typer.echo("its people are hidden: the seed below is not theirs", err=True)
+        say("its people are hidden: the seed below is not theirs", err=True)
     if as_json:
         text = canonical_bytes(scenario, registry.spec_versions(scenario)).decode()
         content = {**_row(expansion, scenario, registry), "scenario": json.loads(text)}

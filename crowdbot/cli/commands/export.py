@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
+
 if TYPE_CHECKING:
     from crowdbot.core.recording.export.bag import BagOptions
 
@@ -93,7 +95,7 @@ def export(
         _whole(target, lambda aside: _bag(to, recording, aside, options, run))
     else:
         _whole(target, lambda aside: _tables(to, recording, aside, robot))
-    typer.echo(str(target))
+    say(str(target))
 
 
 def _target(run: Path, to: ExportFormat) -> Path:
@@ -186,7 +188,7 @@ def _description(run: Path) -> str | None:
         sensors = sensor_infos(registry, scenario, name)
         return to_urdf(build_model(registry, robot.model), sensors, name)
     except CrowdbotError as error:
-        typer.echo(f"warning: /robot_description is left out: {error}", err=True)
+        say(f"warning: /robot_description is left out: {error}", err=True)
         return None
     except ValueError:  # several robots, or none
         return None

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.errors import UsageError
 
@@ -68,9 +69,9 @@ def export_map(
     if as_json:
         rows, columns = grid.cells.shape
         listed = {"files": [str(folder / n) for n in files], "cells": [columns, rows]}
-        typer.echo(json.dumps({**listed, "resolution": resolution}, indent=2))
+        say(json.dumps({**listed, "resolution": resolution}, indent=2))
     else:
-        typer.echo("\n".join(str(folder / name) for name in files))
+        say("\n".join(str(folder / name) for name in files))
 
 
 def _inside(scenario: Scenario) -> list[tuple[float, float]]:

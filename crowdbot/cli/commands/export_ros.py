@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
+
 
 def export_ros(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to.")],
@@ -28,4 +30,4 @@ def export_ros(
     path = folder / LAYOUT
     atomic_write(path, layout())
     for file in (*files, path):
-        typer.echo(str(file))
+        say(str(file))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
@@ -52,10 +53,10 @@ def export_urdf(
         sensors = sensor_infos(registry, found, robot)
     text = to_urdf(model, sensors, robot)
     if out is None:
-        typer.echo(text, nl=False)
+        say(text, nl=False)
     else:
         atomic_write(out, text)
-        typer.echo(str(out), err=True)
+        say(str(out), err=True)
 
 
 def _scenario(registry: Registry, robot: str, spec: str, id_: str | None) -> Scenario:

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.cli.output.say import say
+from crowdbot.errors import printable
+
 if TYPE_CHECKING:
     from crowdbot.core.recording.reading.contents import RecordingContents
     from crowdbot.core.recording.recording import Recording
@@ -37,7 +40,7 @@ def info(
             }
             for t in found.topics
         ]  # fmt: skip
-        typer.echo(json.dumps({**about, "topics": topics}, indent=2))
+        say(json.dumps({**about, "topics": topics}, indent=2))
         return
     _show(about, found)
 
@@ -75,24 +78,32 @@ def _hash(recording: Recording) -> str | None:
 
 def _show(about: dict[str, Any], found: RecordingContents) -> None:
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
+
+    def escaped(text: str) -> str:
+        return escape(printable(text))
 
     console = Console(soft_wrap=True, highlight=False)
     ending = "complete" if found.complete else "NOT complete"
     if not found.finished:
         ending += ": the file was cut off; crowdbot recover makes a whole one of it"
     elif found.status and not found.complete:
-        ending += f": {found.status}"
-    console.print(f"{about['file']}: {found.size} bytes, {found.end:.2f} s, {ending}", markup=False)
+        ending += f": {printable(found.status)}"
+    console.print(
+        f"{printable(about['file'])}: {found.size} bytes, {found.end:.2f} s, {ending}", markup=False
+    )
     for name in ("scenario", "trajectory"):
         if about.get(name):
-            console.print(f"{name}: {about[name]}", markup=False)
+            console.print(printable(f"{name}: {about[name]}"), markup=False)
     table = Table(box=None, pad_edge=False)
     for name in ("topic", "type", "messages", "Hz", "bytes"):
         table.add_column(name, overflow="fold", no_wrap=name not in ("topic", "type"))
     for topic in found.topics:
         rate = "" if topic.rate is None else f"{topic.rate:.1f}"
-        table.add_row(topic.name, topic.msgtype, str(topic.count), rate, str(topic.size))
+        table.add_row(
+            *map(escaped, (topic.name, topic.msgtype)), str(topic.count), rate, str(topic.size)
+        )
     console.print(table)
     for name, size in found.attachments.items():
-        console.print(f"attached: {name}, {size} bytes", markup=False)
+        console.print(printable(f"attached: {name}, {size} bytes"), markup=False)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import run_plan, worker_count
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
@@ -18,7 +19,6 @@ from crowdbot.cli.shared.options import (
     planner_place,
 )
 from crowdbot.core.support.text import plural
-from crowdbot.errors import printable
 
 
 def judge(
@@ -67,19 +67,19 @@ def judge(
     )
     found = judge_all(setup)
     for name, why in found.left_out.items():
-        typer.echo(printable(f"warning: {name} is left out: {why}"), err=True)
+        say(f"warning: {name} is left out: {why}", err=True)
     if as_json:
         document = {
             "received": found.received, "waits": found.waits, "left_out": found.left_out,
             "judged": {name: str(path) for name, path in found.judged.items()},
         }  # fmt: skip
-        typer.echo(json.dumps(document, indent=2))
+        say(json.dumps(document, indent=2))
     else:
         for name, path in found.judged.items():
-            typer.echo(printable(f"{name}: {path}"))
+            say(f"{name}: {path}")
         what = "the draws are hidden: nothing was run" if found.waits else (
             f"{plural(len(found.judged), 'planner')} judged"
         )  # fmt: skip
-        typer.echo(f"{plural(len(found.received), 'submission')} received; {what}")
+        say(f"{plural(len(found.received), 'submission')} received; {what}")
     if found.left_out:
         raise typer.Exit(1)

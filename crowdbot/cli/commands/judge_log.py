@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.core.support.text import plural
-from crowdbot.errors import printable
 
 
 def judge_log(
@@ -40,10 +40,10 @@ def judge_log(
     if known is not None and known.lower() not in (line.sha256 for line in lines):
         raise InputError(f"{path}: no line has the hash {known[:80]}; it is another log")
     if as_json:
-        typer.echo(json.dumps([{**x.document, "sha256": x.sha256} for x in lines], indent=2))
+        say(json.dumps([{**x.document, "sha256": x.sha256} for x in lines], indent=2))
         return
     for line in lines:
         about = " ".join(str(line.document.get(k, ""))[:60] for k in ("submission", "team"))
-        typer.echo(printable(f"{line.document['time']} {line.event} {about}".rstrip()))
+        say(f"{line.document['time']} {line.event} {about}".rstrip())
     last = lines[-1].sha256 if lines else "none"
-    typer.echo(f"{plural(len(lines), 'line')}, all signed and in order; the last has {last}")
+    say(f"{plural(len(lines), 'line')}, all signed and in order; the last has {last}")

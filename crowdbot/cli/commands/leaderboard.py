@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
-from crowdbot.errors import printable
 
 
 def leaderboard(
@@ -65,14 +65,14 @@ def leaderboard(
     entries, left_out = load_entries(folder, registry, trusted)
     for entry in entries:
         if entry.doubt:
-            typer.echo(printable(f"warning: {entry.doubt}"), err=True)
+            say(f"warning: {entry.doubt}", err=True)
     entries, apart = set_apart(entries, accept or ())
     left_out = dict(sorted((left_out | apart).items()))
     audits = [read_audit(path) for path in audit or sorted(folder.glob(f"*{AUDIT}"))]
     tables = standings(entries, by, accept or (), audits, score_scales(registry))
     write_leaderboard(out, tables, left_out, title)
     for name, why in left_out.items():
-        typer.echo(printable(f"warning: {name} is left out: {why}"), err=True)
+        say(f"warning: {name} is left out: {why}", err=True)
     if as_json:
         document = [
             {"edition": t.edition, "class": t.classed, "by": t.by, "suspicion": t.suspicion,
@@ -82,9 +82,7 @@ def leaderboard(
                          for e in t.entries]}
             for t in tables
         ]  # fmt: skip
-        typer.echo(
-            json.dumps({"page": str(out), "tables": document, "left_out": left_out}, indent=2)
-        )
+        say(json.dumps({"page": str(out), "tables": document, "left_out": left_out}, indent=2))
         return
     counts = f"{plural(len(entries), 'bundle')}, {plural(len(tables), 'table')}"
-    typer.echo(f"{counts}; wrote {out}")
+    say(f"{counts}; wrote {out}")

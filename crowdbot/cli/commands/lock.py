@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
 
@@ -59,13 +60,13 @@ def _check(expansion: Expansion, files: LockFiles, registry: Registry, *, as_jso
     if as_json:
         listed = [d.as_dict() for d in found]
         document = {"suite": expansion.suite_id, "ok": not found, "differences": listed}
-        typer.echo(json.dumps(document, indent=2))
+        say(json.dumps(document, indent=2))
     elif found:
         for difference in found:
-            typer.echo(str(difference))
-        typer.echo(f"{plural(len(found), 'difference')}; to accept: {files.command}", err=True)
+            say(str(difference))
+        say(f"{plural(len(found), 'difference')}; to accept: {files.command}", err=True)
     else:
-        typer.echo(f"{expansion.suite_id}: the lock fits, {plural(count, 'scenario')}")
+        say(f"{expansion.suite_id}: the lock fits, {plural(count, 'scenario')}")
     raise typer.Exit(1 if found else 0)
 
 
@@ -88,12 +89,12 @@ def _write(
             "draws": draws,
             "drawn": made.drawn,
         }
-        typer.echo(json.dumps(document, indent=2))
+        say(json.dumps(document, indent=2))
         return
-    typer.echo(
+    say(
         f"{expansion.suite_id}: {plural(scenarios, 'scenario')}, "
         f"{plural(draws, 'table')} of agents ({made.drawn} drawn, {draws - made.drawn} kept)"
     )
     shared = made.lock.agents
     agents = f"which shares {shared}" if shared else f"and {files.own_agents_path.name}"
-    typer.echo(f"wrote {files.lock_path} {agents}")
+    say(f"wrote {files.lock_path} {agents}")

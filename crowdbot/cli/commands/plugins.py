@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 plugins = typer.Typer(
@@ -38,12 +39,12 @@ def listing(
     registry = installed(plugin, no_plugins, strict=False)
     registry.import_components()
     if as_json:
-        typer.echo(json.dumps(as_dicts(registry), indent=2))
+        say(json.dumps(as_dicts(registry), indent=2))
         return
-    typer.echo(as_text(registry))
+    say(as_text(registry))
     if _LOG.isEnabledFor(logging.DEBUG):
         for text in tracebacks(registry):
-            typer.echo(text, err=True)
+            say(text, err=True)
 
 
 @plugins.command()
@@ -67,9 +68,9 @@ def show(
         known = {c.kind for c in everything}
         raise UnknownNameError("kind", kind, known, registry.why_absent(kind))
     if as_json:
-        typer.echo(json.dumps([as_dict(c, registry) for c in found], indent=2))
+        say(json.dumps([as_dict(c, registry) for c in found], indent=2))
     else:
-        typer.echo("\n\n".join(as_text(c, registry) for c in found))
+        say("\n\n".join(as_text(c, registry) for c in found))
 
 
 @plugins.command()
@@ -100,10 +101,10 @@ def check(
         with stdout_to_stderr():
             results = [r for c in components for r in run_checks(c, registry)]
     if as_json:
-        typer.echo(json.dumps([r.as_dict() for r in results], indent=2))
+        say(json.dumps([r.as_dict() for r in results], indent=2))
     else:
         chatty, all_lines = (_LOG.isEnabledFor(n) for n in (logging.INFO, logging.DEBUG))
-        typer.echo(as_table(results, passed=chatty, all_lines=all_lines))
+        say(as_table(results, passed=chatty, all_lines=all_lines))
     raise typer.Exit(1 if any(r.bad for r in results) else 0)
 
 
@@ -123,8 +124,8 @@ def new(
     from crowdbot.cli.output.new import write_package
 
     folder = write_package(name, out, installed(None))
-    typer.echo(f"{folder}: plugin '{name}'; next:", err=True)
-    typer.echo(f"  pip install -e {folder}", err=True)
-    typer.echo(f"  crowdbot plugins check {name}", err=True)
-    typer.echo(f"  crowdbot simulate {name}:first strolling --planner {name}.wander", err=True)
-    typer.echo(str(folder))
+    say(f"{folder}: plugin '{name}'; next:", err=True)
+    say(f"  pip install -e {folder}", err=True)
+    say(f"  crowdbot plugins check {name}", err=True)
+    say(f"  crowdbot simulate {name}:first strolling --planner {name}.wander", err=True)
+    say(str(folder))

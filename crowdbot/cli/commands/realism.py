@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
@@ -95,9 +96,9 @@ def realism(
         found = _simulated(crowd, registry, beside, overrides or [], read_seeds(seeds or "1..16"))
     if out is not None:
         atomic_write(out, render(crowd, found))
-    typer.echo(_json(found) if as_json else "\n\n".join(_text(one) for one in found))
+    say(_json(found) if as_json else "\n\n".join(_text(one) for one in found))
     if out is not None and not as_json:
-        typer.echo(f"wrote {out}")
+        say(f"wrote {out}")
 
 
 def _reference(files: Sequence[Path] | None) -> RealismReference:
@@ -143,7 +144,7 @@ def _of_runs(path: Path, beside: RealismReference) -> Realism:
         raise InputError(f"{path}: there are no recordings (.mcap) in it")
     tracks, without = read_runs(files)
     if without:
-        typer.echo(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
+        say(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
     return measure_met(str(path), [tracks], beside)
 
 

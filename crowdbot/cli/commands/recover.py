@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
+
 
 def recover(
     file: Annotated[
@@ -32,8 +34,6 @@ def recover(
         raise InputError(f"{target}: exists already; it is not written over")
     found = recover_it(path, target)
     if as_json:
-        typer.echo(
-            json.dumps({"file": str(target), "messages": found.messages, "duration": found.end})
-        )
+        say(json.dumps({"file": str(target), "messages": found.messages, "duration": found.end}))
         return
-    typer.echo(f"{target}: {found.messages} messages, {found.end:.2f} s, marked as recovered")
+    say(f"{target}: {found.messages} messages, {found.end:.2f} s, marked as recovered")

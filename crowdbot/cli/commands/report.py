@@ -17,6 +17,7 @@ from urllib.parse import quote
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, open_results, suite_id
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
@@ -201,11 +202,11 @@ def _tell(
     for finding in findings:
         if quiet and finding.accepted:
             continue
-        print(f"{'accepted' if finding.accepted else 'warning'}: {finding}", file=sys.stderr)
+        say(f"{'accepted' if finding.accepted else 'warning'}: {finding}", err=True)
     if not as_json:
         if not quiet:
             _tell_of(contents)
-        typer.echo(paths["html"])
+        say(paths["html"])
         return
     document = {
         **{name: str(path) for name, path in paths.items()},
@@ -223,14 +224,14 @@ def _tell(
         "crowds": contents.crowds,
         "ranks_by_crowd": None if contents.ranks is None else contents.ranks.as_json(),
     }
-    typer.echo(json.dumps(document, indent=2, ensure_ascii=False))
+    say(json.dumps(document, indent=2, ensure_ascii=False))
 
 
 def _tell_of(contents: Contents) -> None:
     """Print the page's main findings on stderr."""
     counts = contents.counts()
     said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
-    print(f"{', '.join(contents.planners)}: {said}", file=sys.stderr)
+    say(f"{', '.join(contents.planners)}: {said}", err=True)
     ranks = contents.ranks.verdicts if contents.ranks else ()
     told = [
         *(f"crowd: {line}" for line in contents.crowds),
@@ -239,4 +240,4 @@ def _tell_of(contents: Contents) -> None:
         *(check.text for check in contents.floors),
         *(verdict.text for verdict in ranks),
     ]
-    print("\n".join(text for text in told if text), file=sys.stderr)
+    say("\n".join(text for text in told if text), err=True)

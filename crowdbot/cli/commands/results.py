@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from crowdbot.cli.output.results_lines import line_of, print_lines
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, open_results
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.text import plural
@@ -104,7 +105,7 @@ def show(
     if not (as_csv or as_json):
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
         runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")
-        typer.echo(f"{runs}, {failures}{damaged}")
+        say(f"{runs}, {failures}{damaged}")
 
 
 @results.command()
@@ -152,15 +153,15 @@ def failures(
 
     found = Results.open(out).failures
     if as_json:
-        typer.echo(json.dumps([asdict(f) for f in found], indent=2))
+        say(json.dumps([asdict(f) for f in found], indent=2))
         return
     for failure in found:
         name = f"{failure.suite}/{failure.scenario} {failure.planner} seed {failure.seed}"
-        typer.echo(f"{name}: {failure.error}")
+        say(f"{name}: {failure.error}")
         if traceback:
-            typer.echo(failure.traceback)
+            say(failure.traceback)
     if not found:
-        typer.echo("no failures")
+        say("no failures")
 
 
 @results.command()
@@ -186,9 +187,9 @@ def atlas(
     if md is not None:
         atomic_write(md, atlas_page(entries))
     if as_json:
-        typer.echo(json.dumps([asdict(e) for e in entries], indent=2))
+        say(json.dumps([asdict(e) for e in entries], indent=2))
     elif md is None:
-        typer.echo(atlas_page(entries), nl=False)
+        say(atlas_page(entries), nl=False)
 
 
 @results.command()

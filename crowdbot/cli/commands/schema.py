@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import UsageError
@@ -57,7 +58,7 @@ def schema(
         )
     text = to_text(build(document, _describable(plugin, no_plugins), canonical=canonical))
     if out is None:
-        typer.echo(text, nl=False)
+        say(text, nl=False)
     else:
         atomic_write(out, text.encode())
 

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, printable
@@ -75,7 +76,7 @@ def seal(
         target.unlink()
         raise InputError("the sealed copy is another planner: a file is missing; see --include")
     if as_json:
-        typer.echo(json.dumps({"file": str(target), "sha256": sealed.sha256,
+        say(json.dumps({"file": str(target), "sha256": sealed.sha256,
                                **sealed.about.model_dump()}, indent=2))  # fmt: skip
         return
-    typer.echo(f"{target}: {plural(len(files), 'file')}, sha256 {sealed.sha256}")
+    say(f"{target}: {plural(len(files), 'file')}, sha256 {sealed.sha256}")

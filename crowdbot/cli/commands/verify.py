@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     InProcess,
@@ -20,7 +21,6 @@ from crowdbot.cli.shared.options import (
     installed,
     planner_place,
 )
-from crowdbot.errors import printable
 
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
@@ -111,7 +111,7 @@ def verify(
     if save:
         save_verification(bundle, document)
     if as_json:
-        typer.echo(json.dumps({"bundle": str(bundle), **document}, indent=2))
+        say(json.dumps({"bundle": str(bundle), **document}, indent=2))
     else:
         print_verdict(document)
     raise typer.Exit(0 if document["ok"] else 1)
@@ -221,7 +221,7 @@ def _suite(archive: Archive, registry: Registry, given: str | None) -> Expansion
     if expansion.suite_id != name:
         raise InputError(f"{archive.path} is of suite '{name}', not of '{expansion.suite_id}'")
     if expansion.commitment:  # bundles of hidden draws are refused below
-        typer.echo(f"{name}: seed and salt fit {expansion.commitment}", err=True)
+        say(f"{name}: seed and salt fit {expansion.commitment}", err=True)
     return expansion
 
 
@@ -289,18 +289,16 @@ def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:
 def print_verdict(document: dict[str, Any]) -> None:
     """Print the findings in readable form."""
     for finding in document["findings"]:
-        typer.echo(printable(finding))
+        say(finding)
     for name, relation in document["runs"].items():
-        typer.echo(f"{name}: {relation}")
+        say(f"{name}: {relation}")
     for line in document["fresh"]:
-        typer.echo(printable(line))
+        say(line)
     if document["not_compared"]:
-        typer.echo(
-            f"not compared, since no tolerance is known: {', '.join(document['not_compared'])}"
-        )
+        say(f"not compared, since no tolerance is known: {', '.join(document['not_compared'])}")
     if document["runs"]:
         chances = (f"{k}: {100.0 * p:.0f} %" for k, p in document["odds"].items())
-        typer.echo(f"odds of finding edited runs with this sample, {', '.join(chances)}")
+        say(f"odds of finding edited runs with this sample, {', '.join(chances)}")
     head, outcome = f"{document['edition']}: {document['planner']}", document["outcome"]
     chosen = f", sample seed {document['seed']}" if document["runs"] else ""
-    typer.echo(printable(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}"))
+    say(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.serving.serve_arguments import AllowOrigin
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
@@ -81,9 +82,9 @@ def view(
             installed(plugin, no_plugins), spec, pattern, out, overrides or []
         )
     if as_json:
-        typer.echo(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
+        say(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
     else:
-        typer.echo(path)
+        say(path)
     if open_:
         typer.launch(str(path.resolve()))
 
@@ -102,7 +103,7 @@ def _play(run: Path, port: int, origins: Sequence[str]) -> None:
 
     admission = Admission(server="foxglove", origins=origins)
     player = FoxglovePlayback(recording, "127.0.0.1", port, admission)
-    typer.echo(f"foxglove: ws://127.0.0.1:{player.port}; Ctrl-C ends it", err=True)
+    say(f"foxglove: ws://127.0.0.1:{player.port}; Ctrl-C ends it", err=True)
     with suppress(KeyboardInterrupt):
         threading.Event().wait()
     player.close()

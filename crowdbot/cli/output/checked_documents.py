@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import logging
-import sys
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from crowdbot.cli.output.say import say
 from crowdbot.errors import SpecError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -31,10 +31,10 @@ def check_documents(specs: Sequence[str], registry: Registry, form: str = "text"
     results = {spec: _check(spec, registry) for spec in dict.fromkeys(specs)}
     errors = [d for _, found in results.values() for d in found]
     if form == "json":
-        print(_as_json(results))
+        say(_as_json(results))
     elif form == "github":
         for diagnostic in errors:
-            print(_as_github(diagnostic))
+            say(_as_github(diagnostic))
     else:
         _print_text(results, errors)
     return 1 if errors else 0
@@ -81,9 +81,9 @@ def _print_text(results: dict[str, tuple[int, list[Diagnostic]]], errors: list[D
 
     for spec, (count, found) in results.items():
         if not found and _LOG.isEnabledFor(logging.INFO):
-            print(f"{spec}: ok, {'1 scenario' if count == 1 else f'{count} scenarios'}")
+            say(f"{spec}: ok, {'1 scenario' if count == 1 else f'{count} scenarios'}")
     if errors:
-        print(render(errors), file=sys.stderr)
+        say(render(errors), err=True)
 
 
 def _as_json(results: dict[str, tuple[int, list[Diagnostic]]]) -> str:

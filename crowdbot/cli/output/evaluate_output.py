@@ -12,7 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.cli.output.say import say
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.errors import printable
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.rescore import Rescored
@@ -47,7 +49,7 @@ def print_table(result: Rescored) -> None:
     seed = "" if source.seed is None else f"seed {source.seed}"
     title = " ".join(filter(None, (source.scenario, source.planner, seed)))
     console = Console(highlight=False)
-    console.print(Text(title or str(source.path), style="bold"), soft_wrap=True)
+    console.print(Text(printable(title or str(source.path)), style="bold"), soft_wrap=True)
     if not result.complete:
         console.print(f"incomplete: read until {result.until:g} s", soft_wrap=True)
     console.print(scores_table(result.scores))
@@ -119,7 +121,7 @@ class _Lines:
         self._done += 1
         if time.monotonic() >= self._next and self._done < self._total:
             self._next = time.monotonic() + _LINE_EVERY
-            print(f"evaluated {self._done} of {self._total} runs, {failed} failed", file=sys.stderr)
+            say(f"evaluated {self._done} of {self._total} runs, {failed} failed", err=True)
 
 
 def _fields(score: Score) -> dict[str, Any]:

@@ -7,8 +7,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Any
 
-import typer
-
+from crowdbot.cli.output.say import say
 from crowdbot.core.support.text import wrap_name
 
 if TYPE_CHECKING:
@@ -45,7 +44,7 @@ def line_of(summary: GroupSummary) -> dict[str, Any]:
 def print_lines(lines: list[dict[str, Any]], *, as_csv: bool, as_json: bool) -> None:
     """Print lines with the same columns."""
     if as_json:
-        typer.echo(json.dumps(lines, indent=2))
+        say(json.dumps(lines, indent=2))
     elif as_csv:
         _print_csv(lines)
     elif lines:

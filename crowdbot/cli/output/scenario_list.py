@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from crowdbot.cli.output.say import say
+
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.scenario.scenario import Scenario
@@ -13,12 +15,12 @@ if TYPE_CHECKING:
 def print_scenarios(scenarios: Sequence[Scenario], registry: Registry, *, count: bool) -> None:
     """Print id and hash of each scenario, or only their number."""
     if count:
-        print(len(scenarios))
+        say(len(scenarios))
         return
     width = max((len(s.id) for s in scenarios), default=0)
     for scenario in scenarios:
         text = "hidden draw" if scenario.hidden else hash_of(scenario, registry)
-        print(f"{scenario.id:<{width}}  {text}")
+        say(f"{scenario.id:<{width}}  {text}")
 
 
 def hash_of(scenario: Scenario, registry: Registry) -> str:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import secrets
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.serving.serve_arguments import ClockChoice, DistroChoice, MissedChoice
 from crowdbot.errors import MissingLibraryError, UsageError
 
@@ -244,4 +244,4 @@ def report(record: RunRecord) -> None:
 
 
 def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    say(text, err=True)

@@ -6,7 +6,7 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
-import typer
+from crowdbot.cli.output.say import say
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
@@ -73,13 +73,13 @@ def print_plan(plan: Plan, size: int, *, as_json: bool) -> None:
         "out": str(plan.out),
     }
     if as_json:
-        typer.echo(json.dumps(facts, indent=2))
+        say(json.dumps(facts, indent=2))
         return
     root = next(p for p in (plan.out, *plan.out.parents) if p.exists())
     free = shutil.disk_usage(root).free
-    typer.echo(f"runs        {facts['runs']}, {complete} complete, {facts['to_run']} to run")
+    say(f"runs        {facts['runs']}, {complete} complete, {facts['to_run']} to run")
     for label, why in plan.left_out.items():
-        typer.echo(f"left out    {label}: {why}")
-    typer.echo(f"references  {facts['references']}, {facts['references_to_run']} to run")
-    typer.echo(f"time        about {plan.seconds / size / 60.0:.1f} min with {size} processes")
-    typer.echo(f"disk        about {plan.size / 1e9:.2f} GB, {free / 1e9:.0f} GB free")
+        say(f"left out    {label}: {why}")
+    say(f"references  {facts['references']}, {facts['references_to_run']} to run")
+    say(f"time        about {plan.seconds / size / 60.0:.1f} min with {size} processes")
+    say(f"disk        about {plan.size / 1e9:.2f} GB, {free / 1e9:.0f} GB free")

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from crowdbot.cli.output.say import say
 from crowdbot.core.support.text import plural
 from crowdbot.core.types.ending import ATTEMPTED, has_failed
 
@@ -145,4 +146,4 @@ def _first(text: str) -> str:
 
 
 def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    say(text, err=True)

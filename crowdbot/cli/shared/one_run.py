@@ -12,8 +12,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING
 
-import typer
-
+from crowdbot.cli.output.say import say
 from crowdbot.core.registry.plugin_errors import UserInterrupt
 
 if TYPE_CHECKING:
@@ -83,7 +82,7 @@ def print_run(run: Run, *, as_json: bool) -> None:
     _print_result(run, as_json=as_json)
     if run.failed:
         sys.stdout.flush()
-        print(f"error: {run.record.reason}", file=sys.stderr)
+        say(f"error: {run.record.reason}", err=True)
 
 
 def _print_result(run: Run, *, as_json: bool) -> None:
@@ -109,7 +108,7 @@ def _print_result(run: Run, *, as_json: bool) -> None:
             }
             for r in rows
         ]
-        typer.echo(
+        say(
             json.dumps(
                 {**run.record.document(), "directory": str(run.directory), "reused": run.reused,
                  "replaced": list(run.replaced), "scores": scores},

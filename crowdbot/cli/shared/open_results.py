@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def open_results(root: Path, altered: bool) -> Results:
     named = "; ".join(list(changes)[:_SHOWN]) + ("; …" if len(changes) > _SHOWN else "")
     lost = plural(len(found.runs) - len(kept.runs), "run")
     message = f"{lost} of altered scenarios left out ({named}): --altered includes them"
-    print(message, file=sys.stderr)
+    say(message, err=True)
     return kept
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
+from crowdbot.cli.output.say import say
 from crowdbot.core.support.compile_cache import USUAL, compiled, nothing_compiled
 from crowdbot.core.support.cores import available_cores
 
@@ -54,13 +55,13 @@ def _tell_of_compiling(done: threading.Event) -> None:
     if done.wait(PATIENCE):
         return
     time = "half a minute" if available_cores() > 1 else "a minute"
-    print(f"preparing: {_COMPILES}, about {time}", file=sys.stderr)
+    say(f"preparing: {_COMPILES}, about {time}", err=True)
     before = 0
     while not done.wait(_LINE_EVERY):
         now = compiled()
         if now == before:
             return
-        print(f"preparing: {_how_far(now)}", file=sys.stderr)
+        say(f"preparing: {_how_far(now)}", err=True)
         before = now
 
 

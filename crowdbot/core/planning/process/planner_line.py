@@ -14,6 +14,8 @@ from typing import Any
 
 import msgpack
 
+from crowdbot.errors import printable
+
 _HEAD = struct.Struct("<I")
 #: Largest reply, which is a command and some signals.
 LONGEST_ANSWER = 1 << 20
@@ -193,10 +195,15 @@ class PlannerLine:
         room = LONGEST_OUTPUT - self._shown
         self._shown += len(piece)
         if room > 0:
-            _to_stderr(piece[:room].decode(errors="replace"))
+            _to_stderr(_shown(piece[:room]))
             if len(piece) >= room:
                 _to_stderr(f"\n{self._name}: printed more than 1 MB; the rest is left out\n")
         return True
+
+
+def _shown(piece: bytes) -> str:
+    """Return output for the terminal, with control characters escaped."""
+    return printable(piece.decode(errors="replace").replace("\r\n", "\n"))
 
 
 def _to_stderr(text: str) -> None:

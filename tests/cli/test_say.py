@@ -1,0 +1,43 @@
+"""Text of others never reaches the terminal as control characters."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from crowdbot.cli.output.say import say
+from crowdbot.core.planning.process.planner_line import _shown
+from tests.paths import ROOT
+
+#: What prints without `say`: the function itself, what runs before typer is loaded, and progress
+#: with texts of our own only.
+ALLOWED = {
+    "output/say.py", "app/typer_app.py", "app/mishaps.py", "__init__.py", "shared/progress.py",
+    "shared/one_run.py", "commands/evaluate.py",
+}  # fmt: skip
+
+
+def test_control_characters_are_escaped(capsys: pytest.CaptureFixture[str]) -> None:
+    say("a\x1b[31mb\x07\x9b2J\u202e\tc")
+    say("x\rover", err=True)
+    said = capsys.readouterr()
+    assert said.out == "a\\x1b[31mb\\x07\\x9b2J\\u202e\tc\n"
+    assert said.err == "x\\rover\n"
+
+
+def test_commands_print_by_say() -> None:
+    folder = Path(ROOT) / "crowdbot" / "cli"
+    found = {
+        file.relative_to(folder).as_posix()
+        for file in folder.rglob("*.py")
+        if re.search(r"^\s*(?:typer\.echo|print)\(", file.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    assert found <= ALLOWED
+
+
+def test_what_a_planner_prints_is_escaped() -> None:
+    assert _shown(b"ok\r\n\x1b]0;title\x07\x1b[2Jdone\rover\n") == (
+        "ok\n\\x1b]0;title\\x07\\x1b[2Jdone\\rover\n"
+    )
