@@ -20,7 +20,7 @@ from crowdbot.core.support.look_alike import alike, looks, skeleton
         ("MINI", "mini"),
         ("file", "\ufb01le"),
         ("a b", "a\u00a0\u00a0b"),
-        ("caf\u00e9", "cafe\u0301"),
+        ("n\u00e9e", "ne\u0301e"),
         ("x", "x\u200d"),
         ("Us \u00b7 dwa", "Us \u2219 dwa"),
     ],
