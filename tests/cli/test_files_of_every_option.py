@@ -87,7 +87,8 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
 NO_FILES = {
     "accept", "allow_origin", "environment", "include", "key", "known", "trust",
     "axes", "by", "cluster", "command_topic", "commitment", "connect",
-    "contact", "csv", "distro", "fit", "folder", "host", "id_", "kind", "md", "metric", "metrics", "name",
+    "contact", "csv", "distro", "fit", "folder", "host", "id_", "kind", "md", "metric", "metrics",
+    "name",
     "one", "only", "out", "overrides", "page", "parquet", "planner", "planner_set", "robot",
     "scenario", "search", "secret", "seeds", "suite", "team", "title", "token", "user_topic",
     "variant", "zenoh", "floor", "source",

@@ -6,9 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
 from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.output.say import say
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
@@ -48,13 +47,13 @@ def robot_realism(
     if out is not None:
         atomic_write(out, render(text, found))
     shown = [one.as_json() for one in found]
-    typer.echo(
+    say(
         json.dumps(shown, indent=2, ensure_ascii=False)
         if as_json
         else "\n\n".join(_text(one) for one in found)
     )
     if out is not None and not as_json:
-        typer.echo(f"wrote {out}")
+        say(f"wrote {out}")
 
 
 def _simulated(
@@ -84,7 +83,7 @@ def _simulated(
             seeds = seeds[:1]
     found = []
     for number, (name, crowd) in enumerate(crowds.items()):
-        typer.echo(f"{number + 1} of {len(crowds)}: {name}", err=True)
+        say(f"{number + 1} of {len(crowds)}: {name}", err=True)
         found.append(measure(name, response_of_crowd(crowd, registry), reference, seeds))
     return found
 
@@ -99,7 +98,7 @@ def _of_runs(path: Path, reference: RobotReference) -> RobotRealism:
         raise InputError(f"{path}: there are no recordings (.mcap) in it")
     clips, without = clips_of_runs(files)
     if without:
-        typer.echo(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
+        say(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
     return measure_encounters(str(path), encounters_of(clips), reference)
 
 
