@@ -111,6 +111,8 @@ def test_a_full_disk_names_the_file() -> None:
     full = OwnFile(Path("/dev/full"))
     with pytest.raises(InputError, match=r"/dev/full: cannot be written: No space left"):
         full.write(b"x")
+    with pytest.raises(InputError, match=r"/dev/full: cannot be written: No space left"):
+        full.write(b"y")
 
 
 def test_an_unfinished_run_that_is_a_link(tmp_path: Path) -> None:

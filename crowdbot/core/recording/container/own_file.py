@@ -55,7 +55,7 @@ class Written:
 
 
 class OwnFile:
-    """An unbuffered file for writing; errors name it.
+    """An unbuffered file for writing; errors name it. After one, each call raises it again.
 
     Args:
         path: an existing file is replaced.
@@ -68,6 +68,7 @@ class OwnFile:
         self._path, self._size = path, 0
         self._sha: Any = hashlib.sha256()
         self._mark: Any = self._sha
+        self._failure: InputError | None = None
         try:
             self._file = path.open("wb", buffering=0)
         except OSError as error:
@@ -80,12 +81,15 @@ class OwnFile:
     def write(self, data: bytes) -> None:
         """Append bytes."""
         left = memoryview(data)
+        if self._failure is not None:
+            raise self._failure
         try:
             while left:
                 left = left[self._file.write(left) :]
         except OSError as error:
             self._file.close()
-            raise self._error(error) from error
+            self._failure = self._error(error)
+            raise self._failure from error
         self._sha.update(data)
         self._size += len(data)
 
