@@ -26,6 +26,7 @@ from crowdbot.core.runs.run_record import RunRecord, record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.support.strict_json import parse_json
+from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.errors import InputError, UnknownNameError, printable
@@ -97,6 +98,7 @@ def pack(
         )
     _check_fits(found, expansion, registry)
     _check_alike(found)
+    _check_driven(submission, found)
     members = _members(submission, found)
     if lock.lock_path.exists():
         members[LOCK] = lock.lock_path.read_bytes()
@@ -184,6 +186,16 @@ def _check_alike(found: Sequence[_Found]) -> None:
                     f"{first.folder} and {run.folder} have different '{name}' in {files.RECORD}; "
                     "run the older ones again"
                 )
+
+
+def _check_driven(submission: Submission, found: Sequence[_Found]) -> None:
+    """Refuse a bundle of a planner that failed in every run."""
+    record = found[0].record
+    if all(run.record.status == Ending.PLANNER_FAILED for run in found) and not submission.partial:
+        raise InputError(
+            f"{submission.planner} failed in all {len(found)} runs: there is nothing to compare; "
+            f"the first: {record.reason}; --partial packs them all the same"
+        )
 
 
 # ------------------------------------------------------------------------ packing

@@ -73,7 +73,7 @@ def read_rows(root: Path) -> StoredRows:
         store.synchronise()
         found = store.rows()
     for run in found.damaged:
-        _LOG.warning("%s is left out: %s", root / run.directory, run.reason)
+        _LOG.warning("warning: %s is left out: %s", root / run.directory, run.reason)
     return found
 
 

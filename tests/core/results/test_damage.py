@@ -107,7 +107,7 @@ def test_a_damaged_run_is_one_warning(
         assert why in found.damaged[0].reason
         assert len(found.runs) == 5
         assert len(found.scores) == 10
-        assert [r.message for r in caplog.records] == [f"{run} is left out: "
+        assert [r.message for r in caplog.records] == [f"warning: {run} is left out: "
                                                        f"{found.damaged[0].reason}"]  # fmt: skip
         for name, content in before.items():
             (run / name).unlink(missing_ok=True)
