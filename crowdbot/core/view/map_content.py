@@ -194,10 +194,10 @@ def _people(content: MapContent, world: Map) -> Iterator[Shape]:
     for i in range(len(people)):
         x, y, speed = float(people.x[i]), float(people.y[i]), float(people.speed[i])
         if speed > 0.0:
-            yield from _arrow(world, x, y, _heading(content, i), speed)
+            yield from arrow(world, x, y, _heading(content, i), speed)
 
 
-def _arrow(world: Map, x: float, y: float, heading: float, length: float) -> Iterator[Shape]:
+def arrow(world: Map, x: float, y: float, heading: float, length: float) -> Iterator[Shape]:
     """Yield an arrow of ``length`` m from a centre; its head is never longer than the arrow."""
     c, s = math.cos(heading), math.sin(heading)
     tip = (x + length * c, y + length * s)

@@ -124,6 +124,7 @@ STYLES = {
         for i in range(len(SPEEDS))
     },
     **{f"ramp-{i}": Style(fill=f"speed_{i}") for i in range(len(SPEEDS))},
+    "involved": Style(stroke="route", width=2.5),
     "arrow": Style(stroke="arrow", width=1.4),
     "robot": Style(fill="robot", stroke="robot_edge", width=1.8),
     "robot-nose": Style(stroke="robot_edge", width=2.2),

@@ -27,17 +27,23 @@ def to_svg(drawing: Drawing) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{element(drawing, style)}\n'
 
 
-def element(drawing: Drawing, style: str = "") -> str:
-    """Return the ``svg`` element, for a standalone file or for a page with the style sheet."""
+def element(drawing: Drawing, style: str = "", name: str = "") -> str:
+    """Return the ``svg`` element, for a standalone file or for a page with the style sheet.
+
+    Args:
+        drawing: what it shows.
+        style: a ``style`` element for a standalone file.
+        name: tells several elements of one page apart.
+    """
     width, height = _number(drawing.width), _number(drawing.height)
     x, y, w, h = (_number(v) for v in drawing.map_box)
     lines = [
         f'<svg class="view" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
-        f'width="{width}" height="{height}" role="img" aria-labelledby="view-title">',
-        f'<title id="view-title">{escape(drawing.title)}</title>',
+        f'width="{width}" height="{height}" role="img" aria-labelledby="view-title{name}">',
+        f'<title id="view-title{name}">{escape(drawing.title)}</title>',
         style,
-        f'<clipPath id="map"><rect x="{x}" y="{y}" width="{w}" height="{h}"/></clipPath>',
-        *_shapes(drawing),
+        f'<clipPath id="map{name}"><rect x="{x}" y="{y}" width="{w}" height="{h}"/></clipPath>',
+        *_shapes(drawing, f"map{name}"),
         "</svg>",
     ]
     return "\n".join(line for line in lines if line)
@@ -79,13 +85,13 @@ def _colours(palette: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _shapes(drawing: Drawing) -> Iterator[str]:
+def _shapes(drawing: Drawing, clip: str) -> Iterator[str]:
     """Yield the shapes; neighbours with the same clipping share one group."""
     open_group = False
     for shape in drawing.shapes:
         inside = not isinstance(shape, Text) and shape.inside
         if inside != open_group:
-            yield '<g clip-path="url(#map)">' if inside else "</g>"
+            yield f'<g clip-path="url(#{clip})">' if inside else "</g>"
             open_group = inside
         yield _shape(shape)
     if open_group:

@@ -1,0 +1,1 @@
+"""Explanations of runs: the decisive moment, in words and as a strip of pictures."""

@@ -1,0 +1,99 @@
+"""The decisive moment in words: what happened, who was involved, what was seen and logged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from crowdbot.core.geometry.footprint import body_side
+from crowdbot.core.recording.reading.scans import ReplayScan
+from crowdbot.core.trajectories.encounters import encounter, people, robot_of
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.trajectories.worst_moment import JUMP_SPEED
+from crowdbot.core.why.causes import Cause
+from crowdbot.core.why.decisive_moment import DecisiveMoment
+
+_SIDES = {"front": "ahead", "left": "on the left", "right": "on the right", "rear": "behind"}
+_SIDES_OF_ROBOT = {
+    "front": "ahead of", "left": "left of", "right": "right of", "rear": "behind",
+}  # fmt: skip
+_HAPPENED = {
+    Cause.PLANNER: "the planner failed",
+    Cause.TOPPLED: "the robot toppled",
+    Cause.RAN_INTO: "the robot ran into a person",
+    Cause.WALL: "the robot touched a wall",
+    Cause.BLOCKED: "the robot stood for {stood:.1f} s",
+    Cause.SLOW: "the robot moved until time was up",
+    Cause.STRUCK: "a person walked into the robot",
+    Cause.CLOSE: "the robot was closest to a person",
+}
+
+
+def sentences(run: Trajectories, moment: DecisiveMoment, scans: Iterable[ReplayScan]) -> list[str]:
+    """Return what happened, the person, the robot, what sensors saw and what the planner logged."""
+    sample = max(0, int(np.searchsorted(run.t, moment.t, side="right")) - 1)
+    happened = _HAPPENED[moment.cause].format(stood=moment.stood)
+    return [
+        f"{moment.t:.1f} s: {happened}",
+        *_person(run, moment, sample),
+        _robot(run, sample),
+        *_seen(scans, moment.t),
+        *_logged(run, moment.t),
+    ]
+
+
+def _person(run: Trajectories, moment: DecisiveMoment, sample: int) -> Iterator[str]:
+    if moment.agent is None:
+        return
+    pair, crowd, who = encounter(run, JUMP_SPEED), people(run), moment.agent
+    gap = float(pair.gap[sample, who])
+    if not math.isfinite(gap):
+        return
+    bearing = math.atan2(pair.py[sample, who], pair.px[sample, who]) - float(pair.theta[sample])
+    speed = math.hypot(float(crowd.vx[sample, who]), float(crowd.vy[sample, who]))
+    walks = f"walked at {speed:.2f} m/s" if speed > 0.05 else "stood"
+    side = _SIDES_OF_ROBOT[body_side(bearing)]
+    apart = f"{gap:.2f} m away" if gap > 0.0 else "in touch"
+    yield f"person {int(crowd.id[who])} {walks}, {side} the robot, {apart}"
+
+
+def _robot(run: Trajectories, sample: int) -> str:
+    robot = robot_of(run)
+    left = ""
+    if robot.goal is not None:
+        x, y = robot.goal
+        distance = math.hypot(x - float(robot.x[sample]), y - float(robot.y[sample]))
+        left = f", {max(0.0, distance - robot.goal_radius):.1f} m from its goal"
+    speed, rate = float(robot.v[sample]), math.degrees(float(robot.w[sample]))
+    return f"the robot drove at {speed:.2f} m/s and turned at {rate:.0f} °/s{left}"
+
+
+def _seen(scans: Iterable[ReplayScan], t: float) -> Iterator[str]:
+    """Yield the nearest return of each sensor of distances at the last reading before."""
+    for scan in scans:
+        k = int(np.searchsorted(scan.t, t, side="right")) - 1
+        if k < 0:
+            continue
+        row = scan.ranges[k]
+        seen = np.isfinite(row)
+        age = t - float(scan.t[k])
+        if not seen.any():
+            yield f"{scan.sensor} saw nothing within {scan.range_max:g} m, {age:.2f} s before"
+            continue
+        beam = int(np.argmin(np.where(seen, row, np.inf)))
+        angle = scan.mount[3] + float(np.mean(scan.angles) if scan.cone else scan.angles[beam])
+        side = _SIDES[body_side(angle)]
+        yield f"{scan.sensor} saw {row[beam]:.2f} m {side}, {age:.2f} s before"
+
+
+def _logged(run: Trajectories, t: float) -> Iterator[str]:
+    """Yield the last value of each signal that the planner logged."""
+    values = []
+    for name, rows in run.signals.items():
+        k = int(np.searchsorted(rows[:, 0], t, side="right")) - 1
+        if k >= 0:
+            values.append(f"{name} {rows[k, 1]:.4g}")
+    if values:
+        yield f"the planner logged {', '.join(values)}"

@@ -1,0 +1,95 @@
+"""The decisive moment of made-up runs, one for each cause."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from crowdbot.core.runs.record_parts import EndedPart
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.why.causes import Cause
+from crowdbot.core.why.decisive_moment import DecisiveMoment, decisive_moment
+from crowdbot.core.why.sentences import sentences
+from crowdbot.core.why.strip import BEFORE, strip
+from tests.plugins.metrics.scenes import Body, grid, line, scene
+
+T = grid(10, 1 / 16)
+FAR = (10.0, 0.0)
+
+
+def drive(speed: float, *people: Body, **more: Any) -> Trajectories:
+    """Along x for 10 s to a goal 10 m away."""
+    arrival = 10.0 / speed if speed >= 1.0 else None
+    robot = line(T, (0, 0), (speed, 0))
+    return scene(T, robot, people, goal_time=arrival, robot_goal=FAR, **more)
+
+
+def ended(status: str = "timeout", **more: Any) -> EndedPart:
+    given = {"reason": "", "goal_time": None, "sim_time": 10.0, **more}
+    return EndedPart.model_validate({"status": status, **given})
+
+
+def contact(t: float, agent: int) -> dict[str, Any]:
+    one = np.ones(1)
+    return {
+        "t0": [t], "t1": [t + 0.1], "agent": np.array([agent]), "bearing": [0.0],
+        "impulse": one, "peak_force": one, "relative_speed": one,
+    }  # fmt: skip
+
+
+AHEAD = line(T, (3, 0), (0, 0))
+CASES = {
+    Cause.RAN_INTO: (drive(0.5, AHEAD), ended(), 0),
+    Cause.WALL: (drive(0.5, line(T, (3, 5), (0, 0)), contacts=contact(4.0, -1)), ended(), None),
+    Cause.BLOCKED: (drive(0.0, line(T, (2, 0), (0, 0))), ended(), 0),
+    Cause.SLOW: (drive(0.4, line(T, (3, 3), (0, 0))), ended(), 0),
+    Cause.STRUCK: (drive(1.0, line(T, (-3, 0), (1.5, 0))), ended("arrived", goal_time=10.0), 0),
+    Cause.CLOSE: (drive(1.0, line(T, (5, 2), (0, 0))), ended("arrived", goal_time=10.0), 0),
+    Cause.TOPPLED: (drive(0.5, AHEAD), ended("toppled", toppled_time=5.5), 0),
+    Cause.PLANNER: (drive(0.5, line(T, (3, 3), (0, 0))), ended("planner_failed"), 0),
+}
+
+
+def moment(cause: Cause) -> DecisiveMoment:
+    run, how, _ = CASES[cause]
+    return decisive_moment(run, how)
+
+
+@pytest.mark.parametrize("cause", Cause)
+def test_each_cause_is_found_with_the_person_involved(cause: Cause) -> None:
+    found = moment(cause)
+    assert (found.cause, found.agent) == (cause, CASES[cause][2])
+
+
+def test_the_moment_is_when_it_began() -> None:
+    assert moment(Cause.RAN_INTO).t == pytest.approx(4.9, abs=0.8)  # discs touch before 6 s
+    assert moment(Cause.WALL).t == 4.0
+    assert moment(Cause.BLOCKED).t == 0.0
+    assert moment(Cause.BLOCKED).stood == pytest.approx(10.0, abs=0.1)
+    assert moment(Cause.TOPPLED).t == 5.5
+    assert moment(Cause.CLOSE).t == pytest.approx(5.0, abs=0.07)
+
+
+def test_a_run_without_people_has_a_moment() -> None:
+    found = decisive_moment(drive(1.0), ended("arrived", goal_time=10.0))
+    assert (found.cause, found.agent) == (Cause.CLOSE, None)
+    assert strip(drive(1.0), found)
+
+
+@pytest.mark.parametrize("cause", Cause)
+def test_words_and_pictures_of_each(cause: Cause) -> None:
+    run, found = CASES[cause][0], moment(cause)
+    said = sentences(run, found, ())
+    assert said[0].startswith(f"{found.t:.1f} s: ")
+    assert any(s.startswith("person 0") for s in said) == (found.agent is not None)
+    pictures = strip(run, found)
+    assert len(pictures) == sum(found.t - b >= 0.0 for b in BEFORE)
+    assert all(p.shapes for p in pictures)
+
+
+def test_words_name_side_gap_and_speed() -> None:
+    text = "\n".join(sentences(CASES[Cause.CLOSE][0], moment(Cause.CLOSE), ()))
+    assert "stood, left of the robot" in text
+    assert "the robot drove at 1.00 m/s and turned at 0 °/s" in text
