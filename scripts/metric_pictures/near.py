@@ -175,7 +175,7 @@ def _contacts(world: World, metric: str) -> Figure:
 def _rate(world: World, metric: str) -> Figure:
     t0, _ = _onsets(world)
     robot = world.robot
-    far = world.to_goal(world.run)
+    far = world.to_zone(world.run)
     steps = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(robot.x), np.diff(robot.y)))])
     way = far[0] - far if metric == "contacts_per_km" else steps
     so_far = np.searchsorted(np.sort(t0), world.t, side="right").astype(float)

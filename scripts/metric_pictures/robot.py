@@ -121,12 +121,10 @@ def _relative_jerk(world: World, metric: str) -> Figure:
 @draws("timeout", "Distance to the goal; no arrival within the time limit is a timeout.")
 @draws("safe_efficiency", "Distance to the goal, and what the fastest straight drive would take.")
 def _goal(world: World, metric: str) -> Figure:
-    zone = metric in ("success", "timeout", "safe_efficiency")
-    distance, name = (world.to_zone, "goal zone") if zone else (world.to_goal, "goal")
-    far = distance(world.run)
-    rows = [(world.t, far, ROBOT, f"distance to the {name}")]
+    far = world.to_zone(world.run)
+    rows = [(world.t, far, ROBOT, "distance to the goal zone")]
     if metric in ("relative_time_to_goal", "stl"):
-        rows.append((world.alone.t, distance(world.alone), WITHOUT, "alone"))
+        rows.append((world.alone.t, world.to_zone(world.alone), WITHOUT, "alone"))
     if metric == "safe_efficiency":
         limit = world.run.robot_speed_limit or float(world.speed.max())
         rows.append((world.t, np.maximum(0.0, far[0] - limit * world.t), WITHOUT, "fastest"))

@@ -132,15 +132,6 @@ class World:
         """(N, M) whose centre is within 3 m of the robot's."""
         return np.nan_to_num(self.pair.distance, nan=np.inf) <= 3.0
 
-    def to_goal(self, run: crowdbot.Trajectories) -> Array:
-        """(N,) m from the robot to the goal point, straight; to the zone without one."""
-        robot = run.robot
-        assert robot is not None
-        if robot.goal is None:
-            return self.to_zone(run)
-        off = robot.x - robot.goal[0], robot.y - robot.goal[1]
-        return np.asarray(np.hypot(*off), dtype=float)
-
     def to_zone(self, run: crowdbot.Trajectories) -> Array:
         """(N,) m from the robot to the goal zone, straight."""
         robot, zone = run.robot, run.goal_zone

@@ -104,7 +104,7 @@ def test_what_is_drawn_gives_the_score(world: World) -> None:
         "time_exposed": weights @ (world.time_to_collision < 5.0),
         "min_time_to_collision": world.time_to_collision.min(),
         "min_wall_clearance": wall_gap(world).min(),
-        "final_distance_to_goal": world.to_goal(world.run)[-1],
+        "final_distance_to_goal": world.to_zone(world.run)[-1],
         "contact_impulse": 3.0,
         "max_planner_time": 0.02,
     }
