@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, open_results
 from crowdbot.cli.shared.options import check_ending
 from crowdbot.core.support.atomic_write import atomic_write
@@ -55,7 +55,7 @@ def why(
         raise UsageError(f"--robot: {path} is not a run; name a run directory")
     counts, left_out = common_causes(_watched(_directories(path, planner or (), altered)))
     for text in left_out[:3]:
-        print(f"left out: {text}", file=sys.stderr)
+        say(f"left out: {text}", err=True)
     if not counts:
         raise InputError(f"{path}: there is no run with a robot below it")
     _write(out, f"Causes in {path}", [c.example for c in counts], counts)
@@ -109,8 +109,8 @@ def _write(
 
 def _tell(lines: Sequence[object], out: Path | None, as_json: bool) -> None:
     if as_json:
-        typer.echo(json.dumps(lines, indent=2, ensure_ascii=False))
+        say(json.dumps(lines, indent=2, ensure_ascii=False))
         return
-    typer.echo("\n".join(map(str, lines)))
+    say("\n".join(map(str, lines)))
     if out is not None:
-        typer.echo(f"wrote {out}")
+        say(f"wrote {out}")
