@@ -7,7 +7,7 @@ from pathlib import Path
 
 from crowdbot.core.realism.tracks import NothingToCompareError, Tracks, tracks_of
 from crowdbot.core.recording.recording import Recording
-from crowdbot.core.trajectories.bag_tables import people_topics
+from crowdbot.core.trajectories.bag.tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.text.bounded_files import open_file
 from crowdbot.errors import InputError

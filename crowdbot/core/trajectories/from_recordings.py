@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 import crowdbot.core.trajectories.own_recordings as own
 from crowdbot.core.support.arguments import mapping_of, number_of, path_of, point_of
-from crowdbot.core.trajectories.bag_tables import bag_tables
+from crowdbot.core.trajectories.bag.tables import bag_tables
 from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
 from crowdbot.core.trajectories.plausibility import implausible
 from crowdbot.core.trajectories.raw_table import (
@@ -156,30 +156,39 @@ class FromRecordings:
         *,
         robot: str | None = None,
         people: str | None = None,
+        same_frame: bool = False,
         **options: Unpack[TopicOptions],
     ) -> Self:
         """Read topics of a bag of ROS 1 or ROS 2; times are counted from the robot's first.
 
         Args:
             path: a ``.bag``, a folder of rosbag2, or its ``.mcap`` or ``.db3`` file.
-            robot: topic of the robot's pose, in the frame of the people: ``Odometry``,
-                ``PoseStamped``, ``PoseWithCovarianceStamped`` and their like.
-            people: topic with a list of people with positions, and with ids, names or their place
-                in the list: ``People``, ``TrackedPersons``, ``MarkerArray``, ``PoseArray``.
+            robot: topic of the robot's pose: ``Odometry``, ``PoseStamped``,
+                ``PoseWithCovarianceStamped``, turtlesim's ``Pose`` and their like; or ``/tf``,
+                ``/tf:FRAME``, for poses that are only there.
+            people: topic with a list of people with positions: ``People``, ``TrackedPersons``,
+                ``AgentStates``, ``Agents``, ``ObjectArray``, ``MarkerArray``, ``PoseArray``. Where
+                nothing names a person, nearness does.
+            same_frame: True to take frames with different names for one, where the bag has no
+                transform between them.
             options: all further keywords are those of `from_csv`. With ``resample=None`` the
                 topics must have the same times.
 
         Raises:
-            InputError: it cannot be read, or messages have no pose or no list of people.
+            InputError: it cannot be read, messages have no pose or no list of people, or frames
+                differ without a transform.
             UnknownNameError: there is no such topic.
 
         Warns:
-            RecordingWarning: units or frames cannot be what they should be.
+            RecordingWarning: rows are left out or changed, such as a robot among the people; units
+                or frames cannot be what they should be.
         """
-        own_robot, others = bag_tables(path_of("path", path), robot, people)
-        if own_robot is None and options.get("resample") == "robot":
+        read = bag_tables(path_of("path", path), robot, people, same_frame=same_frame)
+        for note in read.notes:
+            warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=3)
+        if read.robot is None and options.get("resample") == "robot":
             options["resample"] = None
-        return _made(cls, {"robot": own_robot, "agents": others}, options)
+        return _made(cls, {"robot": read.robot, "agents": read.people}, options)
 
     @classmethod
     @takes(DataSetOptions, robot_radius=0.25, robot_mass=70.0)

@@ -191,6 +191,7 @@ def _people_columns(
         made[f"agent_{name}"] = values
     if gap is None:
         return made | _on_samples(table, rows, t, ids, column)
+    _check_overlap(table, rows["t"], t)
     places = [n for n in ("x", "y", "vx", "vy") if n in rows]
     tables = {n: np.full((len(t), len(ids)), np.nan) for n in places}
     for i in range(len(ids)):
@@ -199,6 +200,17 @@ def _people_columns(
         for name in places:
             tables[name][:, i] = interpolated(rows["t"][mine], rows[name][mine], t, gap)
     return made | {f"agent_{n}": v for n, v in tables.items()}
+
+
+def _check_overlap(table: RawTable, people: Array, t: Array) -> None:
+    """Refuse people who are never there at the times of the samples: clocks differ."""
+    if not len(people) or (people.min() <= t[-1] and people.max() >= t[0]):
+        return
+    raise InputError(
+        f"{table.name}: people are there from {people.min():.9g} to {people.max():.9g} s, and the "
+        f"robot from {t[0]:.6g} to {t[-1]:.6g} s, at no time both: two clocks? "
+        f"clock_offset={t[0] - people.min():.9g} would let both begin together"
+    )
 
 
 def _on_samples(

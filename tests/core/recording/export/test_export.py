@@ -249,3 +249,25 @@ def test_any_format_may_have_any_name(recording: Path) -> None:
         assert out.exists()
     head = (recording.parent / "v1.0 rosbag1").read_bytes()[:13]
     assert head == b"#ROSBAG V2.0\n"
+
+
+@pytest.mark.parametrize("to", ["rosbag2", "rosbag1"])
+@pytest.mark.filterwarnings("ignore::crowdbot.RecordingWarning")  # one person is teleported
+def test_our_own_bags_are_read_back(recording: Path, to: str) -> None:
+    assert RUN.robot is not None
+    assert RUN.agents is not None
+    bag = _export(recording, to)
+    known = np.isfinite(RUN.agents[:, 0])
+    for people in ("/pedestrians", "/people_markers", "/pedestrians_marker"):
+        run = Trajectories.from_rosbag(
+            bag, robot="/robot/pose", people=people, robot_radius=0.3, robot_mass=70.0
+        )
+        assert run.robot is not None
+        assert run.agents is not None
+        np.testing.assert_allclose(run.robot.x, RUN.robot[:, 0], atol=2e-3)
+        if people == "/pedestrians_marker":  # names no one
+            continue
+        assert run.agents.id.tolist() == [100 + 3 * i for i in range(RUN.agents.shape[2])]
+        there = np.isfinite(run.agents.x) & known
+        assert np.mean(there == known) > 0.98
+        np.testing.assert_allclose(run.agents.x[there], RUN.agents[:, 0][there], atol=2e-3)

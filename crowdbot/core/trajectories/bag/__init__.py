@@ -1,0 +1,1 @@
+"""Read robots and people from bags of ROS: messages, clocks, frames, identities."""

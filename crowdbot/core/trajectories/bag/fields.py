@@ -1,0 +1,73 @@
+"""Read messages by their fields, not by their type names: packages need not be installed."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+#: Fields that hold a place, in the order they are tried; some hold it in turn in such a field.
+_PLACES = (
+    "position", "pos", "pose", "pose_with_covariance", "transform", "translation", "kinematics",
+    "bbox", "center",
+)  # fmt: skip
+_YAWS = ("theta", "yaw", "heading")
+_DEPTH = 5
+
+
+class Place(NamedTuple):
+    """A position, m, and a heading, rad; NaN if the message has none."""
+
+    xyz: tuple[float, float, float]
+    theta: float
+
+
+def header_of(message: Any) -> tuple[int, str]:
+    """Return the stamp of a header, ns, and its frame; 0 and an empty text without a header."""
+    header = getattr(message, "header", None)
+    stamp = getattr(header, "stamp", None)
+    if stamp is None:
+        return 0, ""
+    frame = str(getattr(header, "frame_id", "")).lstrip("/")
+    return 10**9 * int(stamp.sec) + int(stamp.nanosec), frame
+
+
+def place_of(item: Any, depth: int = _DEPTH) -> Place | None:
+    """Return where a message, or a part of one, says that something is; None if it does not."""
+    if item is None or depth == 0:
+        return None
+    if _is_point(item):
+        theta = next((float(getattr(item, n)) for n in _YAWS if hasattr(item, n)), math.nan)
+        return Place((float(item.x), float(item.y), float(getattr(item, "z", 0.0))), theta)
+    if isinstance(item, np.ndarray) and item.shape == (3,):
+        return Place((float(item[0]), float(item[1]), float(item[2])), math.nan)
+    for name in _PLACES:
+        found = place_of(getattr(item, name, None), depth - 1)
+        if found is not None:
+            turn = getattr(item, "orientation", getattr(item, "rotation", None))
+            return found if turn is None else Place(found.xyz, yaw_of(turn))
+    return None
+
+
+def _is_point(item: Any) -> bool:
+    return all(isinstance(getattr(item, name, None), int | float | np.number) for name in "xy")
+
+
+def yaw_of(q: Any) -> float:
+    """Return the heading of a quaternion, rad; NaN if it is no rotation, such as all zeros."""
+    if not q.x**2 + q.y**2 + q.z**2 + q.w**2 > 0.5:
+        return math.nan
+    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y**2 + q.z**2))
+
+
+def linear_of(item: Any) -> Any:
+    """Return the linear velocity of a twist at any of the usual depths; None without one."""
+    kinematics = getattr(item, "kinematics", item)
+    for name in ("twist", "twist_with_covariance", "velocity"):
+        found = getattr(kinematics, name, None)
+        found = getattr(found, "twist", found)
+        found = getattr(found, "linear", found)
+        if found is not None and _is_point(found):
+            return found
+    return None

@@ -1,0 +1,147 @@
+"""People in the messages of a topic: lists, arrays of numbers, markers."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Container, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core.trajectories.bag.columns import Seen
+from crowdbot.core.trajectories.bag.fields import header_of, linear_of, place_of
+from crowdbot.core.trajectories.bag.markers import is_marker, shapes
+from crowdbot.errors import InputError
+
+#: Fields that may hold the list of people, in the order they are tried.
+_LISTS = (
+    "people", "persons", "tracks", "pedestrians", "agents", "agent_states", "objects",
+    "detections", "markers", "poses",
+)  # fmt: skip
+_TABLE = ("id", "x", "y")
+#: Fields that may name a person, in the order they are tried.
+NAMES = ("track_id", "id", "tracking_id", "object_id", "uuid", "name", "identifier")
+#: Package -> what the field ``type`` of its agents means.
+_TYPES = {"hunav_msgs": {2: "robot", 3: "other"}, "pedsim_msgs": {2: "robot"}}
+#: derived_object_msgs: what the field ``classification`` means; 0 to 3 are unknown.
+_PEDESTRIAN = 4
+_CLASSES = {
+    5: "bike", 6: "car", 7: "truck", 8: "motorcycle", 9: "other vehicle", 10: "barrier",
+    11: "sign",
+}  # fmt: skip
+_ROBOT = re.compile(r"(?<![a-z])robot", re.IGNORECASE)
+
+
+def people_in(path: Path, topic: str, message: Any, log: int, number: int) -> list[Seen]:
+    """Return the people of one message.
+
+    Args:
+        path, topic: names for messages.
+        message: decoded.
+        log: when it was recorded, ns.
+        number: of the message in its topic.
+
+    Raises:
+        InputError: it has no list of people, or one without a position.
+    """
+    found = list(_rows(path, topic, message, log, number))
+    for row in found:
+        if any(_ROBOT.search(label) for label in row.labels.values()):
+            row.role = "robot"
+    return found
+
+
+def may_list_people(fields: Container[str]) -> bool:
+    """Return True if messages with such fields may list people."""
+    return any(name in fields for name in _LISTS) or all(n in fields for n in _TABLE)
+
+
+def lists_people(message: Any) -> bool | None:
+    """Return True if a message lists bodies with places, False if not, None if its list is empty.
+
+    Lists of bare poses and of markers with the shape of a body count, as in `people_in`.
+    """
+    if _is_table(message):
+        return True if len(message.x) else None
+    items = _items(message)
+    if items is None or not len(items):
+        return None
+    if all(is_marker(item) for item in items):
+        return True if any(shapes(items, 0, 0)) else None
+    return all(place_of(item) is not None for item in items)
+
+
+def _items(message: Any) -> Sequence[Any] | None:
+    if is_marker(message):
+        return [message]
+    if hasattr(message, "person"):
+        return [message.person]
+    return next((getattr(message, n) for n in _LISTS if hasattr(message, n)), None)
+
+
+def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterator[Seen]:
+    stamp, frame = header_of(message)
+    if _is_table(message):
+        yield from _of_table(message, log, number)
+        return
+    items = _items(message)
+    if items is None:
+        raise InputError(
+            f"{path}: {topic} holds {message.__msgtype__}, which has no list of people"
+        )
+    if all(is_marker(item) for item in items):
+        yield from shapes(items, log, number)
+        return
+    for item in items:
+        place = place_of(item)
+        if place is None:
+            raise InputError(
+                f"{path}: {topic} holds {message.__msgtype__}, whose people have no position"
+            )
+        own_stamp, own_frame = header_of(item)
+        yield Seen(
+            log, stamp or own_stamp, number, frame or own_frame, place.xyz, _values(item),
+            _labels(item), role=_role(item),
+        )  # fmt: skip
+
+
+def _is_table(message: Any) -> bool:
+    """Return True for arrays of numbers, one of each for a person, as crowdbot writes them."""
+    return all(hasattr(getattr(message, n, None), "__len__") for n in _TABLE)
+
+
+def _of_table(message: Any, log: int, number: int) -> Iterator[Seen]:
+    stamp, frame = header_of(message)
+    names = [n for n in ("vx", "vy", "radius") if len(getattr(message, n, ())) == len(message.x)]
+    for i, label in enumerate(message.id):
+        xyz = float(message.x[i]), float(message.y[i]), 0.0
+        values = {name: float(getattr(message, name)[i]) for name in names}
+        yield Seen(log, stamp, number, frame, xyz, values, {"id": str(label)}, "table")
+
+
+def _values(item: Any) -> dict[str, float]:
+    values: dict[str, float] = {}
+    linear = linear_of(item)
+    if linear is not None:
+        values = {"vx": float(linear.x), "vy": float(linear.y)}
+    radius = getattr(item, "radius", None)
+    if isinstance(radius, int | float) and math.isfinite(radius) and radius > 0.0:
+        values["radius"] = float(radius)
+    return values
+
+
+def _labels(item: Any) -> dict[str, str]:
+    return {name: _text(getattr(item, name)) for name in NAMES if hasattr(item, name)}
+
+
+def _text(label: Any) -> str:
+    uuid = getattr(label, "uuid", None)
+    return bytes(uuid).hex() if uuid is not None else str(label).strip()
+
+
+def _role(item: Any) -> str:
+    package = str(getattr(item, "__msgtype__", "")).partition("/")[0]
+    if package == "derived_object_msgs":
+        kind = int(item.classification)
+        return "person" if kind == _PEDESTRIAN else _CLASSES.get(kind, "unknown")
+    return _TYPES.get(package, {}).get(getattr(item, "type", None) or 0, "person")
