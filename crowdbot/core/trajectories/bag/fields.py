@@ -55,7 +55,7 @@ def _is_point(item: Any) -> bool:
 
 
 def yaw_of(q: Any) -> float:
-    """Return the heading of a quaternion, rad; NaN if it is no rotation, such as all zeros."""
+    """Return the heading of a quaternion, rad; NaN if it does not rotate, such as all zeros."""
     if not q.x**2 + q.y**2 + q.z**2 + q.w**2 > 0.5:
         return math.nan
     return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y**2 + q.z**2))

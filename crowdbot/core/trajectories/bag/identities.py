@@ -1,6 +1,6 @@
 """Identities of people in the messages of a topic: names, places in a list, or nearness.
 
-Rows that are nobody's are left out here: placeholders at the origin, robots, other objects.
+Rows that do not belong to a person are left out here: placeholders at the origin, robots, objects.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def persons_only(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
     others = sorted(role for role in roles if role != wanted)
     if others:
         seen = ", ".join(f"{roles[role]} of kind '{role}'" for role in others)
-        notes.append(f"rows that are no persons are left out: {seen}")
+        notes.append(f"rows of others than persons are left out: {seen}")
     if wanted == _EVERYTHING_ELSE:
         notes.append("no object is classified; all of unknown kind are taken for persons")
     return [row for row in rows if row.role == wanted]

@@ -19,7 +19,7 @@ _RANK = {k: i for i, k in enumerate(
     (_CYLINDER, _MESH, _CUBE, _SPHERE, _SPHERES, _CUBES, _ARROW, _POINTS)
 )}  # fmt: skip
 _LISTS = (_CUBES, _SPHERES, _POINTS)
-#: Wider than this a shape is no person, m.
+#: A wider shape does not stand for a person, m.
 _WIDEST = 2.0
 #: Shapes nearer than this in a message, nearly always, are parts of one body, m.
 _SAME_PLACE, _NEARLY_ALWAYS = 0.1, 0.9

@@ -269,5 +269,6 @@ def test_our_own_bags_are_read_back(recording: Path, to: str) -> None:
             continue
         assert run.agents.id.tolist() == [100 + 3 * i for i in range(RUN.agents.shape[2])]
         there = np.isfinite(run.agents.x) & known
-        assert np.mean(there == known) > 0.98
+        assert np.mean(there == known) > 0.9  # markers are written at a lower rate
+        there[:, 0] = False  # teleported
         np.testing.assert_allclose(run.agents.x[there], RUN.agents[:, 0][there], atol=2e-3)
