@@ -139,8 +139,20 @@ ROWS = """\
         ("t.csv", TABLE.replace("\n", "\r\n")),
         ("t.csv", "\ufeff" + TABLE + "\n\n"),
         ("t.csv", TABLE.replace("1,2,3", ' 1 ,"2",  3 ')),
+        ("t.csv", "# two people\n" + TABLE.replace("2,8", "# the other\n2,8")),
+        ("t.csv", TABLE.replace(",", ";").replace("1;2;3", "1;2,0;3").replace("80", "80,0")),
+        ("t.csv", TABLE.replace(",", "\t").replace("4 5", "4,0 5,0")),
     ],
-    ids=["plain", "other name and numbers", "CRLF", "BOM and blank lines", "blanks and quotes"],
+    ids=[
+        "plain",
+        "other name and numbers",
+        "CRLF",
+        "BOM and blank lines",
+        "blanks and quotes",
+        "comments",
+        "semicolons",
+        "tabs",
+    ],
 )
 def test_a_table_is_its_rows(folder: Path, name: str, text: str) -> None:
     (folder / name).write_text(text, encoding="utf-8", newline="")

@@ -195,7 +195,7 @@ def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
     file = Path(source) if isinstance(source, str) else source
     try:
         inside = None if isinstance(file, Path) else file.read_bytes()
-        text = (read_bytes(Path(str(file)), LARGEST) if inside is None else inside).decode()
+        text = (read_bytes(Path(str(file)), LARGEST) if inside is None else inside).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise PluginError(f"robot description {file} cannot be read: {error}") from error
     return text, file.parent if isinstance(file, Path) else None

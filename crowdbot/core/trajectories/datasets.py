@@ -10,11 +10,19 @@ import numpy as np
 
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.trajectories.raw_table import RawTable
+from crowdbot.core.trajectories.table_columns import FRAMES, unit_in, without_unit
+from crowdbot.core.trajectories.text_table import split
+from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Columns of ETH's ``obsmat.txt``: y is the height, and the third column is y in the plane.
 _OBSMAT = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
 _PLAIN = ("frame", "id", "x", "y")
+#: Names of columns in comments, in lower case -> ours.
+_OURS = {**dict.fromkeys(FRAMES, "frame"), **{n: n for n in ("id", "x", "y", "vx", "vy")},
+         **dict.fromkeys(("persid", "personid", "ped_id"), "id")}  # fmt: skip
+#: Frames and ids are exchanged if people then move this much less from row to row.
+_EXCHANGED = 0.5
 
 
 def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> RawTable:
@@ -31,7 +39,7 @@ def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> Ra
     """
     scenes: dict[int, dict[str, Any]] = {}
     rows: list[tuple[int, dict[str, Any]]] = []
-    for number, line in enumerate(_text(path).splitlines(), 1):
+    for number, line in enumerate(input_text(path, LARGEST_TABLE).splitlines(), 1):
         if not line.strip():
             continue
         try:
@@ -57,39 +65,71 @@ def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> Ra
     return _once(RawTable(str(path), columns, [n for n, _ in rows]))
 
 
-def eth_ucy_table(path: Path, frame_rate: float | None) -> RawTable:
+def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[str]]:
     """Read people from ETH or UCY: ``obsmat.txt`` with 8 columns, or 4: frame, id, x, y.
+
+    A comment such as ``# id frame x/m y/m z/m``, as in files of PeTrack and JuPedSim, names the
+    columns otherwise.
 
     Args:
         path: the file; blanks, tabs or commas between the columns, no header.
-        frame_rate: frames per second; None: one annotation per 0.4 s, as in both data sets.
+        frame_rate: frames per second; None: as a comment states, else one annotation per 0.4 s, as
+            in both data sets.
+
+    Returns:
+        The table, and sentences on what is not as the format has it.
 
     Raises:
         InputError: it cannot be read, or a row is invalid.
     """
-    rows, lines = [], []
-    for number, line in enumerate(_text(path).splitlines(), 1):
-        cells = line.replace(",", " ").split()
-        if not cells:
-            continue
-        try:
-            rows.append([float(cell) for cell in cells])
-        except ValueError as error:
-            raise InputError(f"{path}:{number}: {error}") from error
-        lines.append(number)
-        if len(cells) != len(rows[0]) or len(cells) not in (4, 8):
+    found = split(path, input_text(path, LARGEST_TABLE))
+    width = len(found.rows[0])
+    names = [_OURS.get(without_unit(name).lower(), "") for name in found.header]
+    if not {"frame", "id", "x", "y"} <= set(names):
+        if found.header or width not in (4, 8):
+            seen = f"columns {', '.join(found.header)}" if found.header else f"{width} columns"
             raise InputError(
-                f"{path}:{number}: {len(cells)} columns; 4 (frame, id, x, y) or 8 (obsmat.txt) "
-                "are wanted"
+                f"{path}:{found.lines[0]}: {seen}; 4 (frame, id, x, y) or 8 (obsmat.txt) are "
+                "wanted, or a comment that names others, such as '# id frame x/m y/m z/m'"
             )
-    if not rows:
-        raise InputError(f"{path}: there are no tracks")
-    table = np.array(rows)
-    names = _PLAIN if table.shape[1] == 4 else _OBSMAT
-    frames = table[:, 0]
-    t = _seconds(frames, 0.4) if frame_rate is None else (frames - frames.min()) / frame_rate
-    columns = {n: table[:, names.index(n)] for n in ("id", "x", "y", "vx", "vy") if n in names}
-    return RawTable(str(path), {"t": t, **columns}, lines)
+        names = list(_PLAIN if width == 4 else _OBSMAT)
+    cells = {n: [row[names.index(n)] for row in found.rows] for n in dict.fromkeys(names) if n}
+    raw = RawTable(str(path), cells, found.lines)
+    columns: dict[str, Any] = {
+        n: raw.numbers(n) for n in ("frame", "id", "x", "y", "vx", "vy") if n in cells
+    }
+    for name in ("x", "y"):
+        header = found.header[names.index(name)] if found.header else ""
+        columns[name] = columns[name] * (unit_in(header) or found.unit)
+    told = [] if found.header else _exchanged(columns)
+    rate = found.frame_rate if frame_rate is None else frame_rate
+    frames = columns.pop("frame")
+    t = _seconds(frames, 0.4) if rate is None else (frames - frames.min()) / rate
+    return RawTable(str(path), {"t": t, **columns}, found.lines), told
+
+
+def _exchanged(columns: dict[str, Array]) -> list[str]:
+    """Exchange frames and ids if people then move less from row to row; return what was found.
+
+    Files of PeTrack have the columns of ETH and UCY in another order: id, frame, x, y.
+    """
+    read, other = _step(columns, "id", "frame"), _step(columns, "frame", "id")
+    if other is None or (read is not None and other >= _EXCHANGED * read):
+        return []
+    columns["id"], columns["frame"] = columns["frame"], columns["id"]
+    seen = "no one is there twice" if read is None else f"steps of {read:.3g} m (median)"
+    return [
+        f"the first column is read as the id, the second as the frame: the other way round there "
+        f"are {seen}, instead of {other:.3g} m"
+    ]
+
+
+def _step(columns: dict[str, Array], person: str, frame: str) -> float | None:
+    """Return the median distance between successive rows of a person, m; None without any."""
+    order = np.lexsort((columns[frame], columns[person]))
+    same = np.diff(columns[person][order]) == 0
+    x, y = (np.diff(columns[n][order])[same] for n in ("x", "y"))
+    return float(np.median(np.hypot(x, y))) if len(x) else None
 
 
 def split_robot(table: RawTable, robot: int | str | None) -> tuple[RawTable | None, RawTable]:
@@ -128,7 +168,3 @@ def _once(table: RawTable) -> RawTable:
     first = sorted({k: i for i, k in reversed(list(enumerate(keys)))}.values())
     columns = {n: np.asarray(c)[first] for n, c in table.columns.items()}
     return RawTable(table.name, columns, [table.lines[i] for i in first])
-
-
-def _text(path: Path) -> str:
-    return input_text(path, LARGEST_TABLE)

@@ -17,13 +17,7 @@ from crowdbot.core.support.arguments import mapping_of, number_of, path_of, poin
 from crowdbot.core.trajectories.bag.tables import bag_tables
 from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
 from crowdbot.core.trajectories.plausibility import implausible
-from crowdbot.core.trajectories.raw_table import (
-    ColumnNames,
-    RawTable,
-    frame_table,
-    in_seconds,
-    read_table,
-)
+from crowdbot.core.trajectories.raw_table import ColumnNames, RawTable
 from crowdbot.core.trajectories.recording_options import (
     DEFAULTS,
     DataSetOptions,
@@ -31,6 +25,8 @@ from crowdbot.core.trajectories.recording_options import (
     TopicOptions,
     takes,
 )
+from crowdbot.core.trajectories.table_columns import frame_table, in_seconds
+from crowdbot.core.trajectories.text_table import read_table
 from crowdbot.errors import InputError, RecordingWarning
 
 #: Table -> our name of a column -> the name that it has there.
@@ -60,17 +56,21 @@ class FromRecordings:
     ) -> Self:
         """Read tables with a header row; SI units, radians, an empty cell is unknown.
 
-        Cells are separated by commas, semicolons, tabs or blanks. Times are seconds, or stamps
-        (ISO 8601; without a zone UTC), which are counted from the robot's first.
+        Cells are separated by commas, semicolons, tabs or blanks; comments begin with ``#``. Times
+        are seconds, or stamps (ISO 8601, without a zone UTC; ms, us or ns since 1970), which are
+        counted from the robot's first. A comment may name the columns, as in files of PeTrack and
+        JuPedSim: ``# framerate: 25``, ``# id frame x/cm y/cm z/cm``.
 
         Args:
             robot: t, x, y, optionally theta, v, w, vx, vy: one row a sample. It sets the samples.
                 Without ``theta`` the robot looks where it moves, velocities are derived.
             agents: t, id, x, y, optionally vx, vy, radius, mass, jump: one row for each person
-                and sample; no row, no person. ``jump`` is 1 where the person was teleported since
-                the sample before. Ids may be names: people are numbered as they appear.
+                and sample; or t, x1, y1, x2, y2, ...: one row for each sample. No place, no
+                person. ``jump`` is 1 where the person was teleported since the sample before. Ids
+                may be names: people are numbered as they appear.
             trips: agent, t0, t1, reached (0 or 1): one row a trip.
-            frame_rate: frames per second, where times are numbers of frames; None: they are not.
+            frame_rate: frames per second, where times are numbers of frames; None: they are not, or
+                a comment states it.
             columns: names of columns where they differ:
                 ``{"robot": {"x": "pos_x"}, "agents": {"id": "track"}}``.
             contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
@@ -233,9 +233,13 @@ class FromRecordings:
     ) -> Self:
         """Read people of ETH or UCY: ``obsmat.txt``, or rows of frame, id, x, y.
 
+        A comment above the rows may name other columns, as in files of PeTrack and JuPedSim.
+
         Arguments, errors and warnings are those of `from_trajnet`.
         """
-        table = eth_ucy_table(path_of("path", path), frame_rate)
+        table, notes = eth_ucy_table(path_of("path", path), frame_rate)
+        for note in notes:
+            warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=3)
         return _made(cls, _people_and_robot(table, robot), options)
 
     @classmethod

@@ -26,6 +26,7 @@ _UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robot
 _CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anyone walks or drives; usual frames per second
 _AGREED, _NEARLY_ALL = 0.8, 0.95  # shares of samples in which headings agree with the motion
 _HEADINGS = 0.7  # rad; largest deviation of an agreeing heading
+_INEXACT = 0.1  # rad; usual deviation of a measured heading from the motion
 
 
 def implausible(run: Trajectories) -> list[str]:
@@ -103,6 +104,7 @@ def _headings(run: Trajectories) -> Iterator[str]:
     motion, theta = np.arctan2(vy, vx)[moving], robot.theta[moving]
     as_radians = _agreement(motion, theta)
     if as_radians >= _AGREED:
+        yield from _degrees(motion, theta)
         return
     seen = f"the heading agrees with the motion in {100 * as_radians:.0f} % of the samples"
     others = {
@@ -123,10 +125,24 @@ def _headings(run: Trajectories) -> Iterator[str]:
         yield f"the robot: {seen}, and reaches {np.max(np.abs(theta)):.0f} rad: degrees?"
 
 
+def _degrees(motion: Array, theta: Array) -> Iterator[str]:
+    """Check headings that agree by chance: as degrees they would agree much better."""
+    radians, degrees = (float(np.median(_errors(motion, a))) for a in (theta, np.radians(theta)))
+    if radians > _INEXACT and degrees < 0.25 * radians and np.max(np.abs(theta)) > 1.0:
+        yield (
+            f"the robot: the heading is {radians:.2g} rad off the motion (median); taken as "
+            f"degrees, {degrees:.2g} rad: theta is in radians, from x to y"
+        )
+
+
+def _errors(motion: Array, theta: Array) -> Array:
+    """Return deviations of headings from the motion, forwards or backwards, rad."""
+    return np.abs(np.remainder(motion - theta + 0.5 * np.pi, np.pi) - 0.5 * np.pi)
+
+
 def _agreement(motion: Array, theta: Array) -> float:
     """Return the share of samples in which a body moves along its heading, or straight back."""
-    error = np.abs(np.remainder(motion - theta + 0.5 * np.pi, np.pi) - 0.5 * np.pi)
-    return float(np.mean(error < _HEADINGS))
+    return float(np.mean(_errors(motion, theta) < _HEADINGS))
 
 
 def _recorded_velocities(run: Trajectories) -> Iterator[str]:

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.arguments import expect, number_of
-from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.types.arrays import Array
-from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
+from crowdbot.errors import InputError, did_you_mean, nearest
 
 #: Our name of a column -> its name in the file.
 ColumnNames = Mapping[str, str]
@@ -38,12 +33,16 @@ class RawTable:
         columns: name -> cells.
         lines: line of each row in the file; empty without a file.
         header: names of all columns in the file, including unused ones.
+        frame_rate: frames per second that the file states; None if it does not.
+        counts_frames: True if its column of times is called one of frames.
     """
 
     name: str
     columns: Mapping[str, Cells]
     lines: Sequence[int] = ()
     header: Sequence[str] = ()
+    frame_rate: float | None = None
+    counts_frames: bool = False
 
     def __contains__(self, column: str) -> bool:
         return column in self.columns
@@ -87,7 +86,8 @@ class RawTable:
     def stamps(self, column: str = "t") -> NDArray[np.int64] | None:
         """Return stamps (K,) in ns since 1970, UTC; None if the column holds numbers.
 
-        Stamps are ISO 8601 texts or dates of Python or numpy; without a zone they are UTC.
+        Stamps are ISO 8601 texts or dates of Python or numpy; without a zone they are UTC. Numbers
+        of milliseconds, microseconds or nanoseconds since 1970 are stamps, too.
 
         Raises:
             InputError: a cell is not a stamp, or is empty.
@@ -96,6 +96,9 @@ class RawTable:
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
             self._all_there(column, ~np.isnat(cells))
             return cells.astype("datetime64[ns]").astype(np.int64)
+        unit = next((_unit_since_1970(cell) for cell in cells[:1]), None)
+        if unit is not None:
+            return np.array([self._ticks(column, i, cell) * unit for i, cell in enumerate(cells)])
         if not any(_is_stamp(cell) for cell in cells[:1]):
             return None
         return np.array([self._stamp(column, i, cell) for i, cell in enumerate(cells)], np.int64)
@@ -127,9 +130,16 @@ class RawTable:
 
     def _number(self, column: str, row: int, cell: Any) -> float:
         try:
-            return _as_number(cell)
+            return as_number(cell)
         except (TypeError, ValueError) as error:
             raise InputError(f"{self.where(row)}: {column}: {error}") from error
+
+    def _ticks(self, column: str, row: int, cell: Any) -> int:
+        try:
+            text = str(cell).strip()
+            return int(text) if text.isdigit() else int(float(text.replace(",", ".")))
+        except (ValueError, OverflowError) as error:
+            raise InputError(f"{self.where(row)}: {column}: not a stamp: {cell!r}") from error
 
     def _stamp(self, column: str, row: int, cell: Any) -> int:
         try:
@@ -172,146 +182,12 @@ class Ids:
         return np.array(found, dtype=np.int64)
 
 
-def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable:
-    """Read a text file with a header row, separated by commas, semicolons, tabs or blanks.
-
-    Args:
-        path: the file; UTF-8.
-        names: our name -> the file's name, if different.
-        known: our names; other columns are ignored.
+def as_number(cell: Any) -> float:
+    """Return the number in a cell; NaN if it is empty. A decimal comma is one, too.
 
     Raises:
-        InputError: it cannot be read, is not a table, or lacks a named column.
+        ValueError, TypeError: it is something else.
     """
-    text = input_text(path, LARGEST_TABLE)
-    lines = text.splitlines()
-    if not lines:
-        raise InputError(f"{path}:1: the file is empty")
-    rows, numbers = _rows(path, text, _separator(lines[0]))
-    header = [cell.strip() for cell in rows[0]]
-    columns = {
-        ours: [row[i] for row in rows[1:]]
-        for ours, i in _chosen(str(path), header, names, known).items()
-    }
-    return RawTable(str(path), columns, numbers[1:], header)
-
-
-def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str]) -> RawTable:
-    """Read a pandas data frame, or any mapping of columns.
-
-    Args:
-        name: name for messages.
-        frame: object with columns by name.
-        names: our name -> the frame's name, if different.
-        known: our names; other columns are ignored.
-
-    Raises:
-        InputError: it is not a frame, or lacks a named column.
-    """
-    try:
-        header = [str(c) for c in frame]
-        chosen = _chosen(name, header, names, known)
-        keys = list(frame)
-        columns = {ours: np.asarray(_plain(frame[keys[i]])) for ours, i in chosen.items()}
-    except (TypeError, KeyError) as error:
-        raise InputError(f"{name}: a data frame is wanted, not {kind_of(frame)}") from error
-    if len({len(c) for c in columns.values()}) > 1:
-        raise InputError(f"{name}: its columns differ in length")
-    return RawTable(name, columns, header=header)
-
-
-def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapping[str, RawTable]:
-    """Convert times in tables from frame numbers to s.
-
-    Args:
-        tables: tables by kind.
-        frame_rate: frames per second; None: times are in seconds, or stamps.
-
-    Raises:
-        InputError: the rate is not positive, or there are stamps.
-    """
-    if frame_rate is None:
-        return tables
-    if number_of("frame_rate", frame_rate, "1/s") <= 0.0:
-        raise InputError(f"frame_rate is a number of frames per second, not {frame_rate!r}")
-    return {name: _without_frames(table, frame_rate) for name, table in tables.items()}
-
-
-def _without_frames(table: RawTable, frame_rate: float) -> RawTable:
-    seconds = {}
-    for name in {"t", "t0", "t1"} & set(table.columns):
-        frames, stamped = table.times(name)
-        if stamped:
-            raise InputError(f"{table.where(0)}: {name} holds stamps; frame_rate is for frames")
-        seconds[name] = frames / frame_rate
-    return replace(table, columns={**table.columns, **seconds})
-
-
-def _plain(series: Any) -> Any:
-    """Convert stamps with a zone to UTC."""
-    if getattr(getattr(series, "dtype", None), "tz", None) is not None:
-        return series.dt.tz_convert("UTC").dt.tz_localize(None).to_numpy()
-    return series
-
-
-def _chosen(
-    name: str, header: Sequence[str], names: ColumnNames, known: Iterable[str]
-) -> dict[str, int]:
-    """Return our column names -> their index."""
-    known = list(known)
-    for ours, theirs in names.items():
-        expect("a column's name", theirs, str)
-        if ours not in known:
-            raise InputError(
-                f"columns: '{ours}' is not a column of ours{did_you_mean(nearest(ours, known))}; "
-                f"there are {', '.join(known)}"
-            )
-        if theirs not in header:
-            near = did_you_mean(nearest(theirs, header))
-            raise InputError(f"{name}:1: there is no column '{theirs}'{near}")
-    return {
-        ours: header.index(names.get(ours, ours))
-        for ours in known
-        if names.get(ours, ours) in header
-    }
-
-
-def _separator(head: str) -> str:
-    """Return the separator of a header row; a blank stands for any number of blanks."""
-    counts = {mark: head.count(mark) for mark in ("\t", ";", ",")}
-    best = max(counts, key=lambda mark: counts[mark])
-    if counts[best]:
-        return best
-    return " " if " " in head.strip() else ","
-
-
-def _rows(path: Path, text: str, mark: str) -> tuple[list[list[str]], list[int]]:
-    """Return rows of cells and their lines, without blank rows."""
-    rows, lines = [], []
-    try:
-        if mark == " ":
-            parts = [line.split() for line in text.splitlines()]
-            numbered = list(enumerate(parts, 1))
-        else:
-            reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
-            numbered = [(reader.line_num, row) for row in reader]
-    except csv.Error as error:
-        raise InputError(f"{path}: not a table: {error}") from error
-    width = 0
-    for line, row in numbered:
-        if not any(cell.strip() for cell in row):
-            continue
-        width = width or len(row)
-        if len(row) < width:
-            raise InputError(f"{path}:{line}: the row is too short: {len(row)} cells of {width}")
-        rows.append(row)
-        lines.append(line)
-    if not rows:
-        raise InputError(f"{path}:1: the file is empty")
-    return rows, lines
-
-
-def _as_number(cell: Any) -> float:
     if cell is None:
         return math.nan
     if isinstance(cell, str):
@@ -320,6 +196,19 @@ def _as_number(cell: Any) -> float:
             text = text.replace(",", ".")
         return float(text) if text else math.nan
     return float(cell)
+
+
+#: Numbers of these sizes are stamps of the years 1973 to 2286: least number, ns in its unit.
+_SINCE_1970 = ((1e17, 1), (1e14, 10**3), (1e11, 10**6))
+
+
+def _unit_since_1970(cell: Any) -> int | None:
+    """Return the unit of a time since 1970, ns; None for other cells, seconds included."""
+    try:
+        number = as_number(cell)
+    except (TypeError, ValueError):
+        return None
+    return next((unit for least, unit in _SINCE_1970 if least <= number < 100 * least), None)
 
 
 def _is_stamp(cell: Any) -> bool:

@@ -2,7 +2,8 @@
 
 The first line names the columns, which are the fields of an agent. A number is in SI units, text
 such as ``80 cm/s`` has its own; an empty cell is a missing field. ``goals`` holds points as ``x y;
-x y``, ``portals`` two names as ``a>b``.
+x y``, ``portals`` two names as ``a>b``. Lines that begin with ``#`` are comments. A spreadsheet may
+separate cells by semicolons or tabs, with decimal commas.
 """
 
 from __future__ import annotations
@@ -17,7 +18,12 @@ from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
 from crowdbot.dsl.text.nodes import Entry, Node, Scalar
 from crowdbot.errors import did_you_mean, nearest
 
-_CELL = re.compile(r'[ \t]*(?:"((?:[^"]|"")*)"|([^,"]*?))[ \t]*(,|$)')
+#: Separator of cells -> a cell, in quotes or not, and what follows it.
+_CELLS = {
+    mark: re.compile(rf'[{blank}]*(?:"((?:[^"]|"")*)"|([^{mark}"]*?))[{blank}]*({mark}|$)')
+    for mark, blank in ((",", r" \t"), (";", r" \t"), ("\t", " "))
+}
+_DECIMAL_COMMA = re.compile(r"(?<![\d,])([-+]?\d+),(\d+)(?![\d,])")
 _INT = re.compile(r"[-+]?(?:0|[1-9][0-9]{0,18})")
 _FLOAT = re.compile(r"[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _TEXT_COLUMNS = ("policy", "at_goal", "look")
@@ -38,18 +44,26 @@ def read_agents(text: str, source: Source, problems: list[Diagnostic]) -> Node:
         source: source of the marks.
         problems: errors are added here.
     """
-    return _Table(source, problems).node(text.split("\n"))
+    lines = text.split("\n")
+    head = next((line for line in lines if _is_row(line)), "")
+    mark = "," if "," in head else next((m for m in (";", "\t") if m in head), ",")
+    return _Table(source, problems, mark).node(lines)
+
+
+def _is_row(line: str) -> bool:
+    return bool(line.strip()) and not line.lstrip().startswith("#")
 
 
 @dataclass(frozen=True, slots=True)
 class _Table:
     source: Source
     problems: list[Diagnostic]
+    separator: str
 
     def node(self, lines: Sequence[str]) -> Node:
         """Return all rows; invalid ones are reported and left out."""
         top = Mark(self.source)
-        rows = ((n, line) for n, line in enumerate(lines) if line.strip())
+        rows = ((n, line) for n, line in enumerate(lines) if _is_row(line))
         number, first = next(rows, (0, ""))
         columns = self._columns(number, first)
         if columns is None:
@@ -103,7 +117,7 @@ class _Table:
         """Return the cells of a line; None if its quotes do not match."""
         cells, at = [], 0
         while True:
-            match = _CELL.match(line, at)
+            match = _CELLS[self.separator].match(line, at)
             if match is None:
                 text = "a quote that is not closed on its line, or text beside one"
                 self._add(text, Mark(self.source, number, at))
@@ -111,7 +125,10 @@ class _Table:
             group = 1 if match[1] is not None else 2
             start, end = match.span(group)
             mark = Mark(self.source, number, start, max(1, end - start))
-            cells.append(_Cell(match[group].replace('""', '"'), mark))
+            text = match[group].replace('""', '"')
+            if self.separator != ",":
+                text = _DECIMAL_COMMA.sub(r"\1.\2", text)
+            cells.append(_Cell(text, mark))
             if not match[3]:
                 return cells
             at = match.end()

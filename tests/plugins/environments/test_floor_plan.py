@@ -49,6 +49,24 @@ def test_a_concave_room_with_a_concave_hole() -> None:
     assert any(shapely.Polygon(s).contains(solid) for s in parts.solids)
 
 
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        ("wkt", "POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0))"),
+        (
+            "geojson",
+            '{"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 3], [0, 3], [0, 0]]]}',
+        ),
+    ],
+)
+def test_a_byte_order_mark_changes_nothing(tmp_path: Path, kind: str, text: str) -> None:
+    plain, marked = (
+        _plan(file=_file(tmp_path, f"{name}.{kind}", content))
+        for name, content in (("plain", text), ("marked", "\ufeff" + text))
+    )
+    assert _floor(marked).equals(_floor(plain))
+
+
 @pytest.mark.parametrize(("unit", "scale"), [("cm", 0.01), ("mm", 0.001), ("ft", 0.3048)])
 def test_units_origin_and_rotation(unit: str, scale: float) -> None:
     parts = _plan(wkt=L_SHAPE, unit=unit, least_area=0.0, origin=[3.0, -2.0], rotation="90 deg")

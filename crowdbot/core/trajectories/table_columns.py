@@ -1,0 +1,234 @@
+"""Match the columns of a table with ours: names, units, frames, wide tables."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.support.arguments import expect, number_of
+from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, RawTable, as_number
+from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
+
+#: Names of a column with numbers of frames, in lower case.
+FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
+#: Our name -> other names that are usual, in lower case; taken if ours is not there.
+_USUAL: Mapping[str, Sequence[str]] = {
+    "t": ("time", "timestamp", *FRAMES),
+    "id": ("persid", "personid", "person_id", "ped_id", "pedestrian_id", "agent_id", "track_id"),
+}
+_LENGTHS = ("x", "y", "vx", "vy", "radius")
+#: Unit of lengths -> metres.
+_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_UNIT = re.compile(r"^(.*?)\s*(?:/|\[|\(|_in_)\s*(m|cm|mm)(?:/s)?\s*[\])]?$", re.IGNORECASE)
+_TOLD = re.compile(
+    r"\b(?:in|units?|lengths?|positions?)\s*(?:is|are|in|[:=])*\s*\(?"
+    r"(mm|cm|m|millimet(?:er|re)s?|centimet(?:er|re)s?|met(?:er|re)s?)\b", re.IGNORECASE
+)  # fmt: skip
+#: Columns of a wide table: x1, x_1, x[1], 1_x, ped1_x, 1.x.
+_WIDE = (
+    re.compile(r"^(?P<axis>[xy])[_\[( ]?(?P<who>\d+)[\])]?$", re.IGNORECASE),
+    re.compile(r"^(?P<axis>[xy])_(?P<who>\w+)$", re.IGNORECASE),
+    re.compile(r"^(?P<who>\w+)[_. ](?P<axis>[xy])$", re.IGNORECASE),
+)
+#: Prefixes of numbers of people.
+_PERSON = re.compile(r"^(?:p|ped|pedestrian|person|agent|id|human)_?(\d+)$", re.IGNORECASE)
+
+
+def chosen(
+    name: str,
+    header: Sequence[str],
+    names: ColumnNames,
+    known: Iterable[str],
+    spelled: Sequence[str] = (),
+) -> dict[str, int]:
+    """Return our column names -> their index: the given name, ours, ours in capitals, a usual one.
+
+    Args:
+        name: of the table, for messages.
+        header: names of the columns there, without units.
+        names: our name -> the name there, if the user gave one.
+        known: our names.
+        spelled: names there, with units.
+
+    Raises:
+        InputError: a given name is not one of ours, or not there.
+    """
+    known = list(known)
+    for ours, theirs in names.items():
+        expect("a column's name", theirs, str)
+        if ours not in known:
+            raise InputError(
+                f"columns: '{ours}' is not a column of ours{did_you_mean(nearest(ours, known))}; "
+                f"there are {', '.join(known)}"
+            )
+        if theirs not in header and theirs not in spelled:
+            near = did_you_mean(nearest(theirs, header))
+            raise InputError(f"{name}:1: there is no column '{theirs}'{near}")
+    lower = [column.lower() for column in header]
+    found: dict[str, int] = {}
+    for ours in known:
+        given = names.get(ours)
+        if given is not None:
+            found[ours] = header.index(given) if given in header else spelled.index(given)
+            continue
+        taken = [names.get(other) for other in known]
+        for theirs in (ours, *_USUAL.get(ours, ())):
+            where = header if theirs in header else lower
+            if theirs in where and header[where.index(theirs)] not in taken:
+                found[ours] = where.index(theirs)
+                break
+    return found
+
+
+def without_unit(column: str) -> str:
+    """Return the name of a column without its unit: ``x/cm``, ``x [cm]``, ``x(cm)``."""
+    match = _UNIT.match(column)
+    return match[1] if match is not None and match[1] else column
+
+
+def unit_in(text: str) -> float | None:
+    """Return metres in the unit that a column's name or a comment states; None if none does."""
+    match = _UNIT.match(text) or _TOLD.search(text)
+    if match is not None:
+        word = match[match.lastindex or 0].lower()
+        return _METRES[word if word in _METRES else {"mi": "mm", "ce": "cm", "me": "m"}[word[:2]]]
+    return None
+
+
+def scaled(name: str, ours: str, cells: Sequence[str], unit: float, lines: Sequence[int]) -> Cells:
+    """Return a column in metres, if it holds lengths of another unit."""
+    if unit == 1.0 or ours not in _LENGTHS:
+        return cells
+    table = RawTable(name, {ours: cells}, lines)
+    return table.numbers(ours) * unit
+
+
+def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str]) -> RawTable:
+    """Read a pandas data frame, any mapping of columns, or trajectories of PedPy.
+
+    Args:
+        name: name for messages.
+        frame: object with columns by name; or with such ``data`` and a ``frame_rate``.
+        names: our name -> the frame's name, if different.
+        known: our names; other columns are ignored.
+
+    Raises:
+        InputError: it is not a frame, or lacks a named column.
+    """
+    rate = getattr(frame, "frame_rate", None) if hasattr(frame, "data") else None
+    frame = frame.data if rate is not None else frame
+    try:
+        header = [str(c) for c in frame]
+        made = chosen(name, header, names, known)
+        keys = list(frame)
+        columns = {ours: np.asarray(_plain(frame[keys[i]])) for ours, i in made.items()}
+    except (TypeError, KeyError) as error:
+        raise InputError(f"{name}: a data frame is wanted, not {kind_of(frame)}") from error
+    if len({len(c) for c in columns.values()}) > 1:
+        raise InputError(f"{name}: its columns differ in length")
+    counts = "t" in made and header[made["t"]].lower() in FRAMES
+    raw = RawTable(name, columns, header=header, frame_rate=rate, counts_frames=counts)
+    if "id" not in known:
+        return raw
+    return from_wide(raw, header, {str(k): np.asarray(_plain(frame[k])) for k in keys}, 1.0)
+
+
+def _plain(series: Any) -> Any:
+    """Convert stamps with a zone to UTC."""
+    if getattr(getattr(series, "dtype", None), "tz", None) is not None:
+        return series.dt.tz_convert("UTC").dt.tz_localize(None).to_numpy()
+    return series
+
+
+def from_wide(
+    table: RawTable, header: Sequence[str], cells: Mapping[str, Cells], unit: float
+) -> RawTable:
+    """Return one row for each person and time, if the table has two columns for each person.
+
+    Args:
+        table: what was found under our names.
+        header: names of its columns, without units.
+        cells: all columns by name.
+        unit: metres in the unit of lengths.
+    """
+    if any(name in table for name in ("id", "x", "y")) or "t" not in table:
+        return table
+    people: dict[str, dict[str, str]] = {}
+    for column in header:
+        match = next((m for pattern in _WIDE if (m := pattern.match(column))), None)
+        if match is not None:
+            people.setdefault(match["who"], {})[match["axis"].lower()] = column
+    people = {who: axes for who, axes in people.items() if len(axes) == 2}
+    if not people:
+        return table
+    rows = [
+        (k, _number(who), cells[axes["x"]][k], cells[axes["y"]][k])
+        for k in range(len(table))
+        for who, axes in people.items()
+        if _is_there(cells[axes["x"]][k]) and _is_there(cells[axes["y"]][k])
+    ]
+    times = table.columns["t"]
+    places = {"x": [row[2] for row in rows], "y": [row[3] for row in rows]}
+    lines = [table.lines[row[0]] for row in rows] if len(table.lines) else []
+    long = RawTable(table.name, {
+        "t": times[[row[0] for row in rows]] if isinstance(times, np.ndarray)
+        else [times[row[0]] for row in rows],
+        "id": [row[1] for row in rows], **places,
+    }, lines)  # fmt: skip
+    if unit != 1.0:
+        long = replace(long, columns={**long.columns, **{n: long.numbers(n) * unit for n in "xy"}})
+    return replace(table, columns=long.columns, lines=lines)
+
+
+def _number(who: str) -> str:
+    match = _PERSON.match(who)
+    return match[1] if match is not None else who
+
+
+def _is_there(cell: Any) -> bool:
+    try:
+        return not math.isnan(as_number(cell))
+    except (TypeError, ValueError):
+        return True  # its line is named when it is read
+
+
+def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapping[str, RawTable]:
+    """Convert times in tables from frame numbers to s.
+
+    Args:
+        tables: tables by kind.
+        frame_rate: frames per second; None: as the table states, else times are in seconds, or
+            stamps.
+
+    Raises:
+        InputError: the rate is not positive or not known, or there are stamps.
+    """
+    if frame_rate is not None and number_of("frame_rate", frame_rate, "1/s") <= 0.0:
+        raise InputError(f"frame_rate is a number of frames per second, not {frame_rate!r}")
+    made = {}
+    for name, table in tables.items():
+        rate = frame_rate
+        if rate is None and table.counts_frames:
+            rate = table.frame_rate
+            if rate is None:
+                raise InputError(
+                    f"{table.name}: times are numbers of frames; frame_rate=25 says how many there "
+                    "are in a second"
+                )
+        made[name] = table if rate is None else _without_frames(table, rate)
+    return made
+
+
+def _without_frames(table: RawTable, frame_rate: float) -> RawTable:
+    seconds = {}
+    for name in {"t", "t0", "t1"} & set(table.columns):
+        frames, stamped = table.times(name)
+        if stamped:
+            raise InputError(f"{table.where(0)}: {name} holds stamps; frame_rate is for frames")
+        seconds[name] = frames / frame_rate
+    return replace(table, columns={**table.columns, **seconds})

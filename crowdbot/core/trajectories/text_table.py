@@ -1,0 +1,183 @@
+"""Read tables of text: comments, header rows or none, separators, units, wide tables."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
+from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, RawTable, as_number
+from crowdbot.core.trajectories.table_columns import (
+    FRAMES,
+    chosen,
+    from_wide,
+    scaled,
+    unit_in,
+    without_unit,
+)
+from crowdbot.errors import InputError
+
+#: A row of text is a comment if it begins with one of these.
+_COMMENTS = ("#", "%", "//")
+_RATE = re.compile(
+    r"frame[\s_-]*rate\s*[:=]?\s*(\d+(?:[.,]\d+)?)|\bfps\s*[:=]\s*(\d+(?:[.,]\d+)?)"
+    r"|(\d+(?:[.,]\d+)?)\s*fps\b",
+    re.IGNORECASE,
+)
+#: Columns of trajectories of PeTrack and JuPedSim, where no comment names them.
+_TRAJECTORY = ("id", "frame", "x", "y", "z")
+
+
+@dataclass(frozen=True, slots=True)
+class TextTable:
+    """Rows of cells (R, C), all of one width, with their lines in the file.
+
+    Attributes:
+        header: names of the columns, from the first row or a comment; empty without either.
+        frame_rate: frames per second that a comment states; None if none does.
+        unit: metres in the unit of lengths that a comment states; 1 if none does.
+    """
+
+    header: list[str]
+    rows: list[list[str]]
+    lines: list[int]
+    frame_rate: float | None
+    unit: float
+
+
+def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable:
+    """Read a text file, separated by commas, semicolons, tabs or blanks.
+
+    Args:
+        path: the file; UTF-8.
+        names: our name -> the file's name, if different.
+        known: our names; other columns are ignored.
+
+    Raises:
+        InputError: it cannot be read, is not a table, or lacks a named column.
+    """
+    known = list(known)
+    table = split(path, input_text(path, LARGEST_TABLE))
+    if not table.header:
+        raise InputError(
+            f"{path}:{table.lines[0]}: the table has no header row that names its columns: write "
+            f"one above it, such as '{','.join(known[:4])}'"
+        )
+    header = [without_unit(cell) for cell in table.header]
+    cells = {name: [row[i] for row in table.rows] for i, name in enumerate(header)}
+    made = chosen(str(path), header, names, known, spelled=table.header)
+    columns: dict[str, Cells] = {
+        ours: scaled(
+            str(path), ours, cells[header[i]], unit_in(table.header[i]) or table.unit, table.lines
+        )
+        for ours, i in made.items()
+    }
+    counts = "t" in made and header[made["t"]].lower() in FRAMES
+    raw = RawTable(
+        str(path), columns, table.lines, table.header, table.frame_rate, counts_frames=counts
+    )
+    return from_wide(raw, header, cells, table.unit) if "id" in known else raw
+
+
+def split(path: Path, text: str) -> TextTable:
+    """Split a text into a header and rows.
+
+    Raises:
+        InputError: it is empty, or rows differ in length.
+    """
+    lines = text.splitlines()
+    comments = [line for line in lines if line.lstrip().startswith(_COMMENTS)]
+    first = next((line for line in lines if line.strip() and line not in comments), "")
+    if not first:
+        raise InputError(f"{path}:1: the file is empty")
+    mark = _separator(first)
+    plain = "\n".join("" if line.lstrip().startswith(_COMMENTS) else line for line in lines)
+    rows, numbers = _rows(path, plain, mark)
+    has_header = not any(_is_number(cell) for cell in rows[0])
+    if has_header:
+        header = [cell.strip() for cell in rows[0]]
+        rows, numbers = rows[1:], numbers[1:]
+    else:
+        header = _header_of_comments(comments, len(rows[0]))
+    told = " ".join(comments)
+    return TextTable(header, rows, numbers, _frame_rate(told), unit_in(told) or 1.0)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return bool(cell.strip()) and as_number(cell) is not None
+    except ValueError:
+        return False
+
+
+def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
+    """Return the names of columns in the last comment that has one for each; empty if none has."""
+    for comment in reversed(comments):
+        words = re.split(r"[\s,;]+", re.sub(r"\s*[\[(]", "[", comment.lstrip("#%/ \t")).strip())
+        names = [without_unit(word.strip("\"':")).lower() for word in words if word]
+        if "x" in names and "y" in names:
+            start = min(names.index(name) for name in names if name in _STARTS or name == "x")
+            words = words[start:]
+            if len(words) >= width:
+                return [word.strip("\"':") for word in words[:width]]
+    if any(_RATE.search(c) or "petrack" in c.lower() for c in comments) and 4 <= width <= 5:
+        return list(_TRAJECTORY[:width])
+    return []
+
+
+_STARTS = (
+    "id", "persid", "personid", "ped_id", "t", "time", *FRAMES,
+)  # fmt: skip
+
+
+def _frame_rate(told: str) -> float | None:
+    found = _RATE.search(told)
+    if found is None:
+        return None
+    rate = float(next(group for group in found.groups() if group).replace(",", "."))
+    return rate if rate > 0.0 else None
+
+
+def _separator(head: str) -> str:
+    """Return the separator of a row; a blank stands for any number of blanks."""
+    counts = {mark: head.count(mark) for mark in ("\t", ";", ",")}
+    best = "\t" if counts["\t"] else ";" if counts[";"] else ","
+    if counts[best] and not (best == "," and _has_decimal_commas(head)):
+        return best
+    return " " if " " in head.strip() else ","
+
+
+def _has_decimal_commas(head: str) -> bool:
+    """Return True if all commas of a row separated by blanks are those of numbers."""
+    words = head.split()
+    return len(words) > 2 and all(re.fullmatch(r"[+-]?\d+(,\d+)?", word) for word in words)
+
+
+def _rows(path: Path, text: str, mark: str) -> tuple[list[list[str]], list[int]]:
+    """Return rows of cells and their lines, without blank rows."""
+    rows, lines = [], []
+    try:
+        if mark == " ":
+            parts = [line.split() for line in text.splitlines()]
+            numbered = list(enumerate(parts, 1))
+        else:
+            reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark, strict=True)
+            numbered = [(reader.line_num, row) for row in reader]
+    except csv.Error as error:
+        raise InputError(f"{path}: not a table: {error}") from error
+    width = 0
+    for line, row in numbered:
+        if not any(cell.strip() for cell in row):
+            continue
+        width = width or len(row)
+        if len(row) < width:
+            raise InputError(f"{path}:{line}: the row is too short: {len(row)} cells of {width}")
+        rows.append(row)
+        lines.append(line)
+    if not rows:
+        raise InputError(f"{path}:1: the file is empty")
+    return rows, lines

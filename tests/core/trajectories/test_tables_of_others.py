@@ -1,0 +1,117 @@
+"""Tables as programs of others write them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import crowdbot
+from crowdbot.errors import InputError, RecordingWarning
+
+READ = crowdbot.Trajectories
+BODY: dict[str, Any] = {"robot_radius": 0.2, "robot_mass": 20.0}
+ROWS = [(i, f, 0.05 * f + i, 0.5 * i, 1.75) for i in range(1, 5) for f in range(30)]
+
+
+def _written(path: Path, head: str, scale: float = 1.0, columns: int = 5) -> Path:
+    lines = [
+        " ".join(f"{v:.4f}" if k > 1 else str(v) for k, v in enumerate(row[:columns]))
+        for row in ((i, f, x * scale, y * scale, z * scale) for i, f, x, y, z in ROWS)
+    ]
+    path.write_text(head + "\n".join(lines) + "\n")
+    return path
+
+
+def _check(run: crowdbot.Trajectories, rate: float = 25.0) -> None:
+    assert run.agents is not None
+    assert run.agents.id.tolist() == [1, 2, 3, 4]
+    np.testing.assert_allclose(run.t, np.arange(30) / rate)
+    np.testing.assert_allclose(run.agents.x[:, 1], 2.0 + 0.05 * np.arange(30), atol=1e-3)
+    np.testing.assert_allclose(run.agents.y[:, 3], 2.0, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("head", "scale"),
+    [
+        ("# description: corridor\n# framerate: 25 fps\n# id frame x/m y/m z/m\n", 1.0),
+        ("# framerate: 25.0\n# id frame x/cm y/cm z/cm\n", 100.0),
+        ("#framerate: 25\n#ID\tFR\tX\tY\tZ\n", 1.0),
+        ("# PeTrack\n# all lengths in cm\n# PersID Frame X Y Z\n# 25 fps\n", 100.0),
+        ("# frame rate: 25,0\n", 1.0),
+        ("% fps: 25\nid frame x[mm] y[mm] z[mm]\n", 1000.0),
+    ],
+)
+def test_petrack_and_jupedsim(tmp_path: Path, head: str, scale: float) -> None:
+    _check(READ.from_csv(agents=_written(tmp_path / "a.txt", head, scale)))
+
+
+def test_petrack_as_a_data_set(tmp_path: Path) -> None:
+    head = "# framerate: 25\n# id frame x/cm y/cm z/cm\n"
+    _check(READ.from_eth_ucy(_written(tmp_path / "a.txt", head, 100.0)))
+    with pytest.warns(RecordingWarning, match="the first column is read as the id"):
+        _check(READ.from_eth_ucy(_written(tmp_path / "b.txt", "", columns=4)), 2.5)
+    with pytest.raises(InputError, match=r"5 columns; 4 .*or a comment that names others"):
+        READ.from_eth_ucy(_written(tmp_path / "c.txt", ""))
+
+
+def test_a_table_without_names_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no header row .*such as 't,id,x,y'"):
+        READ.from_csv(agents=_written(tmp_path / "a.csv", ""))
+
+
+def test_frames_need_a_rate(tmp_path: Path) -> None:
+    path = _written(tmp_path / "a.csv", "id frame x y z\n")
+    with pytest.raises(InputError, match="times are numbers of frames; frame_rate=25"):
+        READ.from_csv(agents=path)
+    _check(READ.from_csv(agents=path, frame_rate=25))
+
+
+def test_trajectories_of_pedpy() -> None:
+    table = np.array(ROWS)
+    data = {"id": table[:, 0].astype(int), "frame": table[:, 1].astype(int)}
+    data |= {"x": table[:, 2], "y": table[:, 3]}
+    _check(READ.from_pandas(agents=SimpleNamespace(data=data, frame_rate=25.0)))
+    _check(READ.from_pandas(agents=data, frame_rate=25.0))
+
+
+@pytest.mark.parametrize(
+    "head", ["t,x1,y1,x2,y2", "time;x_1;y_1;x_2;y_2", "t,ped1_x,ped1_y,p2_x,p2_y"]
+)
+def test_wide_tables(tmp_path: Path, head: str) -> None:
+    path, mark = tmp_path / "a.csv", ";" if ";" in head else ","
+    rows = [[0.1 * k, 0.1 * k, 1.0, 5.0, 0.2 * k] for k in range(10)]
+    lines = [mark.join(f"{v:.2f}" for v in row) for row in rows]
+    lines[0] = mark.join(["0.0", "0.0", "1.0", "", ""])  # the second comes later
+    path.write_text("\n".join([head, *lines]))
+    run = READ.from_csv(agents=path)
+    assert run.agents is not None
+    assert run.agents.id.tolist() == [1, 2]
+    np.testing.assert_allclose(run.agents.x[:, 0], 0.1 * np.arange(10), atol=1e-6)
+    assert np.isnan(run.agents.x[0, 1])
+    np.testing.assert_allclose(run.agents.y[1:, 1], 0.2 * np.arange(1, 10), atol=1e-6)
+
+
+@pytest.mark.parametrize("unit", [1, 10**3, 10**6], ids=["ns", "us", "ms"])
+def test_stamps_since_1970(tmp_path: Path, unit: int) -> None:
+    path = tmp_path / "r.csv"
+    stamps = [(1_760_000_000_000_000_000 + k * 10**8) // unit for k in range(20)]
+    path.write_text(
+        "# robot 7, lab\nt,x,y\n" + "".join(f"{s},{i * 0.05},0\n" for i, s in enumerate(stamps))
+    )
+    run = READ.from_csv(path, **BODY)
+    np.testing.assert_allclose(run.t, 0.1 * np.arange(20))
+
+
+@pytest.mark.parametrize("degrees", [3.0, 45.0, 90.0, 137.0, 180.0])
+def test_headings_in_degrees_are_noticed(degrees: float) -> None:
+    t, yaw = 0.1 * np.arange(30), math.radians(degrees)
+    robot = {"t": t, "x": 0.5 * t * math.cos(yaw), "y": 0.5 * t * math.sin(yaw)}
+    with pytest.warns(RecordingWarning, match="degrees"):
+        READ.from_pandas({**robot, "theta": np.full(30, degrees)}, **BODY)
+    right = READ.from_pandas({**robot, "theta": np.full(30, yaw + 0.15)}, **BODY)
+    assert right.implausible() == []
