@@ -174,8 +174,6 @@ def test_poses_are_taken_to_the_joints_parent() -> None:
         ("<parent>base_link</parent>", "<parent>body</parent>", "no link 'body'"),
         ("<box><size>1 2 3</size></box>", "<plane/>", "no shape like that of 'v'"),
         ("1 2 3 0.1", "1 2 3", "has 5 numbers"),
-        ('<joint name="a" type="fixed">', '<joint name="a" type="fixed"><pose>1 0 0 0 0 0</pose>',
-         "joint 'a' stands beside"),
     ],
 )  # fmt: skip
 def test_what_urdf_cannot_say(old: str, new: str, message: str) -> None:

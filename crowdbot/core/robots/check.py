@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.wheel_gain import reached_speed
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
 from crowdbot.errors import PluginError
 
 _LENGTH = 1e-3  # m; tolerance between two statements of a length
+_AXLE = 5e-3  # m; distance of an axle from the base that is only told
+_DAMPED = 0.95  # share of the largest speed; what damping takes beyond is told
 _FLOOR = 5e-3  # m; tolerance of a wheel's height over the floor
 _SHARE = 0.01  # share of a mass or a length
 _ALONG = 0.999  # cosine of the largest angle between equal directions
 
 
 def check_model(model: object) -> RobotModel:
-    """Return the model if it is a consistent robot.
+    """Return the model, with further notes, if it is a consistent robot.
 
     Raises:
         PluginError: it is not; the message says what to change.
@@ -37,9 +41,33 @@ def check_model(model: object) -> RobotModel:
     if abs(described.mass - model.mass) > _SHARE * model.mass:
         raise PluginError(f"mass is {model.mass:g} kg; the links weigh {described.mass:g} kg")
     drive = model.drive
+    notes = list(described.notes)
     if isinstance(drive, DifferentialDrive):
         _check_wheels(model, drive, described)
-    return model
+        notes += [*_beside_axle(model, drive, described), *_damped(model, drive, described)]
+    notes = [note for note in notes if note not in model.notes]
+    return replace(model, notes=(*model.notes, *notes)) if notes else model
+
+
+def _beside_axle(
+    model: RobotModel, drive: DifferentialDrive, described: Description
+) -> Iterator[str]:
+    joint = described.joint(drive.left_joint)
+    x = float(described.pose(joint.child, model.base)[0, 3])
+    if abs(x) > _LENGTH:
+        yield (
+            f"the axle is {1e3 * abs(x):.3g} mm {'ahead of' if x > 0.0 else 'behind'} "
+            f"'{model.base}', about which the robot is taken to turn"
+        )
+
+
+def _damped(model: RobotModel, drive: DifferentialDrive, described: Description) -> Iterator[str]:
+    reached, most = reached_speed(model, drive, described), model.limits.v_max
+    if reached < _DAMPED * most:
+        yield (
+            f"the damping of its joints holds the robot at {reached:.3g} m/s of v_max {most:.3g} "
+            "m/s where motors turn its wheels (control: differential_drive)"
+        )
 
 
 def _check_numbers(model: RobotModel) -> None:
@@ -108,7 +136,10 @@ def _check_wheels(model: RobotModel, drive: DifferentialDrive, described: Descri
                 f"command_radius is {drive.command_radius:g} m"
             )
         pose = described.pose(joint.child, model.base)
-        _check_place(name, pose, model.base, model.base_height - drive.command_radius)
+        try:
+            _check_place(name, pose, model.base, model.base_height - drive.command_radius)
+        except PluginError as error:
+            raise PluginError(f"{error}{_skid_steer(drive, described)}") from error
         if side * pose[1, 3] <= 0.0:
             raise PluginError(f"the wheel on '{name}' is on the other side of the robot")
         if (pose[:3, :3] @ joint.axis)[1] < _ALONG:
@@ -124,17 +155,28 @@ def _check_wheels(model: RobotModel, drive: DifferentialDrive, described: Descri
         raise PluginError(f"both wheels are '{drive.left_joint}'")
 
 
+def _skid_steer(drive: DifferentialDrive, described: Description) -> str:
+    """Return a hint for a robot with more driven wheels than two; empty for others."""
+    names = [joint.name for joint in described.joints.values() if joint.free]
+    if len(names) < 4 or not {drive.left_joint, drive.right_joint} <= set(names):
+        return ""
+    return (
+        f"; with {len(names)} wheels ({', '.join(names)}) it is skid-steered: read_published puts "
+        "two driven wheels into their middle, which is an approximation"
+    )
+
+
 def _check_place(name: str, pose: Array, base: str, fitting: float) -> None:
     """Check a wheel's position.
 
     ``fitting``: height of the base above the axle of a wheel on the floor.
     """
     x, _, z = pose[:3, 3].tolist()
-    if abs(x) > _LENGTH:
+    if abs(x) > _AXLE:
         raise PluginError(
             f"the wheel on '{name}' is {abs(x):g} m {'ahead of' if x > 0.0 else 'behind'} '{base}',"
-            " whose frame must be on the drive axis' vertical, where the robot turns: move the "
-            "links, so that it is"
+            " whose frame must be on the drive axis' vertical, where the robot turns: "
+            "read_published moves it there, or move the links"
         )
     if abs(z + fitting) > _FLOOR:
         raise PluginError(

@@ -16,6 +16,7 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
+from crowdbot.core.robots.sdf_frames import written_out
 from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
 from crowdbot.core.support.text_files import LARGEST
 from crowdbot.core.types.arrays import Array
@@ -25,6 +26,10 @@ from crowdbot.errors import PluginError, did_you_mean, nearest
 
 Format = Literal["sdf", "urdf"]
 _ROUND = ("sphere", "cylinder", "ellipsoid")
+_EXPAND = (
+    "expand them into a file: xacro ROBOT.urdf.xacro > ROBOT.urdf, where ROS is installed, or "
+    "after 'pip install xacro'"
+)
 
 
 @dataclass(frozen=True)
@@ -210,9 +215,12 @@ def parse_description(text: str) -> Description:
     try:
         top = Xml.fromstring(text.lstrip("\ufeff \t\r\n"))
     except Xml.ParseError as error:
-        raise PluginError(f"the robot's description is not well-formed XML: {error}") from error
-    if any(isinstance(e.tag, str) and "ros.org/wiki/xacro" in e.tag for e in top.iter()):
-        raise PluginError("the robot's description has xacro macros; expand them: xacro FILE")
+        hint = f"; its xacro macros: {_EXPAND}" if "xacro:" in text else ""
+        raise PluginError(
+            f"the robot's description is not well-formed XML: {error}{hint}"
+        ) from error
+    if any(_is_macro(element) for element in top.iter()):
+        raise PluginError(f"the robot's description has xacro macros; {_EXPAND}")
     if top.tag == "robot":
         return Description(text, "urdf", top)
     model = top if top.tag == "model" else top.find("model")
@@ -224,7 +232,16 @@ def parse_description(text: str) -> Description:
     for tag in ("model", "include"):
         if model.find(tag) is not None:
             raise PluginError(f"the robot's model has a <{tag}> inside; write it out")
-    return Description(text, "sdf", model, top.get("version", "1.9"))
+    version = top.get("version", "1.9")
+    made, notes = written_out(model, version)
+    return Description(text, "sdf", made, version if made is model else "1.9", tuple(notes))
+
+
+def _is_macro(element: Xml.Element) -> bool:
+    """Return True for what xacro replaces: its elements, ``${...}`` and ``$(...)``."""
+    if isinstance(element.tag, str) and "xacro" in element.tag.partition("}")[0]:
+        return True
+    return any("${" in value or "$(" in value for value in element.attrib.values())
 
 
 def _checked(described: Description) -> Description:

@@ -26,6 +26,7 @@ class Joint:
         axis: (3,) in the frame of the child.
         effort: largest force or torque, N or N m; None if not given.
         free: True if it rotates without limits.
+        damping: N m s/rad, or N s/m.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Joint:
     axis: Array
     effort: float | None
     free: bool
+    damping: float = 0.0
 
 
 def child_of(joint: Xml.Element) -> str:
@@ -57,6 +59,10 @@ def _axis(text: str, name: str) -> Array:
     return axis / length
 
 
+def _damping(text: str | None, name: str) -> float:
+    return 0.0 if text is None else number(text, f"the damping of joint '{name}'")
+
+
 def urdf_joint(joint: Xml.Element) -> Joint:
     """Return a joint of a URDF, whose frame is its child's."""
     name, kind = name_of(joint), joint.get("type", "")
@@ -72,18 +78,17 @@ def urdf_joint(joint: Xml.Element) -> Joint:
         axis=_axis("1 0 0" if axis is None else axis.get("xyz", "1 0 0"), name),
         effort=None if effort is None else number(effort, f"the effort of joint '{name}'"),
         free=kind == "continuous",
+        damping=_damping(None if (d := joint.find("dynamics")) is None else d.get("damping"), name),
     )
 
 
 def sdf_joint(joint: Xml.Element) -> Joint:
-    """Return a joint of an SDFormat model; its frame may be rotated against its child's."""
+    """Return a joint of an SDFormat model whose frames are written out (`sdf_frames`).
+
+    Its frame may be rotated against its child's.
+    """
     name, kind = name_of(joint), joint.get("type", "")
     axis, effort = joint.find("axis/xyz"), joint.findtext("axis/limit/effort")
-    pose = joint.find("pose")
-    if axis is not None and axis.get("expressed_in"):
-        raise PluginError(f"joint '{name}': write its axis in its own frame, not 'expressed_in'")
-    if pose is not None and pose.get("relative_to"):
-        raise PluginError(f"joint '{name}': write its pose relative to its child")
     turned = matrix(pose_of(joint))[:3, :3]
     bounds = [joint.findtext(f"axis/limit/{side}") for side in ("lower", "upper")]
     limits = [number(t, f"a limit of joint '{name}'") for t in bounds if t is not None]
@@ -96,4 +101,5 @@ def sdf_joint(joint: Xml.Element) -> Joint:
         axis=turned @ _axis("0 0 1" if axis is None else axis.text or "", name),
         effort=None if effort is None else number(effort, f"the effort of joint '{name}'"),
         free=kind == "continuous" or (kind == "revolute" and not bounded),
+        damping=_damping(joint.findtext("axis/dynamics/damping"), name),
     )

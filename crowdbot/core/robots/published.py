@@ -15,6 +15,9 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
+import numpy as np
+
+import crowdbot.core.robots.published_drive as drives
 from crowdbot.core.robots.description import (
     Description,
     parse_description,
@@ -24,8 +27,10 @@ from crowdbot.core.robots.description import (
 from crowdbot.core.robots.inertia import check_inertia, rolling
 from crowdbot.core.robots.joint import child_of, parent_of
 from crowdbot.core.robots.mesh_box import mesh_box
+from crowdbot.core.robots.sdf_to_urdf import from_sdf
 from crowdbot.core.robots.xml import matrix, name_of, pose_of
-from crowdbot.errors import PluginError, did_you_mean, nearest
+from crowdbot.core.types.arrays import Array
+from crowdbot.errors import InputError, PluginError, did_you_mean, nearest
 
 _HELD = ("revolute", "prismatic", "floating", "planar")
 #: Number of names that are listed; beyond it, only their number is given.
@@ -53,7 +58,10 @@ def read_published(
     base: str = "base_link",
     packages: Mapping[str, Path] | None = None,
 ) -> Description:
-    """Convert a URDF that was not written for simulated contacts to a robot's description.
+    """Convert a file that was not written for simulated contacts to a robot's description.
+
+    The base's frame moves onto the axle of the driven wheels. Of more than two driven wheels, the
+    first of each side stands for all of its side, in their middle.
 
     Args:
         source: as in `read_description`.
@@ -67,16 +75,19 @@ def read_published(
         the description; its `Description.notes` list the simplifications.
 
     Raises:
-        PluginError: it cannot be read, is not a URDF, has no such joint or link, or ``shell`` is
-            not well-formed.
+        PluginError: it cannot be read, has no such joint or link, or ``shell`` is not well-formed.
     """
     text, folder = read_text(source)
     described = parse_description(text)
-    if described.format != "urdf":
-        raise PluginError("read_published reads URDF; SDFormat is read by read_description")
-    work = _Work(deepcopy(described.model), base, dict(wheels))
+    try:
+        robot = from_sdf(described, {}) if described.format == "sdf" else described.model
+    except InputError as error:
+        raise PluginError(str(error)) from error
+    work = _Work(deepcopy(robot), base, dict(wheels))
+    work.notes += described.notes
     work.check()
     work.keep_one_tree()
+    work.drive_with_two()
     work.hold_joints()
     work.replace_meshes(lambda name: _find(name, folder, packages or {}))
     work.shape_wheels()
@@ -133,6 +144,37 @@ class _Work:
                 self.robot.remove(joint)
         self.note(loose, "link that does not hang together with the base is left out",
                   "{} links that do not hang together with the base are left out")  # fmt: skip
+
+    def drive_with_two(self) -> None:
+        """Let one wheel of each side stand for all driven ones, and bring the base above them."""
+        driven = [name for name, wheel in self.wheels.items() if wheel.effort is not None]
+        if not driven:
+            return
+        places = drives.places_of(self.robot, self.base, driven)
+        both = drives.sides(places)
+        if len(driven) > 2 and all(both):
+            for side in both:
+                self._stand_for(side, places)
+            first = [side[0] for side in both]
+            self.notes.append(
+                f"{len(driven)} driven wheels (skid steer) are approximated by two in their middle "
+                f"that roll without slip, {first[0]} and {first[1]}, with the torque of all; the "
+                "others slide. Real ones slip when the robot turns, and turn it less than commanded"
+            )
+            driven = first
+        note = drives.onto_axle(self.robot, self.base, driven)
+        self.notes += [note] if note else []
+
+    def _stand_for(self, side: Sequence[str], places: Mapping[str, Array]) -> None:
+        first, *others = side
+        wheel = self.wheels[first]
+        effort = sum(self.wheels[name].effort or 0.0 for name in side)
+        self.wheels |= {name: self.wheels[name]._replace(effort=None) for name in others}
+        self.wheels[first] = wheel._replace(effort=effort)
+        support = f"{first}_support"
+        drives.add_support(self.robot, self.base, support, places[first], wheel.radius)
+        middle = np.mean([places[name] for name in side], axis=0)
+        drives.put(self.robot, self.base, first, middle)
 
     def hold_joints(self) -> None:
         """Fix all joints except those of driven wheels and casters."""

@@ -16,19 +16,15 @@ import numpy as np
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY, optical
 from crowdbot.core.recording.scenery import FRAMES
 from crowdbot.core.robots.description import Description, read_description
-from crowdbot.core.robots.xml import matrix, name_of, pose_of
-from crowdbot.core.robots.xml import numbers as numbers_in
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.robots.sdf_to_urdf import from_sdf, write_origin
+from crowdbot.core.robots.xml import matrix
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.errors import InputError
 
 FOOTPRINT, BASE = "base_footprint", "base_link"
 _SAME = 1e-3  # m; also tolerance of a rotation's entries
-#: URDF requires limits that SDFormat may omit, which means unlimited there.
-_UNLIMITED = 1e9
 LEVEL = (0.0, 0.0, 0.0)
-_SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
 def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> str:
@@ -46,7 +42,7 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
     check_frames(robot, sensors)
     described = read_description(robot.description)
     urdf = described.format == "urdf"
-    document = deepcopy(described.model) if urdf else _from_sdf(described, wheel_rates(robot))
+    document = deepcopy(described.model) if urdf else from_sdf(described, wheel_rates(robot))
     document.set("name", name)
     _ground(document, robot, described)
     for sensor, info in sensors.items():
@@ -127,12 +123,7 @@ def _frame(
     fixed = Xml.SubElement(document, "joint", name=joint, type="fixed")
     Xml.SubElement(fixed, "parent", link=parent)
     Xml.SubElement(fixed, "child", link=child)
-    _origin(fixed, [*at, *rpy])
-
-
-def _origin(parent: Xml.Element, pose: list[float]) -> None:
-    xyz, rpy = (" ".join(f"{v + 0.0:.12g}" for v in part) for part in (pose[:3], pose[3:]))
-    Xml.SubElement(parent, "origin", xyz=xyz, rpy=rpy)
+    write_origin(fixed, [*at, *rpy])
 
 
 # ---------------------------------------------------------------------------- SDFormat
@@ -143,93 +134,3 @@ def wheel_rates(robot: RobotModel) -> dict[str, float]:
         return {}
     rim = max(-limits.v_min, limits.v_max) + 0.5 * drive.track * limits.w_max
     return dict.fromkeys((drive.left_joint, drive.right_joint), rim / drive.command_radius)
-
-
-def _from_sdf(described: Description, rates: Mapping[str, float]) -> Xml.Element:
-    document = Xml.Element("robot")
-    for name, link in described.links.items():
-        _link(Xml.SubElement(document, "link", name=name), link)
-    for joint in described.model.findall("joint"):
-        _joint(document, joint, described, rates.get(name_of(joint), _UNLIMITED))
-    return document
-
-
-def _link(link: Xml.Element, source: Xml.Element) -> None:
-    inertial = source.find("inertial")
-    if inertial is not None:
-        _inertial(Xml.SubElement(link, "inertial"), inertial)
-    for kind in ("visual", "collision"):
-        for item in source.findall(kind):
-            part = Xml.SubElement(link, kind, name=name_of(item))
-            _origin(part, pose_of(item))
-            _shape(Xml.SubElement(part, "geometry"), item)
-            _material(part, item)
-
-
-def _inertial(inertial: Xml.Element, source: Xml.Element) -> None:
-    _origin(inertial, pose_of(source))
-    Xml.SubElement(inertial, "mass", value=source.findtext("mass", "0").strip())
-    moments = {k: source.findtext(f"inertia/{k}", "0").strip() for k in _MOMENTS}
-    Xml.SubElement(inertial, "inertia", moments)
-
-
-_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-
-
-def _shape(geometry: Xml.Element, source: Xml.Element) -> None:
-    for shape in _SHAPES:
-        found = source.find(f"geometry/{shape}")
-        if found is not None:
-            numbers = {c.tag: (c.text or "").strip() for c in found}
-            if "uri" in numbers:
-                numbers["filename"] = numbers.pop("uri")
-            Xml.SubElement(geometry, shape, numbers)
-            return
-    if (radii := source.findtext("geometry/ellipsoid/radii")) is not None:  # a wheel about z
-        radius, _, half = numbers_in(radii, f"the radii of '{name_of(source)}'")
-        Xml.SubElement(geometry, "cylinder", radius=f"{radius:g}", length=f"{2.0 * half:g}")
-        return
-    raise InputError(f"URDF has no shape like that of '{name_of(source)}'")
-
-
-def _material(part: Xml.Element, source: Xml.Element) -> None:
-    colour = source.findtext("material/diffuse")
-    if part.tag == "visual" and colour is not None:
-        material = Xml.SubElement(part, "material", name=f"{name_of(source)}_material")
-        Xml.SubElement(material, "color", rgba=colour.strip())
-
-
-def _joint(
-    document: Xml.Element, source: Xml.Element, described: Description, fastest: float
-) -> None:
-    """Add a joint; ``fastest`` (rad/s) is its velocity limit if the description has none."""
-    found = described.joints[name_of(source)]
-    name, kind = found.name, "continuous" if found.free else found.kind
-    if any(pose_of(source)):
-        raise InputError(f"joint '{name}' stands beside its child's frame, as URDF joints cannot")
-    joint = Xml.SubElement(document, "joint", name=name, type=kind)
-    Xml.SubElement(joint, "parent", link=found.parent)
-    Xml.SubElement(joint, "child", link=found.child)
-    _origin(joint, _six(described.pose(found.child, found.parent)))
-    axis = source.findtext("axis/xyz")
-    if axis is not None:
-        Xml.SubElement(joint, "axis", xyz=axis.strip())
-    limits = {
-        k: v.strip()
-        for k in ("lower", "upper", "effort", "velocity")
-        if (v := source.findtext(f"axis/limit/{k}")) is not None
-    }
-    if limits:
-        whole = {"effort": f"{_UNLIMITED:g}", "velocity": f"{fastest:.12g}", **limits}
-        Xml.SubElement(joint, "limit", whole)
-
-
-def _six(matrix: Array) -> list[float]:
-    """Return x, y, z, roll, pitch, yaw of a 4 x 4 pose."""
-    flat = math.hypot(matrix[0, 0], matrix[1, 0])
-    pitch = math.atan2(-matrix[2, 0], flat)
-    if flat > 1e-9:
-        roll, yaw = math.atan2(matrix[2, 1], matrix[2, 2]), math.atan2(matrix[1, 0], matrix[0, 0])
-    else:
-        roll, yaw = math.atan2(-matrix[1, 2], matrix[1, 1]), 0.0
-    return [*matrix[:3, 3].tolist(), roll, pitch, yaw]

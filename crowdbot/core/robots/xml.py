@@ -69,3 +69,14 @@ def matrix(pose: list[float]) -> Array:
     found = np.eye(4)
     found[:3, :3], found[:3, 3] = rotation(*pose[3:]), pose[:3]
     return found
+
+
+def six(matrix: Array) -> list[float]:
+    """Return x, y, z, roll, pitch, yaw of a 4 x 4 pose."""
+    flat = math.hypot(matrix[0, 0], matrix[1, 0])
+    pitch = math.atan2(-matrix[2, 0], flat)
+    if flat > 1e-9:
+        roll, yaw = math.atan2(matrix[2, 1], matrix[2, 2]), math.atan2(matrix[1, 0], matrix[0, 0])
+    else:
+        roll, yaw = math.atan2(-matrix[1, 2], matrix[1, 1]), 0.0
+    return [*matrix[:3, 3].tolist(), roll, pitch, yaw]

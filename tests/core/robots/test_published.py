@@ -164,5 +164,5 @@ def test_what_does_not_fit_is_named(change: dict[str, object], message: str) -> 
 def test_macros_are_refused_with_what_to_do() -> None:
     space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     text = f'<robot name="r" {space}><xacro:include filename="a"/><link name="base_link"/></robot>'
-    with pytest.raises(PluginError, match="xacro macros; expand them: xacro FILE"):
+    with pytest.raises(PluginError, match="xacro macros; expand them into a file: xacro ROBOT"):
         read_published(text, wheels={}, shell="")

@@ -5,20 +5,17 @@ from __future__ import annotations
 from pydrake.multibody.tree import PdControllerGains
 from pydrake.systems.framework import DiagramBuilder
 
+from crowdbot.core.robots.wheel_gain import wheel_gain
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import add_robot_state
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 
-# Implicit velocity gain of a TurtleBot2's wheels, N m s; stable there from 0.1 to 50
-# (docs/decisions/0004). Heavier robots on larger wheels need more to be as fast: d ~ m r^2.
-_GAIN, _MASS, _RADIUS = 1.0, 6.3, 0.0352
-
 
 def wheel_gains(mass: float, radius: float) -> PdControllerGains:
     """Return gains of each wheel's motor, from a robot's mass (kg) and wheel radius (m)."""
-    return PdControllerGains(p=0.0, d=_GAIN * (mass * radius**2) / (_MASS * _RADIUS**2))
+    return PdControllerGains(p=0.0, d=wheel_gain(mass, radius))
 
 
 def add_differential_drive(

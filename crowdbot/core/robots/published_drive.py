@@ -1,0 +1,95 @@
+"""The drive of a published robot: an axle beside the base, more driven wheels than two."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+
+from crowdbot.core.robots.description import Description
+from crowdbot.core.robots.joint import child_of, parent_of
+from crowdbot.core.robots.xml import matrix, name_of, pose_of, six
+from crowdbot.core.types.arrays import Array
+
+#: A base that is nearer to the axle is not moved, m.
+_SAME = 1e-3
+_PARTS = ("inertial", "visual", "collision")
+
+
+def places_of(robot: Xml.Element, base: str, joints: Sequence[str]) -> dict[str, Array]:
+    """Return the places (3,) of wheels by joint, in the base's frame, m."""
+    described = Description("", "urdf", robot)
+    return {name: described.pose(described.joint(name).child, base)[:3, 3] for name in joints}
+
+
+def sides(places: Mapping[str, Array]) -> list[list[str]]:
+    """Return the joints of wheels on the left and on the right, in their order."""
+    return [
+        [n for n, at in places.items() if at[1] > 0.0],
+        [n for n, at in places.items() if at[1] <= 0.0],
+    ]
+
+
+def put(robot: Xml.Element, base: str, joint: str, place: Array) -> None:
+    """Move a wheel to a place in the base's frame, without turning it."""
+    described = Description("", "urdf", robot)
+    element = next(j for j in robot.findall("joint") if name_of(j) == joint)
+    pose = described.pose(child_of(element), base)
+    pose[:3, 3] = place
+    _write(element, described.pose(base, parent_of(element)) @ pose)
+
+
+def add_support(robot: Xml.Element, base: str, name: str, place: Array, radius: float) -> None:
+    """Add a sphere to the base that slides on the floor where a wheel was."""
+    link = next(e for e in robot.findall("link") if name_of(e) == base)
+    shape = Xml.SubElement(link, "collision", name=name)
+    Xml.SubElement(shape, "origin", xyz=" ".join(f"{x:.9g}" for x in place.tolist()))
+    Xml.SubElement(Xml.SubElement(shape, "geometry"), "sphere", radius=f"{radius:g}")
+
+
+def onto_axle(robot: Xml.Element, base: str, driven: Sequence[str]) -> str:
+    """Move the base's frame ahead or back onto the axle of the driven wheels; return a note.
+
+    Links above the base that are on its vertical, such as base_footprint, move along.
+    """
+    ahead = float(np.mean([at[0] for at in places_of(robot, base, driven).values()]))
+    if abs(ahead) <= _SAME:
+        return ""
+    described = Description("", "urdf", robot)
+    above = {j.child: j.parent for j in described.joints.values()}
+    chain = [base]
+    while (parent := above.get(chain[-1])) is not None:
+        chain.append(parent)
+    if any(np.hypot(*described.pose(link, base)[:2, 3]) > _SAME for link in chain):
+        chain = [base]
+    by = {link: described.pose(base, link)[:3, :3] @ (ahead, 0.0, 0.0) for link in chain}
+    for link in robot.findall("link"):
+        if name_of(link) in by:
+            for part in (p for kind in _PARTS for p in link.findall(kind)):
+                _shift(part, -by[name_of(link)])
+    for joint in robot.findall("joint"):
+        if child_of(joint) not in by and parent_of(joint) in by:
+            _shift(joint, -by[parent_of(joint)])
+        elif child_of(joint) == chain[-1] and parent_of(joint):
+            turn = matrix(pose_of(joint))[:3, :3]
+            _shift(joint, turn @ by[chain[-1]])
+    return (
+        f"'{base}' is moved {1e3 * abs(ahead):.3g} mm {'ahead' if ahead > 0.0 else 'back'}, onto "
+        "the axle of the driven wheels; sensors are mounted from there"
+    )
+
+
+def _shift(element: Xml.Element, by: Array) -> None:
+    pose = matrix(pose_of(element))
+    pose[:3, 3] += by
+    _write(element, pose)
+
+
+def _write(element: Xml.Element, pose: Array) -> None:
+    origin = element.find("origin")
+    if origin is None:
+        origin = Xml.SubElement(element, "origin")
+    numbers = [f"{x + 0.0:.12g}" for x in np.round(six(pose), 12)]
+    origin.set("xyz", " ".join(numbers[:3]))
+    origin.set("rpy", " ".join(numbers[3:]))

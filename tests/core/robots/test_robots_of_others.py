@@ -1,0 +1,246 @@
+"""Descriptions as others write them: frames, casters, axles, four driven wheels, damping."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crowdbot.core.robots.check import check_model
+from crowdbot.errors import PluginError
+from crowdbot.plugin import (
+    Command,
+    Description,
+    DifferentialDrive,
+    PublishedWheel,
+    RobotLimits,
+    RobotModel,
+    read_description,
+    read_published,
+)
+from crowdbot.testing.commanded_motion import drive
+
+WHEELS = "differential_drive"
+SHELL = """<collision><origin xyz="0 0 0.15"/>
+  <geometry><cylinder radius="0.25" length="0.15"/></geometry></collision>"""
+CASTER = """<collision><origin xyz="-0.2 0 0.02"/>
+  <geometry><sphere radius="0.02"/></geometry></collision>"""
+WHEEL_SHAPE = "<geometry><cylinder><radius>0.05</radius><length>0.02</length></cylinder></geometry>"
+
+
+def _inertial(mass: float, moment: float, pose: str = "0 0 0 0 0 0") -> str:
+    moments = "".join(f"<{n}>{moment if n[1] == n[2] else 0}</{n}>"
+                      for n in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"))  # fmt: skip
+    return (
+        f"<inertial><pose>{pose}</pose><mass>{mass}</mass><inertia>{moments}</inertia></inertial>"
+    )
+
+
+def _cart(*, wheel: str, joint: str, axis: str = "<xyz>0 0 1</xyz>", more: str = "") -> str:
+    """A cart in SDFormat; ``{y}`` is the side of a wheel in ``wheel`` and ``joint``."""
+    text = (
+        f'<sdf version="1.9"><model name="cart"><link name="base_link">{_inertial(8, 0.1)}'
+        '<collision name="body"><pose>0 0 0.15 0 0 0</pose><geometry><cylinder><radius>0.2</radius>'
+        "<length>0.2</length></cylinder></geometry></collision></link>"
+        f'<link name="ball"><pose>-0.15 0 0.02 0 0 0</pose>{_inertial(0.05, 1e-5)}'
+        '<collision name="c"><geometry><sphere><radius>0.02</radius></sphere></geometry>'
+        '</collision></link><joint name="caster" type="ball"><parent>base_link</parent>'
+        f"<child>ball</child></joint>{more}"
+    )
+    for name, y in (("left", 0.15), ("right", -0.15)):
+        text += (
+            f'<link name="{name}_wheel">{wheel.format(y=y)}</link><joint name="{name}" '
+            f'type="revolute"><parent>base_link</parent><child>{name}_wheel</child>'
+            f"{joint.format(y=y)}<axis>{axis}<limit><effort>5</effort></limit></axis></joint>"
+        )
+    return text + "</model></sdf>"
+
+
+_SHAPE = '<collision name="c"><pose>{at} -1.570796327 0 0</pose>' + WHEEL_SHAPE + "</collision>"
+_ORIGIN = _SHAPE.replace("{at}", "0 0 0")
+_AT_AXLE = "<pose>0 {y} 0.05 0 0 0</pose>" + _inertial(0.4, 5e-4) + _ORIGIN
+_AT_MODEL = _inertial(0.4, 5e-4, "0 {y} 0.05 0 0 0") + _SHAPE.replace("{at}", "0 {y} 0.05")
+_IN_FRAME = '<pose relative_to="axle">0 {y} 0 0 0 0</pose>' + _AT_AXLE.partition("</pose>")[2]
+_FRAMES = """<frame name="chassis"><pose>0 0 0.03 0 0 0.5</pose></frame>
+<frame name="axle" attached_to="chassis">
+<pose relative_to="chassis">0 0 0.02 0 0 -0.5</pose></frame>"""
+_TURNED = "<pose>{x} -1.570796327 0 0</pose>"
+#: Ways to write the same cart.
+CARTS = {
+    "links at the axle": _cart(wheel=_AT_AXLE, joint=_TURNED.format(x="0 0 0")),
+    "links at the model's origin": _cart(wheel=_AT_MODEL, joint=_TURNED.format(x="0 {y} 0.05")),
+    "nested frames": _cart(wheel=_IN_FRAME, joint=_TURNED.format(x="0 0 0"), more=_FRAMES),
+    "joints in the model": _cart(
+        wheel=_AT_MODEL,
+        joint='<pose relative_to="__model__">0 {y} 0.05 -1.570796327 0 0</pose>',
+    ),
+    "axes in the model": _cart(
+        wheel=_AT_AXLE, joint="", axis='<xyz expressed_in="__model__">0 1 0</xyz>'
+    ),
+    "axes of a parent": _cart(
+        wheel=_AT_AXLE, joint="",
+        axis="<xyz>0 1 0</xyz><use_parent_model_frame>1</use_parent_model_frame>",
+    ),
+}  # fmt: skip
+LIMITS = RobotLimits(v_min=-0.3, v_max=0.6, w_max=1.5, a_max=1.0, alpha_max=3.0)
+
+
+def _model(found: Description, text: str, left: str = "left", right: str = "right") -> RobotModel:
+    drive_ = found.differential_drive(left, right)
+    return RobotModel(
+        description=text, base="base_link", base_height=found.base_height(drive_), drive=drive_,
+        limits=LIMITS, footprint_radius=0.2, height=0.4, force_height=0.2, mass=found.mass,
+        notes=found.notes,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CARTS)
+def test_frames_of_sdformat(name: str) -> None:
+    found = read_description(CARTS[name])
+    model = check_model(_model(found, CARTS[name]))
+    assert isinstance(model.drive, DifferentialDrive)
+    assert model.drive.track == pytest.approx(0.3)
+    assert model.base_height == pytest.approx(0.0)
+    assert found.pose("left_wheel", "base_link")[:3, 3] == pytest.approx([0.0, 0.15, 0.05])
+    assert any("ball joint is held; its caster slides: caster" in note for note in model.notes)
+
+
+def test_frames_that_are_not_there() -> None:
+    for old, new, message in (
+        ('relative_to="axle"', 'relative_to="axel"', "'axel', .* did you mean 'axle'"),
+        ('relative_to="chassis"', 'relative_to="axle"', "'axle' is relative to itself"),
+    ):
+        with pytest.raises(PluginError, match=message):
+            read_description(CARTS["nested frames"].replace(old, new))
+
+
+@pytest.mark.parametrize("name", ["links at the model's origin", "axes in the model"])
+def test_frames_of_sdformat_drive_alike(name: str) -> None:
+    last = [
+        drive(_model(read_description(CARTS[n]), CARTS[n]), WHEELS, Command(0.2, 0.5), 1.0)[-1]
+        for n in (name, "links at the axle")
+    ]
+    assert last[0] == pytest.approx(last[1], abs=1e-4)
+    assert last[0].yaw > 0.2
+
+
+def test_sdformat_is_made_drivable_too() -> None:
+    wheels = dict.fromkeys(("left", "right"), PublishedWheel(0.05, 5.0))
+    found = read_published(CARTS["links at the model's origin"], wheels=wheels, shell=SHELL)
+    assert found.format == "urdf"
+    model = check_model(_model(found, found.text))
+    assert isinstance(model.drive, DifferentialDrive)
+    assert model.drive.track == pytest.approx(0.3)
+    assert any("ball joint" in note for note in model.notes)
+
+
+# --------------------------------------------------------------------------------- URDF
+def _base(x: float, places: dict[str, tuple[float, float]], *, damping: float = 0.0) -> str:
+    """A base in URDF whose wheels are ``x`` ahead of base_link."""
+    text = (
+        '<robot name="base"><link name="base_footprint"/><joint name="foot" type="fixed">'
+        '<parent link="base_footprint"/><child link="base_link"/><origin xyz="0 0 0.1"/></joint>'
+        '<link name="base_link"><inertial><origin xyz="0 0 0.1"/><mass value="10"/><inertia '
+        'ixx="0.2" iyy="0.2" izz="0.3" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    )
+    for name, (ahead, y) in places.items():
+        text += (
+            f'<link name="{name}_wheel"><inertial><mass value="1"/><inertia ixx="0.001" '
+            'iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+            f'<joint name="{name}" type="continuous"><parent link="base_link"/>'
+            f'<child link="{name}_wheel"/><origin xyz="{x + ahead} {y} -0.04"/><axis xyz="0 1 0"/>'
+            f'<limit effort="8" velocity="30"/><dynamics damping="{damping}"/></joint>'
+        )
+    return text + "</robot>"
+
+
+TWO = {"left": (0.0, 0.18), "right": (0.0, -0.18)}
+FOUR = {"front_left": (0.15, 0.2), "front_right": (0.15, -0.2),
+        "rear_left": (-0.15, 0.2), "rear_right": (-0.15, -0.2)}  # fmt: skip
+
+
+def _published(text: str, shell: str = SHELL + CASTER) -> Description:
+    names = [name for name in (*TWO, *FOUR) if f'"{name}"' in text]
+    wheels = dict.fromkeys(names, PublishedWheel(0.06, 8.0))
+    return read_published(text, wheels=wheels, shell=shell)
+
+
+@pytest.mark.parametrize("x", [0.0013, 0.04, -0.02])
+def test_an_axle_beside_the_base(x: float) -> None:
+    found = _published(_base(x, TWO))
+    note = f"'base_link' is moved {1e3 * abs(x):.3g} mm {'ahead' if x > 0 else 'back'}"
+    assert any(note in said for said in found.notes)
+    model = check_model(_model(found, found.text))
+    described = read_description(model.description)
+    assert described.pose("left_wheel", "base_link")[0, 3] == pytest.approx(0.0, abs=1e-9)
+    assert described.pose("base_footprint", "base_link")[:3, 3] == pytest.approx([0, 0, -0.1])
+    inertial = described.link("base_link").find("inertial/origin")
+    assert inertial is not None
+    assert float(inertial.get("xyz", "").split()[0]) == pytest.approx(-x)
+
+
+def test_an_axle_beside_the_base_of_a_description() -> None:
+    """Some millimetres are told; more are refused."""
+    text = _published(_base(0.0, TWO)).text
+    model = _model(read_description(text), text)
+    off = replace(
+        model,
+        description=text.replace('"0.0 0.18', '"0.002 0.18').replace('"0.0 -0.18', '"0.002 -0.18'),
+    )
+    assert off.description != text
+    assert "the axle is 2 mm ahead of 'base_link'" in "".join(check_model(off).notes)
+    far = replace(model, description=off.description.replace("0.002", "0.02"))
+    with pytest.raises(PluginError, match=r"0\.02 m ahead of 'base_link'.*read_published moves it"):
+        check_model(far)
+
+
+def test_four_driven_wheels() -> None:
+    found = _published(_base(0.0, FOUR), SHELL)
+    assert any("4 driven wheels (skid steer) are approximated by two" in n for n in found.notes)
+    model = check_model(_model(found, found.text, "front_left", "front_right"))
+    described = read_description(model.description)
+    assert described.joint("front_left").effort == 16.0
+    assert described.pose("front_left_wheel", "base_link")[:2, 3] == pytest.approx([0.0, 0.2])
+    last = drive(model, WHEELS, Command(0.3, 0.4), 2.0)[-1]
+    assert last.tilt < 0.02
+    assert last.w == pytest.approx(0.4, abs=0.02)
+    assert np.hypot(last.vx, last.vy) == pytest.approx(0.3, abs=0.01)
+
+
+def test_four_driven_wheels_of_a_description() -> None:
+    text = _published(_base(0.0, TWO)).text
+    model = _model(read_description(text), text)
+    four = _base(0.0, FOUR).replace(
+        "</inertial></link>",
+        "</inertial><collision><geometry><sphere radius='0.06'/></geometry></collision></link>",
+    )
+    assert isinstance(model.drive, DifferentialDrive)
+    drive_ = replace(model.drive, left_joint="front_left", right_joint="front_right", track=0.4)
+    broken = replace(model, description=four, drive=drive_, mass=14.0)
+    with pytest.raises(PluginError, match=r"4 wheels .* it is skid-steered: read_published"):
+        check_model(broken)
+
+
+def test_damping_that_holds_a_robot_is_told() -> None:
+    told = []
+    for damping in (0.001, 50.0):
+        found = _published(_base(0.0, TWO, damping=damping))
+        told.append("".join(check_model(_model(found, found.text)).notes))
+        reached = drive(_model(found, found.text), WHEELS, Command(0.6, 0.0), 3.0)[-1].vx
+        if damping > 1.0:
+            assert f"holds the robot at {reached:.2g}" in told[-1]
+    assert "damping" not in told[0]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="a"/></robot>',
+        '<robot name="r"><xacro:macro name="wheel"/></robot>',
+        '<robot name="r"><link name="base_link"/><joint name="${side}_wheel"/></robot>',
+    ],
+)
+def test_macros_are_told_with_what_expands_them(text: str) -> None:
+    with pytest.raises(PluginError, match=r"xacro ROBOT\.urdf\.xacro > ROBOT\.urdf"):
+        read_description(text)
