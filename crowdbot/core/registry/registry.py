@@ -13,13 +13,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, Union
+from typing import Annotated, Any, TypeVar, Union, cast
 
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from crowdbot.core.registry.build_reference import accepted, load_build
 from crowdbot.core.registry.component_list import ComponentsByKind, known_components, of_category
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
+from crowdbot.core.registry.narrowed_models import Models, models_of
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
 from crowdbot.core.support.gc_throttle import seldom_collected
@@ -37,11 +38,6 @@ __all__ = ["Plugin", "Registry", "assemble", "discover"]
 Built = TypeVar("Built")
 
 _IN_SCENARIOS = tuple(c.category for c in CATEGORIES if c not in (PlannerSpec, MetricSpec))
-
-#: Cache: specs by category -> result of `Registry.scenario_model`, latest last. Building it takes
-#: pydantic a fifth of a second, and repeated discovery finds the same specs.
-_scenario_models: dict[tuple[tuple[str, type[ComponentSpec]], ...], type[Scenario]] = {}
-_MODELS_KEPT = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,16 +181,32 @@ class Registry:
     @cached_property
     def scenario_model(self) -> type[Scenario]:
         """Return `Scenario`, narrowed to the installed components; shared by equal registries."""
-        specs = tuple(
-            (category, component.spec)
-            for category in _IN_SCENARIOS
-            for component in self._by_category[category].values()
+        if Scenario.__name__ not in self._models:
+            self._models.keep(self._narrowed_scenario(), Scenario.__name__)
+        return cast(type[Scenario], self._models[Scenario.__name__])
+
+    def narrowed(self, name: str) -> type[BaseModel]:
+        """Return a class that is narrowed to the installed components, by its name.
+
+        It is ``Scenario`` or a part of it, or ``CATEGORY KIND`` of a spec that contains others.
+        """
+        if name not in self._models and " " in name:
+            self.spec_model(*name.rsplit(" ", 1))
+        elif name not in self._models:
+            _ = self.scenario_model
+        return self._models[name]
+
+    @cached_property
+    def _models(self) -> Models:
+        """The narrowed classes, which equal registries share."""
+        return models_of(
+            tuple(
+                (category, component.spec)
+                for category in _IN_SCENARIOS
+                for component in self._by_category[category].values()
+            ),
+            self.source,
         )
-        if specs not in _scenario_models:
-            if len(_scenario_models) == _MODELS_KEPT:
-                del _scenario_models[next(iter(_scenario_models))]
-            _scenario_models[specs] = self._narrowed_scenario()
-        return _scenario_models[specs]
 
     def _narrowed_scenario(self) -> type[Scenario]:
         policy: Any = (self._union("crowd policy"), ...)
@@ -221,6 +233,8 @@ class Registry:
             model=(self._union("robot"), ...),
             sensors=self._named(Robot, "sensors", self._union("sensor")),
         )
+        for part in (named, crowd, robot):
+            self._models.keep(part, part.__name__)
         return create_model(
             "Scenario",
             __base__=Scenario,
@@ -240,11 +254,15 @@ class Registry:
         spec: type[ComponentSpec] = self.find(category, kind).spec
         if not spec.parts_field:
             return spec
+        name = f"{category} {kind}"
+        if category in _IN_SCENARIOS and name in self._models:
+            return cast(type[ComponentSpec], self._models[name])
         field = spec.model_fields[spec.parts_field]
         fields: Any = {
             spec.parts_field: (narrowed(field, self._union(parts_category(spec))), field)
         }
-        return create_model(spec.__name__, __base__=spec, **fields)
+        model = create_model(spec.__name__, __base__=spec, **fields)
+        return self._models.keep(model, name) if category in _IN_SCENARIOS else model
 
     @staticmethod
     def _named(base: type[BaseModel], field: str, member: Any) -> Any:

@@ -15,6 +15,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.core.registry.narrowed_models import Whereabouts, registry_of, whereabouts
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.gc_throttle import seldom_collected
@@ -97,7 +98,7 @@ def open_suite(
         raise SpecError([_with_reason(d, registry) for d in error.diagnostics]) from None
     files = LockFiles(path, spec)
     if files.lock_path.exists():
-        _attach(expansion, files, _Origins(suite, registry, expansion, overrides))
+        _attach(expansion, files, _Origins(suite, registry, expansion, overrides, spec))
     return expansion, files
 
 
@@ -134,12 +135,36 @@ class _Origins:
         registry: Registry,
         expansion: Expansion,
         overrides: Sequence[str],
+        spec: str,
     ) -> None:
+        self._spec = str(Path(spec).resolve()) if Path(spec).is_file() else spec
+        self._source = registry.source
         self._given = None if overrides else expansion.scenarios
         self._expanding = Expanding(suite, registry.scenario_model)
 
     def scenario(self, index: int) -> Scenario:
         return self._given[index] if self._given else self._expanding.scenario(index)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Let another process open the suite again, when it needs it."""
+        return _OpenedAgain, (self._spec, whereabouts(self._source))
+
+
+@dataclass(frozen=True)
+class _OpenedAgain:
+    """The same in another process."""
+
+    spec: str
+    where: Whereabouts
+
+    def scenario(self, index: int) -> Scenario:
+        return _expanding(self.spec, self.where).scenario(index)
+
+
+@cache
+def _expanding(spec: str, where: Whereabouts) -> Expanding:
+    registry = registry_of(where)
+    return Expanding(open_document(spec, registry).suite, registry.scenario_model)
 
 
 def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:

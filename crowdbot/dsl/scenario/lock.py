@@ -98,6 +98,7 @@ class LockFiles:
     """
 
     def __init__(self, document: Path, spec: str) -> None:
+        self._document = document
         self.lock_path = document.with_suffix(".lock.json")
         #: File of tables that no other suite has.
         self.own_agents_path = document.with_suffix(".agents.csv")
@@ -105,6 +106,10 @@ class LockFiles:
 
     def __deepcopy__(self, memo: object) -> LockFiles:
         return self
+
+    def __reduce__(self) -> tuple[type[LockFiles], tuple[Path, str]]:
+        """Let another process read the files itself."""
+        return LockFiles, (self._document.absolute(), self.spec)
 
     @cached_property
     def lock(self) -> Lock:

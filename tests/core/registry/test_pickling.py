@@ -1,0 +1,60 @@
+"""Scenarios, suites and scores go to other processes: pools, Dask, SubprocVecEnv."""
+
+from __future__ import annotations
+
+import multiprocessing
+import pickle
+
+import numpy as np
+import pytest
+
+import crowdbot
+from crowdbot.core.registry.narrowed_models import whereabouts
+from crowdbot.dsl.suite.expand import Expansion
+
+IDS = ("in-d0125-slow-c01-r02", "counter-d0250-dispersed-c20-r05")
+
+
+def _seen(scenario: crowdbot.Scenario) -> tuple[str, str]:
+    """What another process makes of a scenario: its document, and its origin's."""
+    assert scenario.locked is not None
+    return scenario.model_dump_json(), scenario.locked.origin().model_dump_json()
+
+
+def test_another_process_has_the_same_scenario() -> None:
+    given = [
+        crowdbot.load("challenge-2020", name, set="robots.robot.task.time_limit=2") for name in IDS
+    ]
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        found = pool.map(_seen, given)
+    assert found == [_seen(scenario) for scenario in given]
+
+
+@pytest.mark.parametrize("suite", ["challenge-2020", "challenge-2026", "social-guidelines"])
+def test_suites(suite: str) -> None:
+    given = crowdbot.load(suite)
+    assert isinstance(given, Expansion)
+    found = pickle.loads(pickle.dumps(given))  # noqa: S301
+    assert found.scenarios == given.scenarios
+    assert [type(s) for s in found.scenarios] == [type(s) for s in given.scenarios]
+    assert (found.suite_id, found.metrics, found.axes) == (
+        given.suite_id,
+        given.metrics,
+        given.axes,
+    )
+
+
+def test_scores_and_trajectories() -> None:
+    t = 0.1 * np.arange(30)
+    run = crowdbot.Trajectories.from_pandas(
+        {"t": t, "x": 0.5 * t, "y": 0.0 * t}, robot_radius=0.2, robot_mass=20.0
+    )
+    scores = crowdbot.score(run, metrics=["speed"])
+    found = pickle.loads(pickle.dumps((run, scores)))  # noqa: S301
+    np.testing.assert_array_equal(found[0].robot.x, run.robot.x)  # type: ignore[union-attr]
+    assert list(found[1]) == list(scores)
+
+
+def test_plugins_that_were_not_discovered() -> None:
+    with pytest.raises(pickle.PicklingError, match="not discovered"):
+        whereabouts(None)
