@@ -6,7 +6,6 @@ the index; readers update a copy in memory and write nothing.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import logging
 import os
@@ -22,6 +21,7 @@ from crowdbot.core.results.rows import RUN_COLUMNS, DamagedRun, RunRow, ScoreRow
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.scores_csv import RunScore, read_scores_csv, safe_cell
+from crowdbot.core.support.locks import try_lock
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
@@ -91,10 +91,12 @@ def index(root: Path) -> Iterator[Store]:
         raise InputError(f"{root}: cannot be written: {error.strerror}") from error
     try:
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            state = try_lock(handle, root / LOCK)
         except OSError as error:
-            raise InputError(f"{root}: another campaign is writing there") from error
-        with closing(_opened(root / INDEX)) as database:
+            raise InputError(f"{root}: cannot be locked: {error.strerror}") from error
+        if state == "taken":
+            raise InputError(f"{root}: another campaign is writing there")
+        with closing(_opened(root / INDEX, guarded=state == "locked")) as database:
             yield Store(root, database)
     finally:
         os.close(handle)
@@ -127,12 +129,20 @@ def _reader(file: Path) -> sqlite3.Connection:
     return database
 
 
-def _opened(file: Path) -> sqlite3.Connection:
-    """Return a usable index; a damaged or outdated one is recreated."""
+def _opened(file: Path, *, guarded: bool = True) -> sqlite3.Connection:
+    """Return a usable index; a damaged or outdated one is recreated.
+
+    Args:
+        file: the index.
+        guarded: False where the file system has no locks, which SQLite would need, too.
+    """
     for _ in range(2):
-        database = sqlite3.connect(file, timeout=30.0)
+        if guarded:
+            database = sqlite3.connect(file, timeout=30.0)
+        else:
+            database = sqlite3.connect(f"{file.resolve().as_uri()}?nolock=1", uri=True)
         try:
-            database.execute("PRAGMA journal_mode = WAL")
+            database.execute(f"PRAGMA journal_mode = {'WAL' if guarded else 'DELETE'}")
             database.execute("PRAGMA synchronous = NORMAL")
             if database.execute("PRAGMA user_version").fetchone()[0] not in (0, VERSION):
                 raise sqlite3.DatabaseError("another version")
@@ -141,10 +151,20 @@ def _opened(file: Path) -> sqlite3.Connection:
         except sqlite3.DatabaseError as error:
             database.close()
             if isinstance(error, sqlite3.OperationalError):
-                raise InputError(f"{file}: cannot be written: {error}") from error
+                raise unwritable(file, error) from error
             for name in (file.name, f"{file.name}-wal", f"{file.name}-shm"):
                 file.with_name(name).unlink(missing_ok=True)
     raise InputError(f"{file}: cannot be made")
+
+
+def unwritable(file: Path, error: sqlite3.OperationalError) -> InputError:
+    """Return the error of a file of SQLite that cannot be written, such as on a full disk."""
+    full = getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL
+    return InputError(
+        f"{file}: no space left on device; free some, and the same command goes on where it was"
+        if full
+        else f"{file}: cannot be written: {error}"
+    )
 
 
 def _prepare(database: sqlite3.Connection) -> None:
@@ -159,6 +179,7 @@ class Store:
 
     def __init__(self, root: Path, database: sqlite3.Connection) -> None:
         self._root, self._database = root, database
+        self._file = root / INDEX
         self._damaged: list[DamagedRun] = []
         database.row_factory = sqlite3.Row
 
@@ -172,24 +193,37 @@ class Store:
         for table in ("runs", "failures"):
             there = {d: s for d, s in found.items() if d.endswith(SUFFIX) == (table == "failures")}
             known = dict(self._database.execute(f"SELECT directory, stamp FROM {table}").fetchall())
-            with self._database:
+            with self._writing():
                 for directory in known.keys() - there.keys():
                     self._database.execute(f"DELETE FROM {table} WHERE directory = ?", [directory])
                 for directory, stamp in there.items():
                     if known.get(directory) != stamp:
                         self._insert(directory, stamp)
 
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Write all or nothing.
+
+        Raises:
+            InputError: the disk is full, or the file cannot be written for another reason.
+        """
+        try:
+            with self._database:
+                yield
+        except sqlite3.OperationalError as error:
+            raise unwritable(self._file, error) from error
+
     def add(self, directory: str) -> None:
         """Add a new run and remove its failure, if any."""
         stamp = _stamp_of_run(self._root / directory)
-        with self._database:
+        with self._writing():
             failure = directory + SUFFIX
             self._database.execute("DELETE FROM failures WHERE directory = ?", [failure])
             self._insert(directory, stamp)
 
     def add_failure(self, directory: str) -> None:
         """Add a run that could not be made."""
-        with self._database:
+        with self._writing():
             self._insert(directory + SUFFIX, _stamp(self._root / (directory + SUFFIX)))
 
     def rows(self) -> StoredRows:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import fcntl
 import json
 import os
 import shutil
@@ -14,6 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.locks import try_lock
 from crowdbot.core.support.source_digest import file_digest
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.core.support.text_files import read_text
@@ -242,15 +242,15 @@ def _lock(folder: Path) -> int | None:
         try:
             if folder.is_symlink():
                 raise InputError(f"{folder}: is a link, which is not followed; delete it")
-            folder.mkdir(exist_ok=True)
+            is_new = not folder.exists()
+            folder.mkdir(exist_ok=not is_new)
             lock = _opened(folder)
         except (FileNotFoundError, FileExistsError):  # published in between
             if folder.is_file():
                 raise
             continue
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        state = try_lock(lock, folder)
+        if state == "taken" or (state == "unguarded" and not is_new):
             os.close(lock)
             return None
         if _is_ours(lock, folder):

@@ -3,6 +3,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import pytest
 
 from crowdbot.cli.shared import progress as _progress
 from crowdbot.cli.shared.progress import show_progress
-from crowdbot.core.support.compile_cache import kernel_folder
+from crowdbot.core.support.compile_cache import _user_cache, kernel_folder, use_kernel_cache
+from crowdbot.errors import InputError
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.slow
@@ -85,7 +87,30 @@ def test_a_read_only_package_uses_the_users_cache(
 ) -> None:
     monkeypatch.setattr(os, "access", lambda *_: False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    _user_cache.cache_clear()
     assert kernel_folder(tmp_path).parent == tmp_path / "cache" / "crowdbot"
+
+
+def test_no_folder_but_a_temporary_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    _user_cache.cache_clear()
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    monkeypatch.setenv("HOME", "/proc/nowhere")
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/proc/neither")
+    use_kernel_cache()
+    folder = tmp_path / f"crowdbot-{os.getuid()}" / kernel_folder(tmp_path).name
+    assert os.environ["NUMBA_CACHE_DIR"] == str(folder)
+    assert folder.stat().st_mode & 0o777 == 0o700
+    assert "NUMBA_CACHE_DIR: /proc/neither cannot be written" in caplog.text
+    assert "NUMBA_CACHE_DIR=FOLDER names another place" in caplog.text
+    _user_cache.cache_clear()
+    monkeypatch.setattr(tempfile, "tempdir", "/proc")
+    with pytest.raises(InputError, match="kept nowhere"):
+        kernel_folder(tmp_path)
+    _user_cache.cache_clear()
 
 
 def test_the_first_run_says_that_it_compiles(

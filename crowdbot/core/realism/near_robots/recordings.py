@@ -16,7 +16,8 @@ from crowdbot.core.realism.near_robots.encounters import BODY
 from crowdbot.core.realism.tracks import NothingToCompareError
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.own_recordings import columns_of
-from crowdbot.core.trajectories.raw_table import RawTable, read_table
+from crowdbot.core.trajectories.raw_table import RawTable
+from crowdbot.core.trajectories.text_table import read_table
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 
