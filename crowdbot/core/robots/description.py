@@ -199,8 +199,9 @@ def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
         return source, None
     file = Path(source) if isinstance(source, str) else source
     try:
-        inside = None if isinstance(file, Path) else file.read_bytes()
-        text = (read_bytes(Path(str(file)), LARGEST) if inside is None else inside).decode("utf-8-sig")
+        is_path = isinstance(file, Path)
+        content = read_bytes(Path(str(file)), LARGEST) if is_path else file.read_bytes()
+        text = content.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise PluginError(f"robot description {file} cannot be read: {error}") from error
     return text, file.parent if isinstance(file, Path) else None
