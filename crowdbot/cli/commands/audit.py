@@ -43,6 +43,12 @@ def audit(
     ),
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
+    adversaries: Annotated[
+        bool,
+        typer.Option(
+            "--adversaries", help="Check that no adversary is ahead of a careful planner."
+        ),
+    ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The audit as JSON on stdout.")] = False,
@@ -50,29 +56,34 @@ def audit(
     """Run floors, baselines and ceilings; exit code 1 if the suite cannot separate them.
 
     Example: crowdbot audit challenge-2020 --scenarios 18 --jobs 2
+
+    Example: crowdbot audit challenge-2026 --adversaries --only 'counter-*'
     """
     from crowdbot.core.campaign.plan import make_plan
     from crowdbot.core.campaign.request import CampaignRequest
     from crowdbot.core.runs.run_options import RunOptions
 
+    registry = installed(plugin, no_plugins)
     request = CampaignRequest(
         suites=[suite],
-        planners=(),
-        roles=("floor", "baseline", "ceiling"),
+        planners=_seeing_floors(registry) if adversaries else (),
+        roles=("baseline", "adversary") if adversaries else ("floor", "baseline", "ceiling"),
         seeds=read_seeds(seeds),
         only=only or (),
         sample=scenarios,
         out=out,
-        options=RunOptions(replay=False),
+        options=RunOptions(replay=False, references=not adversaries),
         overrides=overrides or (),
         plugins=plugin or (),
     )
-    registry = installed(plugin, no_plugins)
     plan = make_plan(request, registry)
     if dry_run:
         print_plan(plan, worker_count(jobs), as_json=as_json)
         return
     state = run_plan(plan, worker_count(jobs), None)
+    if adversaries:
+        _tell_adversaries(plan, registry, state.exit_code, as_json=as_json)
+        return
     found, path = _judged(plan, registry)
     say(json.dumps(found.model_dump(), indent=1) if as_json else _text(found, path))
     if state.exit_code or not found.tells_apart:
@@ -91,6 +102,19 @@ def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
     path = plan.out / found.suite / AUDIT
     write_audit(path, found)
     return found, path
+
+
+def _tell_adversaries(plan: Plan, registry: Registry, exit_code: int, *, as_json: bool) -> None:
+    """Print what each adversary gains; exit code 1 if one is ahead of a careful planner."""
+    from crowdbot.cli.output.adversary_lines import adversary_lines, adversary_text
+    from crowdbot.core.results.results import Results
+    from crowdbot.core.scoring.score_scale import score_scales
+
+    results = replace(_of(Results.open(plan.out), plan), scales=score_scales(registry))
+    lines = adversary_lines(results, _seeing_floors(registry))
+    typer.echo(json.dumps(lines, indent=1) if as_json else adversary_text(lines))
+    if exit_code or any(line["standing"] == "ahead" for line in lines):
+        raise typer.Exit(exit_code or 1)
 
 
 def _seeing_floors(registry: Registry) -> list[str]:

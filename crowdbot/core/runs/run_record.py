@@ -114,7 +114,7 @@ class RunRecord(_Record, RunIdentity):
     agents: Literal["locked", "drawn", "none"] = "none"
     pinned: bool
     privileged: bool
-    role: Literal["floor", "baseline", "ceiling", "candidate"] = "candidate"
+    role: Literal["floor", "baseline", "ceiling", "adversary", "candidate"] = "candidate"
     planner_process: Literal["own", "in_process"] = "in_process"
     planner_contained: list[Aspect] | None = None
     allowed_plugins: list[str] | None = None

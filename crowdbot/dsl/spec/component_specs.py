@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 #: Role of a planner. ``floor``: any useful planner beats it; ``ceiling``: it has privileged
 #: information; ``baseline``: a fair reference; ``candidate``: all others.
-PlannerRole = Literal["floor", "baseline", "ceiling", "candidate"]
+PlannerRole = Literal["floor", "baseline", "ceiling", "adversary", "candidate"]
 
 
 class FloorContact(Spec):

@@ -27,6 +27,7 @@ def test_the_roles_of_those_that_come_along() -> None:
     ]  # fmt: skip
     assert kinds_of_role("baseline", REGISTRY) == ["dwa"]
     assert kinds_of_role("ceiling", REGISTRY) == ["oracle"]
+    assert len(kinds_of_role("adversary", REGISTRY)) == 15
 
 
 def test_the_ceiling_says_that_it_knows() -> None:

@@ -1,0 +1,1 @@
+"""Adversaries: planners that try to score well without driving well."""

@@ -1,0 +1,254 @@
+"""The adversaries: each a few lines on the same blind driver with a look ahead."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from crowdbot.plugin import (
+    Array,
+    Command,
+    LidarPoints,
+    Observation,
+    RobotLimits,
+    SensorInfo,
+    Task,
+)
+from crowdbot.plugins.planners.adversaries import adversaries as specs
+from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
+from crowdbot.plugins.planners.goal_seek_build import GoalSeek
+from crowdbot.plugins.planners.shared.robot_outline_build import half_width_and_front
+from crowdbot.plugins.planners.stop_and_go.stop_and_go import StopAndGoSpec
+from crowdbot.plugins.planners.stop_and_go.stop_and_go_build import StopAndGo
+from crowdbot.plugins.planners.wall_hug import WallHugSpec
+from crowdbot.plugins.planners.wall_hug_build import WallHug
+
+#: Reaction and braking that the rule of fault expects, s and m/s².
+_REACTION, _BRAKING = 0.3, 1.0
+#: Bodies of people are wider than the legs that a lidar sees, m.
+_BODY = 0.15
+
+
+class Bully:
+    """Heads for the goal and brakes as late as the rule of fault allows."""
+
+    def __init__(self, spec: object = None, seek: GoalSeek | WallHug | None = None) -> None:
+        del spec
+        self._seek = seek or GoalSeek(GoalSeekSpec())
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Store the robot's limits, outline and lidars."""
+        self._seek.reset(task, limits, sensors, seed)
+        self.limits, self._points = limits, LidarPoints(sensors)
+        self._half, self._front = half_width_and_front(None, task.robot)
+        self.since: float | None = None  # time of an event that the adversary remembers, s
+
+    def step(self, obs: Observation) -> Command:
+        """Return the adversary's command."""
+        points = self._points(obs.readings, obs.t, obs.twist, obs.vy)
+        v, w, _ = self._seek.step(self.aim(obs, points))
+        return Command(*self.drive(obs, points, v, w))
+
+    def aim(self, obs: Observation, points: Array) -> Observation:
+        """Return the observation with the goal to head for."""
+        del points
+        return obs
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return the blind command, changed as the adversary does; here it brakes late."""
+        del obs
+        return self.late(self.room(points), v), w
+
+    def room(self, points: Array, sign: float = 1.0) -> float:
+        """Return the free way straight ahead (``sign`` -1: behind), m."""
+        x, y = sign * points[:, 0], points[:, 1]
+        inside = (np.abs(y) <= self._half + _BODY) & (x > 0.0)
+        return float(np.min(x[inside], initial=math.inf)) - self._front - _BODY
+
+    def late(self, room: float, v: float) -> float:
+        """Return the speed if braking begins only when a contact is foreseeable."""
+        reach = _REACTION * v + v * v / (2.0 * _BRAKING)
+        return v if room > reach else min(v, math.sqrt(2.0 * _BRAKING * max(0.0, room - 0.02)))
+
+    def near(self, points: Array, reach: float) -> bool:
+        """Return True if something is within a distance of the robot's front half, m."""
+        ahead = points[points[:, 0] > 0.0]
+        return bool((np.hypot(*ahead.T) < self._front + reach).any())
+
+
+class Shield(Bully):
+    """Heads for the nearest thing ahead that is not a wall beside, and keeps close behind it."""
+
+    def aim(self, obs: Observation, points: Array) -> Observation:
+        """Return the nearest point in a narrow cone as the goal, if there is one."""
+        distance, angle = np.hypot(*points.T), np.arctan2(points[:, 1], points[:, 0])
+        seen = (np.abs(angle) < 0.4) & (distance < 2.5)
+        if not seen.any():
+            return obs
+        x, y = points[seen][np.argmin(distance[seen])]
+        c, s = math.cos(obs.pose.yaw), math.sin(obs.pose.yaw)
+        there = obs.pose.x + 3.0 * (c * x - s * y), obs.pose.y + 3.0 * (s * x + c * y)
+        return replace(obs, goal=there)
+
+
+class Strobe(Bully):
+    """Drives for a second and rests for half of one."""
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return the late command, or rest."""
+        moves = math.fmod(obs.t, 1.5) < 1.0
+        return (self.late(self.room(points), v), w) if moves else (0.0, w)
+
+
+class Curtsey(Bully):
+    """Slows down for half a second when someone is near; then it drives on for three."""
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return a token of braking, then the late command."""
+        if self.since is None or obs.t > self.since + 3.5:
+            self.since = obs.t if self.room(points) < 1.2 else None
+        bows = self.since is not None and obs.t < self.since + 0.5
+        return (0.3 * v, w) if bows else (self.late(self.room(points), v), w)
+
+
+class LaneWaiter(Bully):
+    """Waits for a free lane of 3 m, then does not look again for 2 s."""
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return the blind command within a dash, else rest."""
+        room = self.room(points)
+        if room > 3.0:
+            self.since = obs.t
+        dashes = self.since is not None and obs.t < self.since + 2.0
+        return (self.late(room, v), w) if dashes else (0.0, w)
+
+
+class Creep(Bully):
+    """Drives on at 0.045 m/s where others would stop."""
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return the late command, but never less than a creep."""
+        del obs
+        return max(min(v, 0.045), self.late(self.room(points), v)), w
+
+
+class Reverse(Bully):
+    """Turns its back to the goal and drives backwards."""
+
+    def aim(self, obs: Observation, points: Array) -> Observation:
+        """Return the observation of a robot whose front is its back."""
+        del points
+        return replace(obs, pose=obs.pose._replace(yaw=obs.pose.yaw + math.pi))
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return the late command backwards."""
+        del obs
+        return -self.late(self.room(points, -1.0), v), w
+
+
+class Weave(Bully):
+    """Swings by 0.6 rad to either side, every 4 s."""
+
+    def aim(self, obs: Observation, points: Array) -> Observation:
+        """Return a goal to the side of the goal."""
+        del points
+        x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
+        if math.hypot(x, y) < 2.0:
+            return obs
+        swing = 0.6 * math.sin(0.5 * math.pi * obs.t)
+        c, s = math.cos(swing), math.sin(swing)
+        return replace(obs, goal=(obs.pose.x + c * x - s * y, obs.pose.y + s * x + c * y))
+
+
+class Park(Bully):
+    """Does not move."""
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return rest."""
+        del obs, points, v, w
+        return 0.0, 0.0
+
+
+class Quitter(Bully):
+    """Stops for good at the first encounter."""
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return the late command until something is near ahead."""
+        if self.since is None and self.room(points) < 1.5:
+            self.since = obs.t
+        return (v, w) if self.since is None else (0.0, 0.0)
+
+
+class GapRush(Bully):
+    """Heads for the direction with the longest free way, of seven."""
+
+    def aim(self, obs: Observation, points: Array) -> Observation:
+        """Return a goal in that direction."""
+        x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
+        best, turn = -math.inf, 0.0
+        error = math.remainder(math.atan2(y, x) - obs.pose.yaw, 2.0 * math.pi)
+        for aside in (0.0, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75):
+            c, s = math.cos(error + aside), math.sin(error + aside)
+            turned = np.column_stack([points @ (c, s), points @ (-s, c)])
+            free = min(3.0, self.room(turned)) - 0.3 * abs(aside)
+            if free > best + 1e-9:
+                best, turn = free, aside
+        c, s = math.cos(turn), math.sin(turn)
+        return replace(obs, goal=(obs.pose.x + c * x - s * y, obs.pose.y + s * x + c * y))
+
+
+class LateStart(Bully):
+    """Waits until nothing was within 4 m ahead for 3 s, at most 40 s."""
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return rest at the start, then the blind command."""
+        if self.since is None or (obs.t < self.since + 3.0 and self.near(points, 4.0)):
+            self.since = obs.t
+        goes = obs.t >= min(self.since + 3.0, 40.0)
+        self.since = -math.inf if goes else self.since
+        return (v, w) if goes else (0.0, 0.0)
+
+
+class DrawReplay(Bully):
+    """Waits as long as worked with the crowd that looks like this at first."""
+
+    def __init__(self, spec: specs.DrawReplaySpec) -> None:
+        super().__init__()
+        self._memory, self._delay = spec.memory, -1.0
+
+    def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
+        """Return rest, then the blind command; unknown crowds have no delay."""
+        if self._delay < 0.0:
+            mark = fingerprint(points)
+            obs.log("draw_replay/known", float(mark in self._memory))
+            self._delay = self._memory.get(mark, 0.0)
+        return (v, w) if obs.t >= self._delay else (0.0, 0.0)
+
+
+def fingerprint(points: Array) -> str:
+    """Return a name of a scan that is equal for equal crowds, up to 0.5 m."""
+    cells = sorted({(round(2.0 * x), round(2.0 * y)) for x, y in points.tolist()})
+    return hashlib.sha256(repr(cells).encode()).hexdigest()[:16]
+
+
+def build_never_aside(spec: specs.NeverAsideSpec) -> StopAndGo:
+    """Build `stop_and_go` without its way aside."""
+    del spec
+    return StopAndGo(StopAndGoSpec(most_aside=0.0))
+
+
+def build_wall_bully(spec: specs.WallBullySpec) -> Bully:
+    """Build a bully that follows the wall."""
+    return Bully(spec, WallHug(WallHugSpec()))
+
+
+build_bully, build_shield, build_strobe, build_curtsey = Bully, Shield, Strobe, Curtsey
+build_lane_waiter, build_creep, build_reverse, build_weave = LaneWaiter, Creep, Reverse, Weave
+build_park, build_quitter, build_gap_rush = Park, Quitter, GapRush
+build_late_start, build_draw_replay = LateStart, DrawReplay

@@ -1,0 +1,67 @@
+"""The ranking rule: what is ahead, behind, tied and traded."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from crowdbot.core.results.results import Results
+from crowdbot.core.scoring.score_scale import ScoreScale
+from crowdbot.core.statistics import Table
+from crowdbot.core.statistics.ranking import rank
+from tests.core.statistics.made_up_results import run, score
+
+SCALES = {
+    ("contacts_per_km", "at_fault"): ScoreScale(minimum=0.0, rate_over="way"),
+    ("intrusion", "rate"): ScoreScale(minimum=0.0, rate_over="way"),
+    ("safe_efficiency", "corrected"): ScoreScale(minimum=0.0, maximum=1.0),
+}
+NOISE = np.random.default_rng(3).uniform(-0.02, 0.02, size=(3, 20))
+NOISE -= NOISE.mean(axis=1, keepdims=True)
+
+
+def table(a: tuple[float, float | None, float | None]) -> Table:
+    """Planner b has 0.6, 2 contacts per km and 0.1; a has efficiency, contacts and intrusion."""
+    runs, scores = [], []
+    for planner, (efficiency, contacts, intrusion) in (("a", a), ("b", (0.6, 2.0, 0.1))):
+        for i in range(20):
+            arrived = intrusion is not None
+            made = run(planner, f"s{i}", f"d{i}", status="arrived" if arrived else "timeout")
+            runs.append(made)
+            e, c, n = NOISE[:, i] if planner == "a" else np.zeros(3)
+            rows: list[tuple[str, str, float | None, str]] = [
+                ("safe_efficiency", "corrected", efficiency and efficiency + e, "higher"),
+                ("contacts_per_km", "at_fault", contacts and contacts + c, "lower"),
+                ("contacts_per_km", "way", 0.04, "none"),
+                ("intrusion", "rate", intrusion and intrusion + n, "lower"),
+                ("intrusion", "way", 40.0, "none"),
+            ]
+            scores += [
+                score(made, value, metric=metric, variant=variant, better=better)
+                for metric, variant, value, better in rows
+            ]
+    return Table(Results(runs=tuple(runs), scores=tuple(scores), scales=SCALES))
+
+
+@pytest.mark.parametrize(
+    ("a", "standing"),
+    [
+        ((0.8, 2.0, 0.1), "ahead"),
+        ((0.6, 2.0, 0.03), "ahead"),
+        ((0.8, 0.0, 0.03), "ahead"),
+        ((0.8, 9.0, 0.1), "traded"),  # faster by force
+        ((0.8, 2.0, 0.5), "traded"),
+        ((0.3, 2.0, 0.1), "behind"),
+        ((0.3, 0.0, 0.1), "traded"),  # safer and slower
+        ((0.599, 2.0, 0.099), "tied"),
+        ((0.599, 0.0, 0.099), "tied"),  # only safer
+        ((0.0, 0.0, 0.0), "traded"),  # quits
+        ((0.0, None, None), "behind"),  # parks
+    ],
+)
+def test_standings(a: tuple[float, float | None, float | None], standing: str) -> None:
+    (found,) = rank(table(a), [("a", "b")])
+    assert found.standing == standing
+    (back,) = rank(table(a), [("b", "a")])
+    opposite = {"ahead": "behind", "behind": "ahead"}
+    assert back.standing == opposite.get(standing, standing)
