@@ -43,7 +43,7 @@ from crowdbot.core.trajectories.questionnaires import TLX_SCALES, USE_ITEMS, Ans
 from crowdbot.core.trajectories.trips import (
     DISTANCE_TOLERANCE,
     Durations,
-    Pace,
+    MeanPace,
     displacement,
     durations,
     mean_pace,
@@ -60,7 +60,7 @@ __all__ = [
     "Effects",
     "Evasion",
     "FaultRule",
-    "Pace",
+    "MeanPace",
     "Pairing",
     "PersonContacts",
     "approach",

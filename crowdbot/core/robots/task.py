@@ -7,8 +7,10 @@ from dataclasses import replace
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.build import build_model
+from crowdbot.core.robots.link_mount import at_link
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.context import SensorContext
+from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel, robot_body
@@ -44,4 +46,19 @@ def sensor_infos(registry: Registry, scenario: Scenario, name: str) -> dict[str,
     """
     robot, parts = scenario.robots[name], build_environment(registry, scenario.environment)
     context = sensor_context(robot, build_model(registry, robot.model), parts)
-    return {n: build_sensor(registry, s, context).info() for n, s in robot.sensors.items()}
+    return {n: s.info() for n, s in build_sensors(registry, robot, context).items()}
+
+
+def build_sensors(
+    registry: Registry, robot: Robot, context: SensorContext
+) -> dict[str, Sensor | SensorWithMemory]:
+    """Return a robot's sensors by name, those on links at the places of their links.
+
+    Raises:
+        InputError: a link or an error does not fit its sensor.
+        PluginError: a sensor cannot be built, or there is no such link.
+    """
+    return {
+        name: build_sensor(registry, at_link(spec, context.robot), context)
+        for name, spec in robot.sensors.items()
+    }

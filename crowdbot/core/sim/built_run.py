@@ -11,9 +11,8 @@ from crowdbot.core.planning.resolve import PlannerChoice, select_sensors
 from crowdbot.core.recording.writer import EXACT
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_robot
-from crowdbot.core.robots.task import sensor_context
+from crowdbot.core.robots.task import build_sensors, sensor_context
 from crowdbot.core.robots.urdf_export import check_frames
-from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
@@ -104,7 +103,7 @@ def build_run(
     parts = parts or build_environment(registry, scenario.environment)
     model = build_robot(registry, robot)
     context = sensor_context(robot, model, parts)
-    sensors = {n: build_sensor(registry, x, context) for n, x in robot.sensors.items()}
+    sensors = build_sensors(registry, robot, context)
     infos = {n: _with_frame(n, sensor.info()) for n, sensor in sensors.items()}
     check_frames(model, infos)
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)

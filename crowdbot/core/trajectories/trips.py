@@ -70,7 +70,7 @@ class Durations:
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class MeanPace:
     """Time (s) and displacement (m) of a number of trips, summed up."""
 
     trips: int
@@ -126,7 +126,7 @@ def walked_distances(run: Trajectories, jump_speed: float) -> tuple[Array, Array
     return length, displacement
 
 
-def mean_pace(run: Trajectories, jump_speed: float, trips: Mask | None = None) -> Pace:
+def mean_pace(run: Trajectories, jump_speed: float, trips: Mask | None = None) -> MeanPace:
     """Return the mean pace of people on their trips, finished or not: time over displacement.
 
     The displacement of a trip is the straight distance from its first to its last sample, so that
@@ -140,7 +140,7 @@ def mean_pace(run: Trajectories, jump_speed: float, trips: Mask | None = None) -
     seen = (column >= 0) & (last > first)
     seen = seen if trips is None else seen & trips
     seconds = float((run.t[last[seen]] - run.t[first[seen]]).sum())
-    return Pace(int(seen.sum()), seconds, float(straight[seen].sum()))
+    return MeanPace(int(seen.sum()), seconds, float(straight[seen].sum()))
 
 
 def displacement(x: Array, y: Array) -> float:

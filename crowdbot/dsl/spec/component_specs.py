@@ -95,6 +95,11 @@ class SensorSpec(ComponentSpec):
     """Abstract sensor on a robot."""
 
     category: ClassVar[str] = "sensor"
+    link: str | None = Field(
+        default=None,
+        exclude_if=lambda link: link is None,
+        description="Link of the robot's description that it is mounted on, in place of `mount`.",
+    )
     errors: dict[str, ReadingError] = Field(
         default={},
         exclude_if=lambda errors: not errors,

@@ -20,7 +20,7 @@ from crowdbot.plugin import (
 from crowdbot.plugin.for_metrics import (
     DISTANCE_TOLERANCE,
     Durations,
-    Pace,
+    MeanPace,
     durations,
     encounter,
     inf_to_nan,
@@ -242,7 +242,7 @@ def mean_ratio(factory: ScoreFactory, above: Durations, below: Durations, zero_t
     )
 
 
-def pace_ratio(factory: ScoreFactory, above: Pace, below: Pace, zero_tol: float) -> Score:
+def pace_ratio(factory: ScoreFactory, above: MeanPace, below: MeanPace, zero_tol: float) -> Score:
     """Score the ratio of mean paces of all trips, finished or not (``pace``)."""
     if not above.trips or not below.trips:
         return factory.undefined("pace", "no_trips")

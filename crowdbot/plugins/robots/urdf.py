@@ -1,0 +1,152 @@
+"""Robots whose URDF exists: no Python is needed, only a drive, wheels and an outline."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Gt
+from pydantic import Field, model_validator
+
+from crowdbot.plugin import (
+    Asset,
+    Component,
+    Length,
+    NonNegativeLength,
+    PositiveAcceleration,
+    PositiveAngularAcceleration,
+    PositiveAngularSpeed,
+    PositiveDuration,
+    PositiveForce,
+    PositiveLength,
+    PositiveSpeed,
+    RobotSpec,
+    Spec,
+)
+
+Torque = Annotated[float, Gt(0)]
+
+
+class DiscBody(Spec):
+    """An upright cylinder around the base."""
+
+    radius: PositiveLength = Field(description="m.")
+    height: PositiveLength = Field(description="Of the whole robot, m.")
+
+
+class BoxBody(Spec):
+    """An upright box, which may be off the base's centre."""
+
+    length: PositiveLength = Field(description="Along x, m.")
+    width: PositiveLength = Field(description="Along y, m.")
+    height: PositiveLength = Field(description="Of the whole robot, m.")
+    x: Length = Field(default=0.0, description="Its centre ahead of the base, m.")
+
+
+class Caster(Spec):
+    """A ball that slides on the floor."""
+
+    x: Length = Field(description="From the base, m.")
+    y: Length = Field(default=0.0, description="From the base, m.")
+    radius: PositiveLength = Field(description="m.")
+
+
+class UrdfFields(RobotSpec):
+    """What both kinds of robots with a URDF have."""
+
+    file: Asset = Field(description="The URDF; joints that are not wheels are held at zero.")
+    base: str = Field(
+        default="base_link", description="Link on which sensors are mounted: x ahead, z up."
+    )
+    disc: DiscBody | None = Field(default=None, description="Outline that people avoid and touch.")
+    box: BoxBody | None = Field(default=None, description="The same, in place of `disc`.")
+    clearance: NonNegativeLength = Field(
+        default=0.03, description="Lower edge of the outline above the floor, m."
+    )
+    casters: dict[str, Caster] = Field(default={}, description="Named casters.")
+    max_speed: PositiveSpeed = Field(description="Largest |v|, m/s.")
+    max_yaw_rate: PositiveAngularSpeed = Field(description="Largest |w|, rad/s.")
+    max_acceleration: PositiveAcceleration = Field(description="Slew of v, m/s^2.")
+    max_yaw_acceleration: PositiveAngularAcceleration = Field(description="Slew of w, rad/s^2.")
+    command_timeout: PositiveDuration = Field(
+        default=0.6, description="The robot stops after this long without a command, s."
+    )
+
+    @model_validator(mode="after")
+    def _one_outline(self) -> UrdfFields:
+        if (self.disc is None) == (self.box is None):
+            raise ValueError("give either 'disc' or 'box'")
+        return self
+
+    @property
+    def height(self) -> float:
+        """Return the height of the whole robot, m."""
+        body = self.disc or self.box
+        assert body is not None
+        return body.height
+
+    @property
+    def half_width(self) -> float:
+        """Return the radius of the disc within its outline around the base, m."""
+        if self.disc is not None:
+            return self.disc.radius
+        assert self.box is not None
+        along = 0.5 * self.box.length - abs(self.box.x)
+        return max(0.0, min(0.5 * self.box.width, along))
+
+
+class DrivenWheels(Spec):
+    """The two driven wheels of a differential drive."""
+
+    left: str = Field(description="Joint of the left wheel.")
+    right: str = Field(description="Joint of the right wheel.")
+    radius: PositiveLength = Field(description="Of both wheels, m.")
+    effort: Torque = Field(description="Largest torque of each motor, N m.")
+
+
+class UrdfSpec(UrdfFields):
+    """A robot on two driven wheels, from its URDF.
+
+    Wheels touch the floor as spheres, collision meshes become boxes, and joints that are not driven
+    are held; a run says once what was simplified.
+    """
+
+    kind: Literal["urdf"] = "urdf"
+    drive: DrivenWheels
+
+
+class OmniWheels(Spec):
+    """The wheels of a holonomic drive, which slide; a force moves the base."""
+
+    joints: tuple[str, ...] = Field(
+        default=(), strict=False, description="Joints of the wheels, which do not turn."
+    )
+    radius: PositiveLength = Field(description="Of the wheels, m.")
+    max_force: PositiveForce = Field(description="Largest horizontal force, N.")
+    max_torque: Torque = Field(description="Largest torque about the vertical, N m.")
+    base_height: NonNegativeLength | None = Field(
+        default=None,
+        description="Height of the base above the floor, m; unset: that at which the lowest wheel "
+        "stands.",
+    )
+
+
+class HolonomicUrdfSpec(UrdfFields):
+    """A robot that also goes sideways, from its URDF."""
+
+    controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")
+    kind: Literal["urdf_holonomic"] = "urdf_holonomic"
+    drive: OmniWheels
+
+
+URDF = Component(
+    spec=UrdfSpec,
+    build="crowdbot.plugins.robots.urdf_build:build",
+    summary="any robot on two driven wheels, from its URDF",
+    examples=(),
+)
+URDF_HOLONOMIC = Component(
+    spec=HolonomicUrdfSpec,
+    build="crowdbot.plugins.robots.urdf_build:build_holonomic",
+    summary="any robot that also goes sideways, from its URDF",
+    examples=(),
+)
