@@ -51,7 +51,7 @@ class Caster(Spec):
 
 
 class UrdfFields(RobotSpec):
-    """What both kinds of robots with a URDF have."""
+    """Fields of robots with a URDF, on two driven wheels or holonomic."""
 
     file: Asset = Field(description="The URDF; joints that are not wheels are held at zero.")
     base: str = Field(
