@@ -12,6 +12,7 @@
 #   make changelog show the entries since the last release, as they will be printed
 #   make check-js  lint the JavaScript of the pages (needs node and npm)
 #   make lock    rewrite requirements.lock (needs uv)
+#   make sbom    list what a release consists of (CycloneDX), in build/crowdbot.cdx.json
 
 PYTHON ?= python3
 # Tests start hundreds of processes: without byte code each would translate all our files again.
@@ -19,7 +20,7 @@ export PYTHONDONTWRITEBYTECODE :=
 BIN := .venv/bin
 # One more than cores: many tests wait for processes, which leaves a fifth of the machine idle.
 WORKERS = $(shell $(PYTHON) -c "import os; print(1 + (os.cpu_count() or 1))")
-READY := .venv/ready-$(shell cat requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
+READY := .venv/ready-$(shell cat requirements-pip.lock requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # pip would use one core for this, for half of the set-up; a third are tests of packages. It fails
 # where a package has templates, which are not Python. Ours too: where the environment forbids
@@ -29,7 +30,7 @@ BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/'
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test tests tests-as-they-go test-all durations lint types style kernels coverage docs generate pictures changelog check-js js-where-node-is setup lock clean
+.PHONY: demo check test tests tests-as-they-go test-all durations lint types style kernels coverage docs generate pictures changelog check-js js-where-node-is setup lock sbom clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
@@ -105,10 +106,11 @@ $(JS_READY): $(JS)/package-lock.json
 
 setup: $(READY)
 
-$(READY): requirements.lock pyproject.toml
+$(READY): requirements-pip.lock requirements.lock pyproject.toml
 	@$(PYTHON) scripts/check_machine.py
 	@echo "setting up .venv (about a minute)"
 	@$(PIP) --version > /dev/null 2>&1 || $(PYTHON) -m venv --clear .venv  # none, or an interrupted one
+	@$(PIP) install --no-compile --require-hashes -r requirements-pip.lock
 	@$(PIP) install --no-compile --require-hashes -r requirements.lock
 	@$(PIP) install --no-compile --no-deps --no-build-isolation -e .
 	@$(BYTE_CODE) .venv/lib crowdbot || true
@@ -117,6 +119,9 @@ $(READY): requirements.lock pyproject.toml
 lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 		--quiet --group dev pyproject.toml -o requirements.lock
+
+sbom: setup
+	$(BIN)/python scripts/write_sbom.py build/crowdbot.cdx.json
 
 clean:
 	rm -rf crowdbot/__pycache__/kernels* .venv runs .mypy_cache .pytest_cache .ruff_cache .hypothesis \

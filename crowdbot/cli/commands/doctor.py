@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -19,6 +20,9 @@ def doctor(
     self_test: Annotated[
         bool, typer.Option(help="Simulate for a moment; takes about 10 s, more the first time.")
     ] = True,
+    licences: Annotated[
+        bool, typer.Option("--licences", help="List all packages that crowdbot needs, and end.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
     """Check versions, graphics, compiled kernels, cores and disk, and simulate for a moment.
@@ -29,6 +33,9 @@ def doctor(
     """
     from crowdbot.cli.output import doctor as _doctor
 
+    if licences:
+        _print_licences(as_json=as_json)
+        return
     findings = list(_doctor.machine(out))
     if self_test:
         if logging.getLogger("crowdbot").level <= logging.INFO and not as_json:
@@ -43,3 +50,16 @@ def doctor(
                 say(f"{found.verdict:<8} {found.what:<12} {found.found}")
     if any(f.verdict == "missing" for f in findings):
         raise typer.Exit(1)
+
+
+def _print_licences(*, as_json: bool) -> None:
+    """Print the packages that crowdbot needs, with version and licence."""
+    from crowdbot.core.support.dependencies import dependencies
+
+    found = dependencies()
+    if as_json:
+        say(json.dumps([asdict(one) for one in found], indent=2))
+        return
+    for one in found:
+        extra = " (extra)" if one.extra else ""
+        say(f"{one.name + extra:<36} {one.version:<16} {one.licence or 'not stated'}")

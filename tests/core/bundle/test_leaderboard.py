@@ -16,6 +16,7 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.core.bundle.entries import load_entries, old_metrics
+from crowdbot.core.bundle.signature import own_public_key
 from crowdbot.core.bundle.standings import set_apart, standings
 from crowdbot.core.bundle.verification import content_hash, record_path, save_verification
 from crowdbot.core.statistics.audit import Audit, audit, write_audit
@@ -217,6 +218,22 @@ def test_confounds_are_left_out_unless_they_are_accepted(folder: Path, tmp_path:
     code, page = board(own, tmp_path / "page.html", "--accept", "perceived_radius")
     assert code == 0
     assert any("perceived_radius" in w and "accepted" in w for w in page.words)
+
+
+def test_verified_entries_stay_before_many_others(folder: Path, tmp_path: Path) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    other = changed_records(folder / "two.cbz", conditions={"perceived_radius": "1 m"})
+    for name in ("a", "b", "c"):
+        (own / f"{name}.cbz").write_bytes(other)
+    honest = own / "honest.cbz"
+    honest.write_bytes((folder / "one.cbz").read_bytes())
+    entries, _ = load_entries(own, registry())
+    assert [e.path.stem for e in set_apart(entries, ())[0]] == ["a", "b", "c"]
+    record = {"outcome": "verified", "ok": True, "sha256": content_hash(honest), "runs": {"a": ""}}
+    save_verification(honest, record)
+    entries, _ = load_entries(own, registry(), {own_public_key()})
+    assert [e.path.stem for e in set_apart(entries, ())[0]] == ["honest"]
 
 
 def test_metrics_of_older_versions_are_left_out_without_recordings(
