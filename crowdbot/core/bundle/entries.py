@@ -18,7 +18,7 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import MetricPart
 from crowdbot.core.support.look_alike import alike
 from crowdbot.core.types.ending import has_failed
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, printable
 
 SUFFIX = ".cbz"
 
@@ -117,7 +117,8 @@ def _entry(path: Path, registry: Registry, trusted: Collection[str]) -> Leaderbo
 def _named_apart(entries: Sequence[LeaderboardEntry]) -> list[LeaderboardEntry]:
     similar = alike(e.name for e in entries)
     return [
-        replace(e, name=f"{e.name} ({e.path.stem})") if e.name in similar else e for e in entries
+        replace(e, name=f"{e.name} ({printable(e.path.stem)})") if e.name in similar else e
+        for e in entries
     ]
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.crowd.agents import REMOVE, Agents
-from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
+from crowdbot.core.support.text_files import input_text
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -77,7 +77,7 @@ def read_record(path: Path) -> RecordedCrowd:
     """
     rows: dict[int, dict[float, tuple[float, float]]] = defaultdict(dict)
     try:
-        with io.StringIO(input_text(path, LARGEST_TABLE), newline="") as file:
+        with io.StringIO(input_text(path), newline="") as file:
             table = csv.reader(file)
             header = tuple(name.strip() for name in next(table, []))
             if header != COLUMNS:

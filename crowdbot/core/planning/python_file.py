@@ -14,9 +14,8 @@ from typing import Any, cast
 
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
-from crowdbot.core.support.source_digest import imported_names
+from crowdbot.core.support.source_digest import imported_names, parsed_source
 from crowdbot.core.support.text_files import suggest_files
-from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.errors import CrowdbotError, InputError, PlannerError, did_you_mean, nearest
 from crowdbot.old_names import shown_old_names
 
@@ -139,9 +138,8 @@ def check_parameters(kind: type[Any], parameters: Mapping[str, Any], where: str)
 
 def guess_class(path: Path) -> str:
     """Return the name of the first class in a file with both methods, or ``Class``."""
-    try:
-        tree = ast.parse(read_bytes(path))
-    except (OSError, ValueError, SyntaxError, RecursionError, MemoryError):
+    tree = parsed_source(path)
+    if tree is None:
         return "Class"
     for node in tree.body:
         if isinstance(node, ast.ClassDef):

@@ -30,7 +30,7 @@ from crowdbot.core.planning.unchanged_files import UnchangedFiles
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.support.source_digest import source_digest
+from crowdbot.core.support.source_digest import check_source, source_digest
 from crowdbot.core.support.text_files import suggest_files
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.spec.component import Component
@@ -238,6 +238,7 @@ def _from_class(
 ) -> PlannerChoice:
     if not path.is_file():
         raise InputError(f"{path}: no such file{suggest_files(path)}")
+    check_source(path)
     in_process = place.in_process is True
     build: Callable[[], Planner]
     if in_process:

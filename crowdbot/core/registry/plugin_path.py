@@ -15,7 +15,12 @@ from types import ModuleType
 from typing import Any
 
 from crowdbot.core.registry.plugin import Plugin
-from crowdbot.core.support.source_digest import digest_of_files, package_files, source_digest
+from crowdbot.core.support.source_digest import (
+    check_source,
+    digest_of_files,
+    package_files,
+    source_digest,
+)
 from crowdbot.core.support.text_files import read_text
 from crowdbot.errors import InputError, PluginError
 
@@ -65,6 +70,10 @@ def load_path(path: Path) -> ModuleType:
     name = path.resolve().stem
     if not file.is_file():
         raise PluginError(f"{path}: no Python file or package")
+    try:
+        check_source(file)
+    except InputError as error:
+        raise PluginError(str(error)) from None
     taken = sys.modules.get(name)
     if taken is not None and getattr(taken, "__file__", None) == str(file):
         return taken

@@ -66,7 +66,7 @@ def _reached(root: str, extras: frozenset[str]) -> set[str]:
 
 
 def _requirements(name: str, extras: frozenset[str]) -> Iterator[Requirement]:
-    environment = dict(default_environment())
+    environment = {k: str(v) for k, v in default_environment().items()}
     for text in metadata.distribution(name).requires or ():
         requirement = Requirement(text)
         marker = requirement.marker
@@ -98,11 +98,11 @@ def _dependency(name: str, *, extra: bool) -> Dependency:
 
 def _licence(about: metadata.PackageMetadata) -> str:
     """Return the licence by the expression, the classifiers, or the first line of the field."""
-    if expression := about.get("License-Expression"):
+    if expression := about["License-Expression"]:
         return str(expression)
     told = [c for c in about.get_all("Classifier") or () if c.startswith(_PREFIX)]
     names = [c.rpartition(" :: ")[2] for c in told]
     if names := [n for n in names if n != "OSI Approved"]:
         return ", ".join(names)
-    first = str(about.get("License") or "").strip().partition("\n")[0]
+    first = str(about["License"] or "").strip().partition("\n")[0]
     return re.sub(r"\s+", " ", first)[:_LONGEST]

@@ -143,6 +143,24 @@ def source_files(file: Path) -> set[Path]:
     return _with_helpers(file)
 
 
+def check_source(file: Path) -> None:
+    """Refuse a Python file that no parser should read.
+
+    Raises:
+        InputError: it is larger than a source ever is.
+    """
+    if file.is_file() and file.stat().st_size > _LARGEST_SOURCE:
+        raise InputError(f"{file}: is larger than {_LARGEST_SOURCE // 10**6} MB; sources are not")
+
+
+def parsed_source(file: Path) -> ast.Module | None:
+    """Return the syntax tree of a Python file; None if there is none, which importing it tells."""
+    try:
+        return ast.parse(read_bytes(file, _LARGEST_SOURCE))
+    except (SyntaxError, ValueError, RecursionError, MemoryError, OSError):
+        return None
+
+
 def imported_names(file: Path) -> set[str]:
     """Return the top module names that a file, or one beside it, imports."""
     return {name for one in _with_helpers(file) for name in _imported(one)}
@@ -167,10 +185,8 @@ def _helpers_of(folder: Path, files: Iterable[Path], own: set[str]) -> set[Path]
 
 def _imported(file: Path) -> set[str]:
     """Return the top module names that a file imports."""
-    try:
-        nodes = list(ast.walk(ast.parse(read_bytes(file, _LARGEST_SOURCE))))
-    except (SyntaxError, ValueError, RecursionError, MemoryError, OSError):
-        return set()  # importing it gives the reason
+    tree = parsed_source(file)
+    nodes = [] if tree is None else list(ast.walk(tree))
     names = {alias.name for n in nodes if isinstance(n, ast.Import) for alias in n.names}
     names |= {n.module for n in nodes if isinstance(n, ast.ImportFrom) and n.module and not n.level}
     names |= {name for n in nodes if isinstance(n, ast.Call) for name in _named(n)}

@@ -125,7 +125,7 @@ def read_grey(file: Path, *, see_through: bool = False) -> NDArray[np.float64]:
     if content[:2] in (b"P2", b"P5"):
         return _read_pgm(file.name, content)
     if content[:4] == b"\x89PNG":
-        return _read_png(file, see_through=see_through)
+        return _read_png(file, content, see_through=see_through)
     raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image")
 
 
@@ -149,15 +149,16 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
     return cells.astype(np.float64).reshape(height, width) / most
 
 
-def _read_png(file: Path, *, see_through: bool) -> NDArray[np.float64]:
+def _read_png(file: Path, content: bytes, *, see_through: bool) -> NDArray[np.float64]:
     from matplotlib.image import imread
 
+    width, height = (int.from_bytes(content[k : k + 4], "big") for k in (16, 20))
+    if not 0 < width * height <= MOST_PIXELS:  # before its pixels are unpacked
+        raise InputError(f"{file.name}: {width} x {height} pixels are not an image of a map")
     try:
         image: Any = np.asarray(imread(file), np.float64)
     except Exception as error:  # its decoders raise many types
         raise InputError(f"{file.name}: is a damaged PNG image: {error}") from error
-    if image.size > 4 * MOST_PIXELS:
-        raise InputError(f"{file.name}: has too many pixels")
     if image.ndim == 3:
         clear = (image[..., 3:] < 1.0).any(axis=2) & see_through
         image = np.where(clear, np.nan, image[..., :3].mean(axis=2))

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import pytest
 
 from crowdbot.core.support.source_digest import (
+    check_source,
     data_files,
     declared_data,
     digest_of_files,
@@ -113,6 +114,16 @@ def test_a_source_that_no_parser_takes_imports_nothing(tmp_path: Path) -> None:
     file = tmp_path / "p.py"
     file.write_text("x = " + "-" * 100_000 + "1\n")
     assert imported_names(file) == set()
+
+
+def test_a_source_has_a_largest_size(tmp_path: Path) -> None:
+    file = tmp_path / "p.py"
+    file.write_text("x = 1")
+    check_source(file)
+    with file.open("wb") as opened:
+        opened.truncate(20_000_001)
+    with pytest.raises(InputError, match="larger than 20 MB; sources are not"):
+        check_source(file)
 
 
 @pytest.mark.parametrize("kind", ["sparse", "pipe", "device"])

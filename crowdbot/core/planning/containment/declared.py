@@ -12,7 +12,7 @@ from crowdbot.core.planning.containment.libraries import environment_of
 from crowdbot.core.planning.containment.offer import Needs
 from crowdbot.core.registry.component_data import files_of_data
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.support.source_digest import data_files, source_files
+from crowdbot.core.support.source_digest import data_files, parsed_source, source_files
 from crowdbot.dsl.spec.component import Component
 from crowdbot.errors import InputError
 
@@ -83,9 +83,8 @@ def with_data(needs: Needs, folder: Path, patterns: Iterable[str]) -> Needs:
 
 def _written_data(path: Path, name: str) -> tuple[str, ...]:
     """Return ``data`` of a class as the file has it, if it is written without computing it."""
-    try:
-        tree = ast.parse(path.read_bytes())
-    except (OSError, SyntaxError, ValueError, RecursionError):
+    tree = parsed_source(path)
+    if tree is None:
         return ()
     for kind in (n for n in tree.body if isinstance(n, ast.ClassDef) and n.name == name):
         for node in kind.body:
