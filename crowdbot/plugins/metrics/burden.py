@@ -24,7 +24,7 @@ class PushWorkSpec(MetricSpec):
 PUSH_WORK = declare(
     PushWorkSpec,
     symbol="W_push",
-    spec_version=2,
+    spec_version=3,
     unit="J",
     better="lower",
     variants={

@@ -73,15 +73,15 @@ def rate_and_way(
 ) -> tuple[Score, Score]:
     """Score ``rate`` and ``way`` of a cost (lower is better) per metre of progress.
 
-    Progress below ``least`` (m) counts as ``least``; without progress and cost there is no rate.
+    A robot that comes nearer by less than ``least`` (m) has no rate, whatever its cost.
     """
     way = way_made_good(factory, run, ("rate", "way"))
     if isinstance(way, list):
         return way[0], way[1]
     over = factory.ok("way", max(way, least))
-    if amount < _NOTHING and way < least - _NOTHING:
+    if way < least - _NOTHING:
         return factory.undefined("rate", "zero_denominator"), over
-    return factory.ok("rate", amount / max(way, least), {"amount": amount, "way": way}), over
+    return factory.ok("rate", amount / way, {"amount": amount, "way": way}), over
 
 
 def shortest_way(

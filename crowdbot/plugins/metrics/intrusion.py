@@ -31,7 +31,7 @@ class IntrusionSpec(MetricSpec):
 INTRUSION = declare(
     IntrusionSpec,
     symbol="L_in",
-    spec_version=2,
+    spec_version=3,
     unit="m",
     better="lower",
     minimum=0.0,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -93,10 +94,11 @@ def test_the_rate_is_per_way_made_good() -> None:
     """Back and forth behind somebody: as much intrusion on less way."""
     straight = rated(towards(0.3, 0.5))
     aside = scene(
-        T, line(T, (0, 0), (0.5, 0)), [line(T, (REACH + 0.3, 0), (0.5, 0))], robot_goal=(0.0, 50.0)
+        T, line(T, (0, 0), (0.5, 0)), [line(T, (REACH + 0.3, 0), (0.5, 0))], robot_goal=(13.0, 50.0)
     )
-    assert rated(aside) > 4 * straight  # hardly any of the way is made good; 1 m at least
-    assert value_of(scores_of("intrusion", aside), "way") == 1.0
+    assert rated(aside) > 4 * straight  # 1.02 m are progress
+    progress = math.hypot(13.0, 50.0) - math.hypot(8.0, 50.0)
+    assert value_of(scores_of("intrusion", aside), "way") == pytest.approx(progress)
 
 
 def test_who_stays_has_no_rate_and_who_passes_at_a_distance_has_a_good_one() -> None:
@@ -120,3 +122,13 @@ def test_failures() -> None:
     assert why(scores_of("intrusion", scene(T, None, [far]))) == {("undefined", "invalid_no_robot")}
     assert why(scores_of("intrusion", scene(T, robot))) == {("undefined", "no_agents")}
     assert why(scores_of("intrusion", scene(T, robot, [far]))) == {("undefined", "no_neighbours")}
+
+
+def test_without_progress_there_is_no_rate_whatever_the_cost() -> None:
+    """5 m towards somebody, and 0.25 m nearer to a goal far to the side."""
+    person = line(T, (REACH + 0.3, 0), (0.5, 0))
+    run = scene(T, line(T, (0, 0), (0.5, 0)), [person], robot_goal=(0.0, 50.0))
+    for metric in ("intrusion", "push_work"):
+        found = scores_of(metric, run)["rate"]
+        assert (found.status, found.reason) == ("undefined", "zero_denominator")
+        assert value_of(scores_of(metric, run), "way") == 1.0
