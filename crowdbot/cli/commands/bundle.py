@@ -74,6 +74,7 @@ def bundle(
     from crowdbot.cli.commands.verify import Asked, print_verdict, verify_bundle
     from crowdbot.core.bundle.pack import Submission, other_seeds, pack
     from crowdbot.core.planning.choice import ANYWHERE
+    from crowdbot.core.registry.plugin import BUILTIN
     from crowdbot.core.scenarios.library import open_suite
     from crowdbot.core.scenarios.lock_check import check_revealed
 
@@ -97,7 +98,8 @@ def bundle(
     if more := other_seeds(submission, expansion):
         seeds = ", ".join(map(str, more))
         say(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
-    own = tuple(plugin.name for plugin in registry.plugins)  # the team trusts its plugins
+    # The team trusts its own plugins.
+    own = tuple(p.name for p in registry.plugins if p.name != BUILTIN)
     asked = Asked(size=sample, seed=seed, trusted=own)
     place = source, ANYWHERE
     verdict = verify_bundle(target, registry, suite, place, asked) if check else None

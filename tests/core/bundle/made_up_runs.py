@@ -155,6 +155,18 @@ def make_bundle(folder: Path, planner: str = "dwa", name: str = "team.cbz", **mo
     return folder / name
 
 
+def _let_digests_follow(members: dict[str, bytes], changed: set[str]) -> None:
+    """Records get the digests of files that were changed beside them."""
+    import hashlib
+
+    for name in [n for n in changed if n in members and not n.endswith("run.json")]:
+        folder, _, file = name.rpartition("/")
+        record = json.loads(members.get(f"{folder}/run.json", b"{}"))
+        if file in record.get("digests", {}):
+            record["digests"][file] = hashlib.sha256(members[name]).hexdigest()
+            members[f"{folder}/run.json"] = json.dumps(record).encode()
+
+
 def rewrite(
     bundle: Path,
     change: Mapping[str, Callable[[bytes], bytes | None]],
@@ -180,6 +192,7 @@ def rewrite(
             members[name] = changed
     members |= more or {}
     if honest:
+        _let_digests_follow(members, {*change, *(more or {})})
         manifest = json.loads(members[MANIFEST])
         manifest["members"] = {
             n: {"sha256": hashlib.sha256(c).hexdigest(), "size": len(c)}
