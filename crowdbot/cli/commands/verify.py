@@ -260,7 +260,8 @@ def _make_reruns(
             on_hang=end_hung_process,
         )  # fmt: skip
         numbers = draw_sample(runs, asked.size, asked.seed or 0, digest)
-        verdict = verdict_of(make_reruns(setup, [runs[number] for number in numbers]))
+        reruns = make_reruns(setup, [runs[number] for number in numbers])
+        verdict = verdict_of(reruns) if reruns else RerunVerdict(outcome="not re-run")
         if not asked.fresh:
             return verdict
         name = suite or archive.manifest.edition.suite
