@@ -81,6 +81,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("verify", "bundle"): (".cbz", "verify", "{}"),
     ("verify", "suite"): (".yaml", "verify", "RUNS/none.cbz", "--suite", "{}"),
     ("view", "spec"): (".yaml", "view", "{}"),
+    ("why", "path"): ("", "why", "{}"),
     ("view", "others"): (".yaml", "view", "RUNS", "{}", "--out", "RUNS/v.html"),
 }  # fmt: skip
 #: Parameters that name no file to read: names, numbers, addresses, and what is written.

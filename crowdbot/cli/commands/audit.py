@@ -112,7 +112,7 @@ def _tell_adversaries(plan: Plan, registry: Registry, exit_code: int, *, as_json
 
     results = replace(_of(Results.open(plan.out), plan), scales=score_scales(registry))
     lines = adversary_lines(results, _seeing_floors(registry))
-    typer.echo(json.dumps(lines, indent=1) if as_json else adversary_text(lines))
+    say(json.dumps(lines, indent=1) if as_json else adversary_text(lines))
     if exit_code or any(line["standing"] == "ahead" for line in lines):
         raise typer.Exit(exit_code or 1)
 
