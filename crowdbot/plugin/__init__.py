@@ -131,6 +131,7 @@ if TYPE_CHECKING:
     from crowdbot.dsl.spec.assets import Asset
     from crowdbot.dsl.spec.component import Component
     from crowdbot.dsl.spec.component_specs import (
+        Agreement,
         CostFunctionSpec,
         CrowdPolicySpec,
         EnvironmentSpec,
@@ -208,6 +209,7 @@ __all__ = [
     "AgentTracks",
     "AgentView",
     "Agents",
+    "Agreement",
     "Angle",
     "Array",
     "Asset",

@@ -65,8 +65,8 @@ HOMES = {
     "crowdbot.dsl.spec.assets": "Asset",
     "crowdbot.dsl.spec.component": "Component",
     "crowdbot.dsl.spec.component_specs": (
-        "CostFunctionSpec CrowdPolicySpec EnvironmentSpec MetricSpec NoiseSpec PlannerRole "
-        "PlannerSpec RobotSpec SensorSpec"
+        "Agreement CostFunctionSpec CrowdPolicySpec EnvironmentSpec MetricSpec NoiseSpec "
+        "PlannerRole PlannerSpec RobotSpec SensorSpec"
     ),
     "crowdbot.dsl.spec.metric_component": "Better MetricComponent MetricVariant declare_metric",
     "crowdbot.dsl.spec.metric_invariants": "MetricInvariants",

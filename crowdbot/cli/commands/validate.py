@@ -26,6 +26,13 @@ def validate(
     format_: Annotated[
         Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
     ] = Format.TEXT,
+    against_image: Annotated[
+        bool,
+        typer.Option(
+            "--against-image",
+            help="Compare the floor made of occupancy grids with their images, cell by cell.",
+        ),
+    ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
@@ -33,6 +40,12 @@ def validate(
     """Check suites and scenarios; report every error with its position.
 
     Example: crowdbot validate challenge-2020 my_suite.yaml
+    Example: crowdbot validate my_building.yaml --against-image
     """
     form = "json" if as_json else format_.value
-    raise typer.Exit(check_documents(specs, installed(plugin, no_plugins), form))
+    registry = installed(plugin, no_plugins)
+    if against_image:
+        from crowdbot.cli.output.plan_agreement import check_against_images
+
+        raise typer.Exit(check_against_images(specs, registry, as_json=form == "json"))
+    raise typer.Exit(check_documents(specs, registry, form))

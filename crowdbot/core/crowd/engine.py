@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import crowdbot.core.crowd.state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
+from crowdbot.core.crowd.contact.solid import MOST_OVERLAP, OUTSIDE
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration, relaxation_time_of
 from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
@@ -94,8 +95,10 @@ class CrowdEngine:
         self._groups_alone = _groups(made, agents, np.zeros(len(agents), np.bool_))
         strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
         self._ticks_per_decision = ticks(world.decision_rate)
-        self._people = AgentParameters.of(agents, np.array(strength, np.float64)[agents.policy])
-        self._place = WorldParameters.of(world)
+        self._people = AgentParameters.of(
+            agents, np.array(strength, np.float64)[agents.policy], _limits(made, agents, world)
+        )
+        self._place = WorldParameters.of(world, float(np.max(agents.radius, initial=0.0)))
         dt = self._ticks_per_decision * TICK
         self._steering = parts_of(world.steering)
         self._heeds_robots = ~agents.ignores_robot
@@ -343,6 +346,15 @@ class CrowdEngine:
 def _alike(outline: Array, robots: int) -> Array:
     """Return one outline (K, 2) per robot."""
     return outline[np.newaxis] if robots == 1 else np.repeat(outline[np.newaxis], robots, axis=0)
+
+
+def _limits(policies: Sequence[CrowdPolicy], agents: Agents, world: CrowdWorld) -> Array:
+    """Return how close each centre may come to walls and pillars (N,), m; 0 without a limit."""
+    radius = agents.radius
+    least = np.minimum(OUTSIDE, 0.5 * radius)
+    limit = np.maximum(radius - MOST_OVERLAP, least) if world.firm else least
+    walks_through = np.array([getattr(p, "walks_through_walls", False) for p in policies], np.bool_)
+    return np.where(walks_through[agents.policy], 0.0, limit) if len(agents) else limit
 
 
 def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:

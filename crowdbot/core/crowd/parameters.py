@@ -6,6 +6,7 @@ unpack a named tuple from Python.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -14,11 +15,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED, PlacedRecord
+from crowdbot.core.crowd.contact.solid import LONGEST_STEP
 from crowdbot.core.crowd.goal_areas import PLACE, PlaceRecord
 from crowdbot.core.crowd.periodic_boundary import ENDLESS
 from crowdbot.core.crowd.response.parameters import TickResponse
 from crowdbot.core.crowd.traits import TRAITS, TraitsRecord
 from crowdbot.core.crowd.world import CrowdWorld
+from crowdbot.core.geometry.segment_grid import segment_grid
 from crowdbot.core.support.records import RecordType, Rows, record_type, rows_of
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
@@ -39,13 +42,19 @@ class AgentParameters(NamedTuple):
     entry_order: Indices
 
     @classmethod
-    def of(cls, agents: Agents, push: Array) -> AgentParameters:
-        """Return the parameters of agents with the contact stiffness ``push`` (N,)."""
+    def of(cls, agents: Agents, push: Array, limit: Array | None = None) -> AgentParameters:
+        """Return the parameters of agents.
+
+        Args:
+            push: (N,) contact stiffness, 1/s^2.
+            limit: (N,) smallest distance of centres from walls and pillars, m; None: no limit.
+        """
         a = agents
         traits = _table(
             TRAITS, len(a), id=a.id, radius=a.radius, mass=a.mass,
             preferred_speed=a.preferred_speed, max_speed=a.max_speed, start_time=a.start_time,
             at_goal=a.at_goal, flow=a.flow, first=a.first[:-1], end=a.first[1:], push=push,
+            limit=np.zeros(len(a)) if limit is None else limit,
             ahead=a.ahead, guide=a.guide, abreast=a.abreast,
             chooses_origin=a.origin[:, 2] > 0.0, stays=_may_stay(a),
         )  # fmt: skip
@@ -81,12 +90,14 @@ class RulesRecord:
         goal_ahead: 1 if their goal in the out-portal is opposite to where their trip starts.
         goals_wrap: 1 if goals wrap with their agents.
         dissipation: as of `CrowdWorld`.
+        pillars: how many there are.
     """
 
     keep_offset: float
     goal_ahead: float
     goals_wrap: float
     dissipation: float
+    pillars: float
 
 
 RULES = record_type(RulesRecord)
@@ -101,6 +112,7 @@ class WorldParameters(NamedTuple):
         rules, response: (1,) what holds for all; what people do about robots tick by tick.
         goal_key: key of the counter-based random numbers of goals and entries.
         solids: (M, 5) sides x0, y0, x1, y1 of convex outlines, m, and the outline's number.
+        frame, first, near: `SegmentGrid` of the walls, for bodies.
     """
 
     walls: Array
@@ -111,20 +123,28 @@ class WorldParameters(NamedTuple):
     response: Rows[TickResponse]
     goal_key: np.uint64
     solids: Array
+    frame: Array
+    first: Indices
+    near: Indices
 
     @classmethod
-    def of(cls, world: CrowdWorld) -> WorldParameters:
-        """Return the parameters of a world."""
+    def of(cls, world: CrowdWorld, largest: float = math.inf) -> WorldParameters:
+        """Return the parameters of a world.
+
+        Args:
+            largest: radius of the largest body, m.
+        """
         w, boundary = world, world.periodic_boundary
+        grid = segment_grid(world.walls, largest + LONGEST_STEP)
         rules = _table(
             RULES, 1, keep_offset=np.array([w.exit_point == "offset"]),
             goal_ahead=np.array([w.goal_point == "ahead"]), goals_wrap=np.array([not w.parity]),
-            dissipation=np.array([w.dissipation]),
+            dissipation=np.array([w.dissipation]), pillars=np.array([len(w.pillars)]),
         )  # fmt: skip
         return cls(
             w.walls, w.entrance, w.out,
             ENDLESS if boundary is None else np.array(boundary, np.float64),
-            rules, w.response.by_tick, np.uint64(w.goal_key), _sides(w.solids),
+            rules, w.response.by_tick, np.uint64(w.goal_key), _sides(w.solids), *grid,
         )  # fmt: skip
 
 
@@ -145,13 +165,18 @@ class Scratch(NamedTuple):
         placed: (N,) see `push_apart`.
         order: (N,) all agents in any order; sorted by x afterwards, which makes the next sort
             cheap.
+        room: (N,) distance of each centre from the nearest wall or pillar that its body overlaps,
+            m; infinite without one.
     """
 
     reaction: Array
     placed: Rows[PlacedRecord]
     order: Indices
+    room: Array
 
     @classmethod
     def of(cls, people: int) -> Scratch:
         """Return scratch arrays for this number of people."""
-        return cls(np.zeros((people, 2)), rows_of(people, PLACED), np.arange(people))
+        return cls(
+            np.zeros((people, 2)), rows_of(people, PLACED), np.arange(people), np.zeros(people)
+        )

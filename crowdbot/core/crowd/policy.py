@@ -86,6 +86,8 @@ class AcceleratingPolicy(Protocol):
     the steering parts that limit speeds; default: the time between decisions. A policy that chooses
     among fixed velocities may list them in an attribute ``velocity_candidates``
     (`crowdbot.core.types.candidates`), which makes recordings smaller and changes nothing else.
+    With a true attribute ``walks_through_walls`` walls do not hold its people back, as in records
+    whose plan does not fit.
     """
 
     def accelerations(self, view: CrowdView) -> Array:

@@ -11,6 +11,7 @@ from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.crowd.contact.geometry import is_clearly_shorter
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED, push_apart
 from crowdbot.core.crowd.contact.robot_contact import ROBOT, RobotRecord, robot_contacts
+from crowdbot.core.crowd.contact.solid import keep_out
 from crowdbot.core.crowd.goal_areas import PLACE
 from crowdbot.core.crowd.parameters import (
     RULES,
@@ -48,8 +49,8 @@ def tick(
     dt: float,
     traits: Array, route: Array, origin: Array, entry_order: Indices,
     walls: Array, entrance: Array, out: Array, boundary: Array, rules: Array, response: Array,
-    goal_key: np.uint64, solids: Array,
-    reaction: Array, placed: Array, order: Indices,
+    goal_key: np.uint64, solids: Array, frame: Array, first: Indices, near: Indices,
+    reaction: Array, placed: Array, order: Indices, room: Array,
 ) -> None:  # fmt: skip
     """Advance from tick k to k + 1.
 
@@ -63,29 +64,45 @@ def tick(
         discs: (D, 3) x, y, radius of fixed discs that push, m.
         dt: length of the tick, s.
         traits to entry_order: fields of `AgentParameters`, as numbers.
-        walls to solids: fields of `WorldParameters`, as numbers.
-        reaction, placed, order: fields of `Scratch`, as numbers.
+        walls to near: fields of `WorldParameters`, as numbers.
+        reaction to room: fields of `Scratch`, as numbers.
     """
     people = AgentParameters(
         as_rows(traits, TRAITS), as_rows(route, PLACE), as_rows(origin, PLACE), entry_order
     )
     world = WorldParameters(
         walls, entrance, out, boundary, as_rows(rules, RULES), as_rows(response, TICK_RESPONSE),
-        goal_key, solids,
+        goal_key, solids, frame, first, near,
     )  # fmt: skip
     count = people.traits.shape[0]
     end = HEADER_SIZE + count * AGENT_COLUMNS
     header, agents = as_record(flat, HEADER), as_rows(flat[HEADER_SIZE:end], PERSON)
     machines = as_rows(robots, ROBOT)
     now = header.tick * dt
-    push_apart(agents, people.traits, order, walls, discs, as_rows(placed, PLACED))
+    push_apart(
+        agents, people.traits, order, walls, frame, first, near, discs,
+        int(world.rules[0].pillars), as_rows(placed, PLACED), room,
+    )  # fmt: skip
     robot_contacts(
         flat[end:], agents, people.traits, machines, outlines, numbers, stiffnesses,
         world.rules[0].dissipation, now, dt, reaction,
     )  # fmt: skip
     for i in range(agents.shape[0]):
         if agents[i].waiting == PRESENT:
-            _advance(header, agents, i, people, world, machines, outlines, reaction, now, dt)
+            _advance(
+                header,
+                agents,
+                i,
+                people,
+                world,
+                machines,
+                outlines,
+                reaction,
+                discs,
+                room[i],
+                now,
+                dt,
+            )
     for i in entry_order:
         if agents[i].waiting == AT_PORTAL:
             try_to_re_enter(agents, i, people, world, machines, discs, now + dt)
@@ -104,17 +121,29 @@ def _advance(
     robots: Rows[RobotRecord],
     outlines: Array,
     reaction: Array,
+    discs: Array,
+    room: float,
     now: float,
     dt: float,
 ) -> None:
-    """Move agent i, and let it arrive, leave or wrap."""
+    """Move agent i, and let it arrive, leave or wrap.
+
+    Args:
+        room: distance of its centre from what is solid, at least its radius if it touches nothing.
+    """
     x, y, arrivals = agents[i].x, agents[i].y, agents[i].arrivals
     traits, ax, ay = people.traits[i], 0.0, 0.0
     if agents[i].beside != 0.0:
         ax, ay = stop_short(agents, i, traits.radius, robots, outlines, world.response[0])
     ax += agents[i].push_x + reaction[i, 0] / traits.mass
     ay += agents[i].push_y + reaction[i, 1] / traits.mass
-    _move(agents, i, traits.max_speed, ax, ay, dt)
+    step = _move(agents, i, traits.max_speed, ax, ay, dt)
+    if min(room, traits.radius) < traits.limit + step and traits.limit > 0.0:
+        keep_out(
+            agents, i, x, y, traits.limit, world.walls, world.frame, world.first, world.near,
+            discs, int(world.rules[0].pillars),
+        )  # fmt: skip
+    _look_ahead(agents, i, dt)
     if traits.at_goal == PORTAL:
         _through(agents, i, x, y, world.out[int(traits.flow)], now, dt)
     elif agents[i].on_trip != 0.0:
@@ -172,8 +201,12 @@ def _along(
 
 
 @kernel
-def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: float) -> None:
-    """Apply the desired acceleration up to the largest speed; pushes (ax, ay) may exceed it."""
+def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: float) -> float:
+    """Apply the desired acceleration up to the largest speed; pushes (ax, ay) may exceed it.
+
+    Returns:
+        length of the step, m.
+    """
     vx = agents[i].vx + agents[i].ax * dt
     vy = agents[i].vy + agents[i].ay * dt
     if not is_clearly_shorter(vx, vy, fastest):
@@ -183,6 +216,12 @@ def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: floa
     agents[i].vx, agents[i].vy = vx + ax * dt, vy + ay * dt
     agents[i].x += agents[i].vx * dt
     agents[i].y += agents[i].vy * dt
+    return math.hypot(agents[i].vx, agents[i].vy) * dt
+
+
+@kernel
+def _look_ahead(agents: People, i: int, dt: float) -> None:
+    """Count the distance walked, and turn to where agent i walks."""
     speed = math.hypot(agents[i].vx, agents[i].vy)
     agents[i].walked += speed * dt
     if speed > _TURNS_ABOVE:

@@ -11,6 +11,7 @@ class TraitsRecord:
     Attributes:
         first, end: the rows of its route.
         push: stiffness of contacts with people, walls and pillars, 1/s^2.
+        limit: smallest distance of its centre from walls and pillars, m; 0 without a limit.
         chooses_origin: 1 if its origin is an area.
         stays: 1 if it may have reason to stay at a goal for a while.
     """
@@ -26,6 +27,7 @@ class TraitsRecord:
     first: float
     end: float
     push: float
+    limit: float
     ahead: float
     guide: float
     abreast: float

@@ -40,6 +40,8 @@ class CrowdWorld:
         cohesion: group forces, or None.
         steering: steering parts besides the policy.
         robot_visible: True if people see the robot's velocity.
+        firm: True if no body overlaps anything solid by more than 2 cm; else people are only pushed
+            out, and just their centres never come in.
         stiffness, dissipation: contact with the robot, N/m and s/m.
         goal_key: key of the counter-based draws of goals and entries.
         decision_rate: Hz, a power of two up to 128.
@@ -60,6 +62,7 @@ class CrowdWorld:
     cohesion: Cohesion | None = field(default_factory=Cohesion)
     steering: Steering = field(default_factory=Steering)
     robot_visible: bool = True
+    firm: bool = False
     stiffness: float = 30000.0
     dissipation: float = 0.3
     goal_key: int = 0

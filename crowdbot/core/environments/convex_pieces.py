@@ -12,7 +12,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.spec.outlines import Outline, is_convex, signed_area, turn
+from crowdbot.dsl.spec.outlines import Outline, Side, is_convex, sides, signed_area, turn
 
 #: Smaller triangles are rounding, m^2.
 _LEAST_AREA = 1e-9
@@ -44,22 +44,27 @@ def _corners(triangle: Any) -> Outline:
 
 def _joined(pieces: list[Outline]) -> list[Outline]:
     """Pieces joined across common sides, in turn, as long as what comes out is convex."""
-    open_ = list(pieces)
+    open_ = dict(enumerate(pieces))
+    owners = {side: k for k, piece in open_.items() for side in sides(piece)}
     done: list[Outline] = []
     while open_:
-        piece = open_.pop(0)
-        while (found := _partner(piece, open_)) is not None:
-            index, piece = found
-            open_.pop(index)
+        piece = open_.pop(next(iter(open_)))
+        while (found := _partner(piece, open_, owners)) is not None:
+            k, piece = found
+            del open_[k]
         done.append(piece)
     return done
 
 
-def _partner(piece: Outline, others: Sequence[Outline]) -> tuple[int, Outline] | None:
-    for index, other in enumerate(others):
-        together = _join(piece, other)
+def _partner(
+    piece: Outline, others: dict[int, Outline], owners: dict[Side, int]
+) -> tuple[int, Outline] | None:
+    """Return the first other piece that can be joined, by its number, and both as one."""
+    beside = {owners.get((b, a), -1) for a, b in sides(piece)}
+    for k in sorted(beside & others.keys()):
+        together = _join(piece, others[k])
         if together is not None:
-            return index, together
+            return k, together
     return None
 
 

@@ -42,6 +42,7 @@ def place_parts(spec: EnvironmentSpec, place: Place) -> EnvironmentParts:
         solid_heights=_heights([solid.heights for _, solid in pieces]),
         solids_stop_crowd=np.array([solid.stops_crowd for _, solid in pieces], np.bool_),
         periodic_boundary=place.torus,
+        left_out=tuple(np.array(outline, np.float64) for outline in place.left_out),
     )
 
 

@@ -95,6 +95,7 @@ class Ghosts(AvoidNobody):
     """People without avoidance or pushes: straight lines through each other."""
 
     contact_stiffness = 0.0
+    walks_through_walls = True
 
 
 def avoid_nobody(agents: Agents) -> CrowdPolicy:

@@ -21,6 +21,7 @@ class DepthRenderer:
         slope: (H,) rise of the rays per metre of depth; the first row is on top.
         left: (W,) leftward shift of the rays per metre of depth; the first column is on the left.
         cos_azimuth: (W,) cosines of the columns' azimuths: depth per metre over the floor.
+        reach: largest distance over the floor at which anything is seen, m.
     """
 
     def __init__(self, pinhole: Pinhole, nearest: float, farthest: float) -> None:
@@ -33,6 +34,7 @@ class DepthRenderer:
         azimuth = np.arctan(self.left)
         self._cos, self._sin = np.cos(azimuth), np.sin(azimuth)
         self._lens = Lens(pinhole.focal, column, row, nearest, farthest, 0.0)
+        self.reach = farthest / float(self.cos_azimuth.min()) + 1e-6
         self._lens_mm = self._lens._replace(steps=1000.0)
         self._rays = np.empty((RAY_ROWS, pinhole.width))
         self._edges = np.empty((EDGE_ROWS, pinhole.width), np.float32)

@@ -28,6 +28,8 @@ _TURN = 2.0 * math.pi
 _MARGIN = 1e-9  # rad; columns at the very edge use the exact test
 _WIDE_MARGIN = 3e-5  # rad; larger than the errors of `rough_angle` and `rough_half`
 _BAND = 1e-9  # relative, of squared distances; nearer to a limit the exact distance decides
+#: Number of walls after which the farthest visible distance of level rays is found again.
+_OFTEN = 16
 #: Ends of a wall are extended by this fraction, so that no ray passes through a corner.
 OVERLAP = 1e-9
 
@@ -230,6 +232,21 @@ def _gap(px: float, py: float, ex: float, ey: float) -> float:
 
 
 @kernel
+def _covered_by(
+    px: float, py: float, ex: float, ey: float, yaw: float, azimuth: Array, runs: Indices
+) -> int:
+    """Write the runs of columns that a plate from p to p + e may cover; return their number."""
+    begin, end = math.atan2(py, px), math.atan2(py + ey, px + ex)
+    turn = end - begin  # a plate covers less than half a turn
+    if turn > math.pi:
+        turn -= _TURN
+    elif turn < -math.pi:
+        turn += _TURN
+    start = (begin if turn >= 0.0 else begin + turn) - yaw
+    return _cover(azimuth, start - _MARGIN, start + abs(turn) + _MARGIN, runs)
+
+
+@kernel
 def _add_wall(
     ox: float, oy: float, yaw: float, wall: Array, heights: Array, who: int, reach: float,
     columns: _Columns,
@@ -241,14 +258,7 @@ def _add_wall(
     length = math.hypot(ex, ey)
     if length == 0.0 or _gap(px, py, ex, ey) > reach:
         return
-    begin, end = math.atan2(py, px), math.atan2(py + ey, px + ex)
-    turn = end - begin  # a plate covers less than half a turn
-    if turn > math.pi:
-        turn -= _TURN
-    elif turn < -math.pi:
-        turn += _TURN
-    start = (begin if turn >= 0.0 else begin + turn) - yaw
-    number = _cover(azimuth, start - _MARGIN, start + abs(turn) + _MARGIN, runs)
+    number = _covered_by(px, py, ex, ey, yaw, azimuth, runs)
     for run in range(number):
         for c in range(runs[run, 0], runs[run, 1]):
             across = cos[c] * ey - sin[c] * ex
@@ -259,6 +269,45 @@ def _add_wall(
             if t < 0.0 or t > reach or s < -OVERLAP or s > 1.0 + OVERLAP:
                 continue
             _insert(columns, c, t, t, abs(across) / length, heights[0], heights[1], who)
+
+
+@kernel
+def _turned(grid: GridArrays, yaw: float) -> _Columns:
+    """Return the empty columns of a grid, turned by its yaw in the world frame, rad."""
+    c0, s0 = math.cos(yaw), math.sin(yaw)
+    world_cos, world_sin, filled = grid.directions[0], grid.directions[1], grid.filled
+    for c in range(grid.azimuth.shape[0]):
+        world_cos[c] = c0 * grid.cos[c] - s0 * grid.sin[c]
+        world_sin[c] = s0 * grid.cos[c] + c0 * grid.sin[c]
+        filled[c] = 0
+    return _Columns(grid.azimuth, world_cos, world_sin, grid.work, filled, grid.runs)
+
+
+@kernel
+def _add_discs(
+    x: float, y: float, yaw: float, lowest: float, highest: float, max_range: float,
+    discs: Array, owner: Indices, columns: _Columns,
+) -> None:  # fmt: skip
+    """Insert all cylinders between two heights within range."""
+    for i in range(discs.shape[0]):
+        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
+        bottom, top = discs[i, BOTTOM], discs[i, TOP]
+        if not (bottom <= highest and top >= lowest):
+            continue
+        far = max_range + r  # most are excluded here, before any call
+        if abs(px) <= far and abs(py) <= far and _reached(px, py, r, max_range):
+            _add_disc(px, py, r, bottom, top, yaw, owner[i], columns)
+
+
+@kernel
+def _farthest(grid: GridArrays) -> float:
+    """Return the distance beyond which level rays see nothing more, m; inf if one sees far."""
+    farthest = 0.0
+    for c in range(grid.filled.shape[0]):
+        if grid.filled[c] == 0:
+            return math.inf
+        farthest = max(farthest, grid.work[c, 0, NEAR])
+    return farthest
 
 
 @kernel
@@ -280,25 +329,78 @@ def fill_columns(
         max_range: largest distance of bodies, m.
         grid: ``work`` and ``filled`` hold the result.
     """
-    c0, s0 = math.cos(yaw), math.sin(yaw)
-    world_cos, world_sin, filled = grid.directions[0], grid.directions[1], grid.filled
-    for c in range(grid.azimuth.shape[0]):
-        world_cos[c] = c0 * grid.cos[c] - s0 * grid.sin[c]
-        world_sin[c] = s0 * grid.cos[c] + c0 * grid.sin[c]
-        filled[c] = 0
-    columns = _Columns(grid.azimuth, world_cos, world_sin, grid.work, filled, grid.runs)
+    columns = _turned(grid, yaw)
     walls, heights, discs = obstacles.walls, obstacles.wall_heights, obstacles.discs
     for i in range(walls.shape[0]):
         if heights[i, 0] <= highest and heights[i, 1] >= lowest:
             _add_wall(x, y, yaw, walls[i], heights[i], -(2 + i), max_range, columns)
-    for i in range(discs.shape[0]):
-        px, py, r = discs[i, X] - x, discs[i, Y] - y, discs[i, RADIUS]
-        bottom, top = discs[i, BOTTOM], discs[i, TOP]
-        if not (bottom <= highest and top >= lowest):
-            continue
-        far = max_range + r  # most are excluded here, before any call
-        if abs(px) <= far and abs(py) <= far and _reached(px, py, r, max_range):
-            _add_disc(px, py, r, bottom, top, yaw, obstacles.owner[i], columns)
+    _add_discs(x, y, yaw, lowest, highest, max_range, discs, obstacles.owner, columns)
+
+
+@kernel
+def _fill_level(
+    x: float, y: float, yaw: float, z: float, max_range: float, grid: GridArrays,
+    obstacles: Obstacles, order: Indices, bound: Array,
+) -> None:  # fmt: skip
+    """As `fill_columns` for level rays, which see only the nearest body: hidden walls are skipped.
+
+    Args:
+        order, bound: (S,) the walls, nearest first, and lower bounds of their distances, m.
+    """
+    columns = _turned(grid, yaw)
+    walls, heights, most = obstacles.walls, obstacles.wall_heights, max_range
+    for k in range(order.shape[0]):
+        i = order[k]
+        if bound[k] > most:
+            break
+        if heights[i, 0] <= z <= heights[i, 1]:
+            _add_level_wall(x, y, yaw, walls[i], heights[i], -(2 + i), most, max_range, columns)
+        if k % _OFTEN == _OFTEN - 1:
+            most = min(max_range, _farthest(grid) * (1.0 + _BAND))
+    _add_discs(x, y, yaw, z, z, max_range, obstacles.discs, obstacles.owner, columns)
+
+
+@kernel
+def _add_level_wall(
+    ox: float, oy: float, yaw: float, wall: Array, heights: Array, who: int, most: float,
+    reach: float, columns: _Columns,
+) -> None:  # fmt: skip
+    """Put an upright plate into every column in which it is the nearest one.
+
+    Of plates at the same distance the first in the scene counts, in whatever order they come.
+
+    Args:
+        most: distance beyond which it is hidden in every column, m.
+    """
+    azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
+    work, filled = columns.work, columns.filled
+    px, py = wall[0] - ox, wall[1] - oy
+    ex, ey = wall[2] - wall[0], wall[3] - wall[1]
+    length = math.hypot(ex, ey)
+    if length == 0.0:
+        return
+    gap = _gap(px, py, ex, ey)
+    if gap > most:
+        return
+    number = _covered_by(px, py, ex, ey, yaw, azimuth, runs)
+    nearest = gap * (1.0 - _BAND)
+    for run in range(number):
+        for c in range(runs[run, 0], runs[run, 1]):
+            if filled[c] > 0 and work[c, 0, NEAR] < nearest:
+                continue
+            across = cos[c] * ey - sin[c] * ex
+            if across == 0.0:
+                continue
+            t = (px * ey - py * ex) / across
+            s = (px * sin[c] - py * cos[c]) / across
+            if t < 0.0 or t > reach or s < -OVERLAP or s > 1.0 + OVERLAP:
+                continue
+            if filled[c] > 0:
+                now = work[c, 0]
+                if t > now[NEAR] or (t == now[NEAR] and who < now[WHO]):
+                    continue
+                filled[c] = 0
+            _insert(columns, c, t, t, abs(across) / length, heights[0], heights[1], who)
 
 
 @kernel
@@ -336,6 +438,7 @@ def cast_columns(
     azimuth: Array, cos: Array, sin: Array, slope: Array, slope_scale: Array, work: Array,
     filled: Indices, directions: Array, runs: Indices,
     walls: Array, wall_heights: Array, discs: Array, owner: Indices,
+    order: Indices, bound: Array,
     distance: Array, incidence: Array, body: Indices,
 ) -> None:  # fmt: skip
     """Write the nearest hit of each ray of a grid.
@@ -346,6 +449,7 @@ def cast_columns(
         floor: True if the floor z = 0 is hit.
         azimuth to runs: fields of `GridArrays`.
         walls to owner: fields of `Obstacles`.
+        order, bound: (S,) the walls, nearest first, and lower bounds of their distances, m.
         distance: (R, C) result, m; inf without a hit.
         incidence: (R, C) result, angle to the normal, rad, 0 without a hit; or (0, 0).
         body: (R, C) result: owner, -(2 + index) for a wall, -1 for nothing and the floor; or (0,
@@ -354,7 +458,10 @@ def cast_columns(
     grid = GridArrays(azimuth, cos, sin, slope, slope_scale, work, filled, directions, runs)
     lowest, highest = heights_of(z, grid, max_range)
     obstacles = Obstacles(walls, wall_heights, discs, owner)
-    fill_columns(x, y, yaw, lowest, highest, max_range, grid, obstacles)
+    if work.shape[1] == 1 and lowest == highest:
+        _fill_level(x, y, yaw, lowest, max_range, grid, obstacles, order, bound)
+    else:
+        fill_columns(x, y, yaw, lowest, highest, max_range, grid, obstacles)
     wants_incidence, wants_body = incidence.shape[0] > 0, body.shape[0] > 0
     for r in range(slope.shape[0]):
         for c in range(azimuth.shape[0]):

@@ -15,6 +15,7 @@ from crowdbot.core.sensing.other_robots import OtherRobot, RobotSurfaces
 from crowdbot.core.sensing.raycast import cast_rays
 from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
 from crowdbot.core.sensing.raycast_tilted import cast_tilted_rays
+from crowdbot.core.sensing.walls_near import WallsNear, in_scene
 from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
@@ -29,6 +30,10 @@ _NO_ANGLES, _NOBODY = np.empty((0, 0)), np.empty((0, 0), dtype=np.int64)
 
 def _constant(values: ArrayLike, shape: tuple[int, ...]) -> Array:
     return immutable(np.broadcast_to(np.asarray(values, dtype=np.float64), shape))
+
+
+def _have_one_origin(origins: Array) -> bool:
+    return len(origins) > 0 and bool((origins[:, :2] == origins[0, :2]).all())
 
 
 class Scene:
@@ -87,6 +92,7 @@ class Scene:
         if robots:
             self._make_room()
         self._obstacles = Obstacles(self._walls, self.wall_heights, *self._lay_out())
+        self._near = WallsNear(self._walls, self.wall_heights, self.fixed_walls)
         self._placed = False
         self._shown: dict[str, Any] = {}
 
@@ -227,6 +233,11 @@ class Scene:
             ),
         )
 
+    def obstacles_near(self, x: float, y: float, reach: float) -> Obstacles:
+        """Return everything that rays from a point can hit within reach, m, and perhaps more."""
+        walls, (_, _, discs, owner) = self._near.near(x, y, reach), self.obstacles
+        return Obstacles(walls.segments, walls.heights, discs, owner)
+
     @property
     def _everything(self) -> Obstacles:
         """Return `obstacles` in reused arrays; people are placed on demand."""
@@ -262,7 +273,15 @@ class Scene:
             without a hit; body (R,) int64, a person's index, -(2 + index) for a wall, and from
             there on for a pillar, -1 for none.
         """
-        return cast_rays(origins, directions, max_range, *self._everything)
+        everything = self._everything
+        if not _have_one_origin(origins):
+            return cast_rays(origins, directions, max_range, *everything)
+        walls = self._near.near(float(origins[0, 0]), float(origins[0, 1]), max_range)
+        found = cast_rays(
+            origins, directions, max_range, walls.segments, walls.heights, *everything[2:]
+        )
+        in_scene(found[2], walls)
+        return found
 
     def cast_tilted(
         self, at: tuple[float, float, float], turn: Array, rays: Array, max_range: float
@@ -280,11 +299,12 @@ class Scene:
         """
         distance, incidence = np.full(len(rays), np.inf), np.zeros(len(rays))
         body = np.full(len(rays), -1, dtype=np.int64)
-        walls, heights, discs, owner = self._everything
+        walls, discs, owner = self._near.near(at[0], at[1], max_range), *self._everything[2:]
         cast_tilted_rays(
-            *at, turn, np.ascontiguousarray(rays), max_range, walls, heights, discs, owner,
-            distance, incidence, body,
+            *at, turn, np.ascontiguousarray(rays), max_range, walls.segments, walls.heights, discs,
+            owner, distance, incidence, body,
         )  # fmt: skip
+        in_scene(body, walls)
         return distance, incidence, body
 
     def cast_grid(
@@ -315,10 +335,12 @@ class Scene:
             incidence, body = np.empty(grid.shape), np.empty(grid.shape, dtype=np.int64)
         if distance.size:
             x, y, z = at
+            walls, discs, owner = self._near.near(x, y, max_range), *self._everything[2:]
             cast_columns(
-                x, y, z, yaw, max_range, floor, *grid.arrays, *self._everything,
-                distance, incidence, body,
+                x, y, z, yaw, max_range, floor, *grid.arrays, walls.segments, walls.heights,
+                discs, owner, walls.order, walls.bound, distance, incidence, body,
             )  # fmt: skip
+            in_scene(body, walls)
         return distance, incidence, body
 
     def render_depth(
@@ -357,4 +379,5 @@ class Scene:
         yaw: float,
     ) -> None:
         discs = self._everything.discs
-        renderer.render_depth(image, at, yaw, self._walls, self.wall_heights, discs)
+        walls = self._near.near(at[0], at[1], renderer.reach)
+        renderer.render_depth(image, at, yaw, walls.segments, walls.heights, discs)

@@ -161,6 +161,7 @@ def _world(
             crowd.steering or SteeringSpec(),
             key=stream_seed(crowd.seed.root, crowd.seed.key, "crowd.wander"),
         ),
+        firm=crowd.solids == "firm",
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,
         dissipation=scenario.contact.dissipation,

@@ -30,6 +30,7 @@ class EnvironmentParts:
         solids_stop_crowd: (B,) bool, people go around the solid; all of them if left out.
         periodic_boundary: (x0, x1, y0, y1) of a floor with periodic boundaries, on which people who
             leave on one side return on the other, m; else None.
+        left_out: outlines (K, 2) of what is too small to be kept, m: drawn, and nothing else.
         floor_friction: coefficient of a tyre on the floor; core takes it from the spec.
     """
 
@@ -45,6 +46,7 @@ class EnvironmentParts:
     solid_heights: Array = field(default_factory=lambda: np.zeros((0, 2)))
     solids_stop_crowd: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
     periodic_boundary: tuple[float, float, float, float] | None = None
+    left_out: tuple[Array, ...] = ()
     floor_friction: float = 1.0
 
     def __post_init__(self) -> None:

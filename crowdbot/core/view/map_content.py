@@ -153,6 +153,8 @@ def _walls(parts: EnvironmentParts, world: Map) -> Iterator[Shape]:
         yield world.path([(x0, y0), (x1, y1)], role)
     for x, y, r in parts.pillars.tolist():
         yield Disc(centre=world.at(x, y), radius=r * world.scale, role="pillar")
+    for outline in parts.left_out:
+        yield world.path(outline.tolist(), "left-out", closed=True)
 
 
 def solid_role(bottom: float, top: float) -> str:

@@ -128,6 +128,8 @@ def _wall_entries(parts: EnvironmentParts) -> Iterator[tuple[str, str]]:
     ):
         if pair in pairs:
             yield role, label
+    if parts.left_out:
+        yield "left-out", "too small: left out"
 
 
 def _swatch(role: str, x: float, y: float) -> Iterator[Shape]:

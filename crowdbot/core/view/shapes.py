@@ -117,6 +117,7 @@ STYLES = {
     "solid": Style(fill="wall"),
     "solid-low": Style(fill="wall", opacity=0.35, stroke="wall", width=1.0),
     "solid-raised": Style(fill="wall", opacity=0.1, stroke="wall", width=1.5, dash=(5.0, 3.0)),
+    "left-out": Style(fill="route", opacity=0.25, stroke="route", width=1.5, dash=(2.0, 2.0)),
     "robot-goal": Style(fill="goal", stroke="floor", width=1.5),
     "route-end": Style(fill="route", stroke="floor", width=1.0),
     **{

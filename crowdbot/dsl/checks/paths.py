@@ -58,6 +58,8 @@ def check_paths(facts: Facts) -> Iterator[Diagnostic]:
         yield from paths.check_flows()
         yield from paths.check_agents()
         yield from paths.check_spawns()
+    else:
+        yield from paths.check_goals()
 
 
 @dataclass(frozen=True)
@@ -171,6 +173,29 @@ class _PathCheck:
                     yield Diagnostic("E143", text, mark, hint)
                     break
                 at = goal
+
+    def check_goals(self) -> Iterator[Diagnostic]:
+        """Check, for people who walk straight, that no goal lies in something solid."""
+        for i, agent in enumerate(self.facts.crowd.agents):
+            for k, (x, y) in enumerate(agent.goals):
+                if self.place.clearance(x, y) < -_SLACK:
+                    text = f"a goal of agent {agent.id} lies in a wall, a block or a pillar"
+                    mark = self.facts.mark("crowd", "agents", i, "goals", k)
+                    yield Diagnostic("E143", text, mark, f"at ({x:g}, {y:g})")
+        crowd = self.facts.crowd
+        areas = {name: one.area for name, one in crowd.goal_areas.items()}
+        for name, place in areas.items():
+            area = self._resolve(place)
+            if area is not None and not has_room(self.place, area, 0.0):
+                text = f"goal area '{name}' lies in a wall, a block or a pillar"
+                mark = self.facts.mark("crowd", "goal_areas", name, "area")
+                yield Diagnostic("E143", text, mark, f"around {_at(area)}")
+        for name, stream in crowd.streams.items():
+            for _, goal, path in stream.legs(self._resolve, areas):
+                if not has_room(self.place, goal, 0.0):
+                    text = f"stream '{name}' leads into a wall, a block or a pillar"
+                    mark = self.facts.mark("crowd", "streams", name, *path)
+                    yield Diagnostic("E143", text, mark, f"around {_at(goal)}")
 
     def check_spawns(self) -> Iterator[Diagnostic]:
         """Check that a path leads from each spawn's area into each of its goal areas."""

@@ -145,6 +145,12 @@ class Crowd(Spec):
     policies: dict[str, NamedPolicy] = Field(
         default={}, description="Named policies for spawns and agents that follow another one."
     )
+    solids: Literal["soft", "firm"] = Field(
+        default="soft",
+        exclude_if=lambda value: value == "soft",
+        description="firm: no body overlaps a wall, a block or a pillar by more than 2 cm, however "
+        "hard others push; soft: people are pushed out, and only their centres never come in.",
+    )
     exit_point: Literal["random", "offset"] = Field(
         default="random",
         description="Where people come out of a portal: anywhere in it, or opposite to where "

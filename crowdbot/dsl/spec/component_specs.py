@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
@@ -18,6 +18,24 @@ if TYPE_CHECKING:
 #: Role of a planner. ``floor``: any useful planner beats it; ``ceiling``: it has privileged
 #: information; ``baseline``: a fair reference; ``candidate``: all others.
 PlannerRole = Literal["floor", "baseline", "ceiling", "adversary", "candidate"]
+
+
+class Agreement(NamedTuple):
+    """Comparison of an imported place with the image it comes from.
+
+    Attributes:
+        image: its name.
+        cells: number of cells.
+        wrong: number of cells that are floor in one of both only.
+        left_out: number of cells of pieces that were left out because they are small.
+        where: centres of the first wrong cells, world frame, m.
+    """
+
+    image: str
+    cells: int
+    wrong: int
+    left_out: int
+    where: tuple[tuple[float, float], ...]
 
 
 class FloorContact(Spec):
@@ -60,6 +78,14 @@ class EnvironmentSpec(ComponentSpec):
     @property
     def periodic_floor(self) -> Rectangle | None:
         """Return the floor, if people who leave it on one side enter again on the other."""
+        return None
+
+    def against_image(self) -> Agreement | None:
+        """Return how its place agrees with the image it was made from; None without an image.
+
+        Raises:
+            InputError: as in `place`.
+        """
         return None
 
     def extent(self) -> Rectangle | None:

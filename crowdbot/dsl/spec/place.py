@@ -82,12 +82,14 @@ class Place:
 
     Attributes:
         torus: x0, x1, y0, y1 of a floor with periodic boundaries, m.
+        left_out: outlines of what is too small to be kept; they are drawn, and stop no one.
     """
 
     faces: tuple[Face, ...] = ()
     solids: tuple[Solid, ...] = ()
     pillars: tuple[Pillar, ...] = ()
     torus: tuple[float, float, float, float] | None = None
+    left_out: tuple[Outline, ...] = ()
 
     def bodies(self, height: float) -> Place:
         """Return obstacles for people of a height: below their heads, and not steps."""

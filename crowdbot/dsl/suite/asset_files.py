@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -43,7 +44,7 @@ class AssetFiles:
             data = _replaced(data, path, found)
             for name, text in spec.beside(path[-1], found.file).items():
                 beside = Asset(path=str(PurePosixPath(asset.path).parent / text))
-                other = self._found(beside, mark, problems)
+                other = self._found_beside(beside, f"'{asset.path}' names it", name, mark, problems)
                 data = data if other is None else _replaced(data, (*path[:-1], name), other)
         return data
 
@@ -59,6 +60,18 @@ class AssetFiles:
                 self._complete[id(spec)] = spec  # kept so that its id is not reused
             for name in names:
                 yield (*path, name), getattr(spec, name), spec
+
+    def _found_beside(
+        self, asset: Asset, why: str, field: str, mark: Mark, problems: list[Diagnostic]
+    ) -> Asset | None:
+        """Return `_found` for a file that another one names; errors say so, and the way out."""
+        own = list[Diagnostic]()
+        found = self._found(asset, mark, own)
+        for problem in own:
+            hint = f"{why}; put it there, or write '{field}' beside 'file'"
+            hint = f"{problem.hint}; {hint}" if problem.hint else hint
+            problems.append(replace(problem, hint=hint))
+        return found
 
     def _found(self, asset: Asset, mark: Mark, problems: list[Diagnostic]) -> Asset | None:
         """Return a found asset.

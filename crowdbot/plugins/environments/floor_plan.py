@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crowdbot.plugin import Component, Place, Rectangle
+from crowdbot.plugin import Agreement, Component, Place, Rectangle
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 
 
@@ -35,6 +35,14 @@ class FloorPlanSpec(FloorPlanFields):
         from crowdbot.plugins.environments.floor_plan_build import place_of
 
         return place_of(self)
+
+    def against_image(self) -> Agreement | None:
+        """Return how the place agrees with the image of an occupancy grid, cell by cell."""
+        if self.read_as != "ros_map":
+            return None
+        from crowdbot.plugins.environments.floor_plan_agreement_build import agreement
+
+        return agreement(self, self.place())
 
     def extent(self) -> Rectangle:
         """Return the box around the plan."""

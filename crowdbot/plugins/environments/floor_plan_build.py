@@ -1,37 +1,23 @@
-"""Read, repair and simplify floor plans."""
+"""Build the place of a floor plan: read it, repair and simplify its outlines."""
 
 from __future__ import annotations
 
 import logging
-import math
-import re
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
-from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.core.support.strict_json import DEEPEST, parse_foreign_json
 from crowdbot.core.support.text_files import input_text
-from crowdbot.plugin import Face, InputError, Place, Solid, outlines
+from crowdbot.plugin import InputError, Place
+from crowdbot.plugins.environments.floor_plan_detail_build import without_details
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
-from crowdbot.plugins.environments.floor_plan_units_build import (
-    check_numbers,
-    check_place,
-    declared_crs,
-    in_metres,
-    moved,
-)
-from crowdbot.plugins.environments.ros_map_build import (
-    free_cells,
-    outline_cells,
-    read_grey,
-    read_map,
-)
+from crowdbot.plugins.environments.floor_plan_grid_build import read_grid
+from crowdbot.plugins.environments.floor_plan_solids_build import around_floor, as_solid
+from crowdbot.plugins.environments.floor_plan_units_build import check_place
+from crowdbot.plugins.environments.floor_plan_vector_build import Plan, read_vector
 
 _LOG = logging.getLogger(__name__)
 #: Largest file of a vector plan, bytes.
@@ -43,14 +29,6 @@ MOST_SIDE = 5_000.0
 #: Coordinates are rounded to multiples of this, so that shapely gives the same result everywhere,
 #: m.
 _GRID = 1e-6
-
-
-@dataclass
-class _Plan:
-    """The parsed plan: the walkable floor, and solids with their heights."""
-
-    walkable: list[Any] = field(default_factory=list)
-    solids: list[tuple[Any, tuple[float, float]]] = field(default_factory=list)
 
 
 def place_of(spec: FloorPlanFields) -> Place:
@@ -87,14 +65,40 @@ def _place_of(
     spec = model.model_validate_json(words)
     name = "wkt" if file is None else file.name
     plan = _read(spec, file, image, name, told_unit)
+    small = list[Any]()
     floor = shapely.union_all([_repaired(p, name) for p in plan.walkable])
-    floor = _simple(_polygons(floor), spec, name)
+    floor = without_details(_polygons(floor), spec, small)
     solids = [
         (part, heights)
         for shape, heights in plan.solids
-        for part in _simple(_polygons(_repaired(shape, name)), spec, name)
+        for part in without_details(_polygons(_repaired(shape, name)), spec, small)
     ]
-    count = sum(shapely.get_num_coordinates(p) for p in (*floor, *(s for s, _ in solids)))
+    _check(plan, floor, [part for part, _ in solids], spec, name)
+    _tell_small(small, spec, name)
+    faces, around = around_floor(floor, (0.0, spec.wall_height))
+    return Place(
+        faces=faces,
+        solids=(*around, *(as_solid(part, heights) for part, heights in solids)),
+        left_out=tuple(as_solid(p, (0.0, spec.wall_height)).outline for p in small),
+    )
+
+
+def _read(
+    spec: FloorPlanFields, file: Path | None, image: Path | None, name: str, told_unit: bool
+) -> Plan:
+    if spec.read_as == "ros_map":
+        assert file is not None  # the document's validation checked this
+        return Plan(walkable=read_grid(spec, file, image))
+    text = spec.wkt or "" if file is None else input_text(file, _LARGEST, name)
+    return read_vector(spec, text.removeprefix("\ufeff"), name, told_unit)
+
+
+# --------------------------------------------------------------------------------- checks
+def _check(
+    plan: Plan, floor: list[Any], solids: list[Any], spec: FloorPlanFields, name: str
+) -> None:
+    """Refuse a plan without parts, and one with too many or too large ones."""
+    count = sum(shapely.get_num_coordinates(p) for p in (*floor, *solids))
     if not count:
         raise InputError(f"{name}: there is neither a floor nor a wall in it{_too_small(plan)}")
     if count > MOST_CORNERS:
@@ -103,25 +107,10 @@ def _place_of(
             "or 'least_area', or cut a part out of it"
         )
     _check_size(floor, spec, name)
-    check_place([*floor, *(s for s, _ in solids)], spec, name)
-    heights = (0.0, spec.wall_height)
-    return Place(
-        faces=tuple(_face(p, heights) for p in floor),
-        solids=(
-            *(Solid(outline=_ring(h), heights=heights) for p in floor for h in p.interiors),
-            *(
-                Solid(
-                    outline=_ring(s.exterior),
-                    holes=tuple(_ring(hole) for hole in s.interiors),
-                    heights=own,
-                )
-                for s, own in solids
-            ),
-        ),
-    )
+    check_place([*floor, *solids], spec, name)
 
 
-def _too_small(plan: _Plan) -> str:
+def _too_small(plan: Plan) -> str:
     """Describe a plan that is smaller than the smallest kept detail; usually the unit is wrong."""
     shapes = [*plan.walkable, *(shape for shape, _ in plan.solids)]
     if not shapes:
@@ -140,126 +129,22 @@ def _check_size(floor: list[Any], spec: FloorPlanFields, name: str) -> None:
         )
 
 
-def _size(shapes: list[Any]) -> tuple[float, float]:
+def _size(shapes: Sequence[Any]) -> tuple[float, float]:
     x0, y0, x1, y1 = shapely.total_bounds(shapes)
     return float(x1 - x0), float(y1 - y0)
 
 
-def _read(
-    spec: FloorPlanFields, file: Path | None, image: Path | None, name: str, told_unit: bool
-) -> _Plan:
-    if spec.read_as == "ros_map":
-        return _Plan(walkable=[_read_ros_map(spec, file, image)])
-    text = spec.wkt or "" if file is None else input_text(file, _LARGEST, name)
-    if spec.read_as == "wkt":
-        found, crs = [(_from_wkt(text, name), dict[str, Any]())], ""
-    else:
-        content = _from_json(text, name)
-        found, crs = list(_features(content, name)), declared_crs(content)
-    check_numbers([shape for shape, _ in found], spec, name, crs, told_unit)
-    plan = _Plan()
-    for shape, properties in found:
-        _sort_in(in_metres(shape, spec, name), properties, spec, plan, name)
-    return plan
-
-
-def _read_ros_map(spec: FloorPlanFields, file: Path | None, image: Path | None) -> Any:
-    assert file is not None  # the document's validation checked this
-    found = read_map(file)
-    grey = read_grey(image or file.parent / found.image, see_through=found.mode == "scale")
-    cells = free_cells(found, grey, unknown_is_free=spec.unknown == "free")
-    if not cells.any():
-        raise InputError(f"{file.name}: no cell of its image is free")
-    shape = outline_cells(cells, found)
-    if spec.origin != (0.0, 0.0) or spec.rotation:
-        shape = shapely.transform(shape, lambda points: moved(points, spec))
-    tolerance = found.resolution if spec.tolerance is None else spec.tolerance
-    return shapely.simplify(shape, tolerance, preserve_topology=True)
-
-
-# ------------------------------------------------------------------------- vector formats
-def _from_wkt(text: str, name: str) -> Any:
-    _check_depth(text, name)
-    try:
-        return shapely.from_wkt(text.strip())
-    except shapely.errors.ShapelyError as error:
-        raise InputError(f"{name}: is not well-known text: {error}") from error
-
-
-def _check_depth(text: str, name: str) -> None:
-    """Refuse geometries that are nested deeper than the library's stack allows."""
-    depth = 0
-    for found in re.finditer(r"[()]", text):
-        depth += 1 if found[0] == "(" else -1
-        if depth > DEEPEST:
-            line = text.count("\n", 0, found.start()) + 1
-            column = found.start() - text.rfind("\n", 0, found.start())
-            raise InputError(
-                f"{name}: line {line}, column {column}: nested deeper than {DEEPEST} brackets"
-            )
-
-
-def _from_json(text: str, name: str) -> Any:
-    try:
-        return parse_foreign_json(text)
-    except ValueError as error:
-        raise InputError(f"{name}: is not JSON: {error}") from error
-
-
-def _features(content: Any, name: str) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Yield each geometry with its properties."""
-    kind = content.get("type") if isinstance(content, dict) else None
-    if kind == "FeatureCollection":
-        for feature in content.get("features") or ():
-            yield from _features(feature, name)
-    elif kind == "Feature":
-        for shape, _ in _features(content.get("geometry"), name):
-            yield shape, dict(content.get("properties") or {})
-    elif kind in ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "GeometryCollection"):
-        try:
-            with np.errstate(invalid="ignore"):  # NaN is reported separately
-                shape = shape_of(content)
-            yield shape, {}
-        except Exception as error:  # shapely raises many types for wrong nesting
-            raise InputError(f"{name}: a {kind} is damaged: {error}") from error
-    elif kind not in ("Point", "MultiPoint"):
-        raise InputError(f"{name}: is not GeoJSON: a geometry has type {kind!r}")
-
-
-def _sort_in(
-    shape: Any, properties: dict[str, Any], spec: FloorPlanFields, plan: _Plan, name: str
-) -> None:
-    """Add a geometry to the floor or the solids; zones and portals are ignored."""
-    kind = properties.get("kind", "")
-    if kind in ("zone", "portal"):
+def _tell_small(small: list[Any], spec: FloorPlanFields, name: str) -> None:
+    """Warn about pieces that are left out."""
+    if not small:
         return
-    for part in shapely.get_parts(shape) if _is_many(shape) else [shape]:
-        if _is_many(part):
-            _sort_in(part, properties, spec, plan, name)
-        elif part.geom_type in ("LineString", "LinearRing"):
-            wall = shapely.buffer(part, 0.5 * spec.thickness, cap_style="flat", join_style="mitre")
-            plan.solids.append((wall, _heights(properties, spec, name)))
-        elif part.geom_type == "Polygon":
-            solid = kind == "obstacle" or (kind != "walkable" and spec.polygons == "obstacles")
-            if solid:
-                plan.solids.append((part, _heights(properties, spec, name)))
-            else:
-                plan.walkable.append(part)
-
-
-def _is_many(shape: Any) -> bool:
-    return bool(shape.geom_type.startswith("Multi") or shape.geom_type == "GeometryCollection")
-
-
-def _heights(properties: dict[str, Any], spec: FloorPlanFields, name: str) -> tuple[float, float]:
-    try:
-        base = float(properties.get("base", 0.0))
-        top = float(properties.get("height", spec.wall_height))
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{name}: base and height of an obstacle must be numbers") from error
-    if not 0.0 <= base < top < math.inf:
-        raise InputError(f"{name}: an obstacle has base {base:g} m and height {top:g} m")
-    return base, top
+    largest = max(small, key=lambda p: p.area)
+    x, y = largest.representative_point().coords[0]
+    _LOG.warning(
+        "%s: left out: %d piece%s smaller than least_area, %g m²; the largest has %.2g m², "
+        "around (%.2f, %.2f)", name, len(small), "s" * (len(small) > 1), spec.smallest,
+        largest.area, x, y,
+    )  # fmt: skip
 
 
 # ----------------------------------------------------------------------------- polygons
@@ -276,28 +161,3 @@ def _polygons(shape: Any) -> list[Any]:
     parts = shapely.get_parts(shape)
     nested = [shapely.get_parts(p) for p in parts]
     return [p for group in nested for p in group if p.geom_type == "Polygon" and not p.is_empty]
-
-
-def _simple(polygons: list[Any], spec: FloorPlanFields, name: str) -> list[Any]:
-    """Return polygons without details that are too small, in a stable order."""
-    del name
-    found = []
-    for polygon in polygons:
-        if spec.tolerance and spec.read_as != "ros_map":
-            polygon = shapely.simplify(polygon, spec.tolerance, preserve_topology=True)
-        if polygon.area <= max(spec.least_area, 1e-9):
-            continue
-        holes = [h for h in polygon.interiors if shapely.Polygon(h).area > spec.least_area]
-        found.append(shapely.normalize(shapely.Polygon(polygon.exterior, holes)))
-    return sorted(found, key=lambda p: (-p.area, *p.bounds))
-
-
-def _ring(ring: Any) -> outlines.Outline:
-    """Return the corners of a closed ring, counter-clockwise."""
-    points = tuple((float(x) + 0.0, float(y) + 0.0) for x, y in ring.coords[:-1])
-    return points if shapely.is_ccw(ring) else points[::-1]
-
-
-def _face(polygon: Any, heights: tuple[float, float]) -> Face:
-    outline = _ring(polygon.exterior)
-    return Face(points=(*outline, outline[0]), heights=heights)

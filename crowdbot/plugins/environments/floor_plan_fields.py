@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import Annotated, Literal
 
-from annotated_types import Le
+from annotated_types import Ge, Le
 from pydantic import Field, model_validator
 
 from crowdbot.plugin import (
@@ -24,6 +24,8 @@ _SUFFIXES: dict[str, Format] = {
 }  # fmt: skip
 
 
+#: Smallest pieces of a plan in GeoJSON or WKT that are kept, m^2.
+_LEAST_AREA = 0.02
 #: National grids have numbers of this size.
 _FarLength = Annotated[float, Quantity("length", most=1e8)]
 
@@ -39,7 +41,7 @@ class FloorPlanFields(EnvironmentSpec):
     image: Asset | None = Field(
         default=None,
         description="Image of an occupancy grid, PGM or PNG; without it the one that the "
-        "`map.yaml` names.",
+        "`map.yaml` names, or the one of that name beside it where it names an absolute path.",
     )
     wkt: str | None = Field(
         default=None, description="The geometry as well-known text; this or `file`."
@@ -66,13 +68,20 @@ class FloorPlanFields(EnvironmentSpec):
     unknown: Literal["solid", "free"] = Field(
         default="solid", description="What cells of a grid are that are neither free nor occupied."
     )
+    level: str | int | float | None = Field(
+        default=None,
+        description="Storey to read, if the features of GeoJSON name several as `level`, `storey` "
+        "or `story`, or lie at different heights.",
+    )
     tolerance: NonNegativeLength | None = Field(
         default=None,
         description="Outlines are simplified by at most this, m; without it 0 in GeoJSON and WKT, "
-        "and one cell in a grid.",
+        "and half a cell in a grid, so that no cell's centre changes sides.",
     )
-    least_area: Annotated[float, Le(100)] = Field(
-        default=0.02, ge=0.0, description="Smaller pieces and holes are left out, m^2."
+    least_area: Annotated[float, Ge(0), Le(100)] | None = Field(
+        default=None,
+        description="Smaller pieces and holes are left out, with a warning, m^2; without it 0.02 "
+        "in GeoJSON and WKT, and 0 in a grid.",
     )
     thickness: PositiveLength = Field(default=0.1, description="Of lines that are walls, m.")
     wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
@@ -94,6 +103,13 @@ class FloorPlanFields(EnvironmentSpec):
         if self.format != "auto" or self.file is None:
             return "wkt" if self.format == "auto" else self.format
         return _SUFFIXES[self._suffix]
+
+    @property
+    def smallest(self) -> float:
+        """Return the area of the smallest pieces that are kept, m^2."""
+        if self.least_area is not None:
+            return self.least_area
+        return 0.0 if self.read_as == "ros_map" else _LEAST_AREA
 
     @property
     def _suffix(self) -> str:

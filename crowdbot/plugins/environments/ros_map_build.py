@@ -7,24 +7,25 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Any, Literal
 
 import numpy as np
-import shapely  # type: ignore[import-untyped,unused-ignore]
 from numpy.typing import NDArray
 
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes
 from crowdbot.dsl.text.plain_document import read_document
 from crowdbot.errors import SpecError
-from crowdbot.plugin import InputError, did_you_mean, nearest
+from crowdbot.plugin import Array, InputError, did_you_mean, nearest
 
 #: Largest image, px; anything larger is a mistake.
 MOST_PIXELS = 64_000_000
 #: Default thresholds, those of ROS, by which the grey 205 is unknown.
 _OCCUPIED, _FREE = 0.65, 0.196
-#: Interpretations of pixels, the default first.
-_MODES = ("trinary", "scale", "raw")
+Alpha = Literal["averaged", "unknown", "ignored"]
+#: Interpretations of pixels, the default first, and what opacity means in each.
+_OPACITY: dict[str, Alpha] = {"trinary": "averaged", "scale": "unknown", "raw": "ignored"}
+_MODES = tuple(_OPACITY)
 _HEADER = re.compile(rb"(P[25])\s+((?:#[^\n]*\n\s*)*)(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s+"
                      rb"(?:#[^\n]*\n\s*)*(\d+)\s")  # fmt: skip
 
@@ -40,7 +41,7 @@ class RosMap:
         negate: True if dark cells are free.
         occupied, free: probability above which a cell is occupied, below which it is free.
         mode: ``raw``: pixels are per cent, from 0 to 100; ``scale``: as ``trinary``, but
-            transparent pixels are unknown.
+            transparent pixels are unknown; ``trinary``: opacity counts as one more colour.
     """
 
     image: str
@@ -50,6 +51,22 @@ class RosMap:
     occupied: float
     free: float
     mode: str = "trinary"
+
+    @property
+    def alpha(self) -> Alpha:
+        """Return what the opacity of pixels means: see `read_grey`."""
+        return _OPACITY[self.mode]
+
+    def image_beside(self, file: Path) -> Path:
+        """Return the image of a ``map.yaml``: where it says, or beside it for an absolute path."""
+        return file.parent / relative_image(self.image)
+
+    def at(self, points: Array) -> Array:
+        """Return points (N, 2), cells from the lower left corner, in the map's frame, m."""
+        c, s = np.cos(self.origin[2]), np.sin(self.origin[2])
+        turn = self.resolution * np.array([[c, -s], [s, c]])
+        found: Array = points @ turn.T + self.origin[:2]
+        return found
 
     def occupancy(self, grey: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the probability that each pixel (H, W), grey 0 to 1, is occupied; NaN: unknown."""
@@ -105,18 +122,30 @@ def _number(name: str, value: Any) -> float:
 
 
 def image_of(file: Path) -> str | None:
-    """Return the image path that a ``map.yaml`` names, or None if it is not one."""
+    """Return the path of the image of a ``map.yaml`` from its folder, or None if it is not one."""
     try:
-        return read_map(file).image
+        return relative_image(read_map(file).image)
     except InputError:
         return None
 
 
-def read_grey(file: Path, *, see_through: bool = False) -> NDArray[np.float64]:
+def relative_image(image: str) -> str:
+    """Return a path that can be copied to another machine with its map.
+
+    ROS 1 writes where the image lay: of an absolute path only the name counts.
+    """
+    for path in (PurePosixPath(image), PureWindowsPath(image)):
+        if path.is_absolute():
+            return path.name
+    return image
+
+
+def read_grey(file: Path, alpha: Alpha = "ignored") -> NDArray[np.float64]:
     """Read a PGM or PNG image as grey values (H, W) from 0 to 1; the first row is on top.
 
     Args:
-        see_through: turn transparent pixels into NaN.
+        alpha: what opacity means where the image has it: ``averaged`` with the colours;
+            ``unknown``: pixels that are not opaque become NaN; ``ignored``.
 
     Raises:
         InputError: it is neither PGM nor PNG.
@@ -125,7 +154,7 @@ def read_grey(file: Path, *, see_through: bool = False) -> NDArray[np.float64]:
     if content[:2] in (b"P2", b"P5"):
         return _read_pgm(file.name, content)
     if content[:4] == b"\x89PNG":
-        return _read_png(file, content, see_through=see_through)
+        return _read_png(file, content, alpha)
     raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image")
 
 
@@ -149,20 +178,31 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
     return cells.astype(np.float64).reshape(height, width) / most
 
 
-def _read_png(file: Path, content: bytes, *, see_through: bool) -> NDArray[np.float64]:
-    from matplotlib.image import imread
+def _read_png(file: Path, content: bytes, alpha: Alpha) -> NDArray[np.float64]:
+    from PIL import Image
 
     width, height = (int.from_bytes(content[k : k + 4], "big") for k in (16, 20))
     if not 0 < width * height <= MOST_PIXELS:  # before its pixels are unpacked
         raise InputError(f"{file.name}: {width} x {height} pixels are not an image of a map")
     try:
-        image: Any = np.asarray(imread(file), np.float64)
+        with Image.open(file) as image:
+            return _grey(image, alpha)
     except Exception as error:  # its decoders raise many types
         raise InputError(f"{file.name}: is a damaged PNG image: {error}") from error
-    if image.ndim == 3:
-        clear = (image[..., 3:] < 1.0).any(axis=2) & see_through
-        image = np.where(clear, np.nan, image[..., :3].mean(axis=2))
-    return np.asarray(image, np.float64)
+
+
+def _grey(image: Any, alpha: Alpha) -> NDArray[np.float64]:
+    """Return the mean of a pixel's colours, as nav2's map server takes it."""
+    if image.mode.startswith("I"):  # 16 bits
+        return np.asarray(image, np.float64) / 65535.0
+    see_through = image.mode in ("LA", "PA", "RGBA") or "transparency" in image.info
+    values = np.asarray(image.convert("RGBA" if see_through else "RGB"), np.float64) / 255.0
+    if see_through and alpha == "averaged":
+        return np.asarray(values.mean(axis=2))
+    grey = values[..., :3].mean(axis=2)
+    if see_through and alpha == "unknown":
+        grey = np.where(values[..., 3] < 1.0, np.nan, grey)
+    return np.asarray(grey)
 
 
 def free_cells(
@@ -171,16 +211,3 @@ def free_cells(
     """Return a mask of walkable cells (H, W)."""
     probability = found.occupancy(grey)
     return ~(probability > found.occupied) if unknown_is_free else probability < found.free
-
-
-def outline_cells(free: NDArray[np.bool_], found: RosMap) -> Any:
-    """Return the free cells as a shapely (multi)polygon, world frame, m."""
-    boxes = []
-    for row, cells in enumerate(free[::-1]):  # from the bottom row up
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], cells.astype(np.int8), [0]])))
-        boxes.append(np.array([(a, row, b, row + 1) for a, b in edges.reshape(-1, 2)]))
-    table = np.concatenate([np.zeros((0, 4)), *(b for b in boxes if len(b))])
-    shape = shapely.union_all(shapely.box(*table.T))
-    c, s = np.cos(found.origin[2]), np.sin(found.origin[2])
-    turn = found.resolution * np.array([[c, -s], [s, c]])
-    return shapely.transform(shape, lambda p: p @ turn.T + found.origin[:2])

@@ -107,8 +107,9 @@ class Ultrasound:
             nearest[0] = _nearest(distance, self._reach)
         else:
             nearest[0] = _nearest_at_all(
-                x, y, z, yaw, self._reach, longest, self._narrow, *grid.arrays, *scene.obstacles
-            )
+                x, y, z, yaw, self._reach, longest, self._narrow, *grid.arrays,
+                *scene.obstacles_near(x, y, longest),
+            )  # fmt: skip
         return own.measure(nearest, rng)
 
 

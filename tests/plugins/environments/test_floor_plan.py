@@ -256,14 +256,26 @@ def test_raw_pixels_are_per_cent(tmp_path: Path, negate: int) -> None:
     assert _solid_area(unknown) == 0.0
 
 
-@pytest.mark.parametrize(("mode", "solid"), [("trinary", 0.0), ("scale", 1.0)])
-def test_what_is_transparent_is_unknown_in_mode_scale(
-    tmp_path: Path, mode: str, solid: float
+@pytest.mark.parametrize(
+    ("mode", "colour", "alpha", "solid"),
+    [
+        ("scale", 1.0, 0.0, 1.0),  # unknown
+        ("trinary", 1.0, 0.0, 1.0),  # shade (3 + 0) / 4: unknown
+        ("trinary", 1.0, 0.5, 0.0),  # shade (3 + 0.5) / 4: free
+        ("trinary", 0.8, 1.0, 0.0),  # shade (2.4 + 1) / 4: free, unknown without opacity
+        ("raw", 0.0, 0.0, 0.0),  # per cent, whatever the opacity
+    ],
+)
+def test_transparent_pixels_mean_what_they_mean_to_nav2(
+    tmp_path: Path, mode: str, colour: float, alpha: float, solid: float
 ) -> None:
     from matplotlib.image import imsave
 
     cells = np.ones((6, 8, 4))
-    cells[[0, -1], :, :3], cells[:, [0, -1], :3], cells[2:4, 3:5, 3] = 0.0, 0.0, 0.0
+    cells[..., :3] = 0.0 if mode == "raw" else 1.0
+    border = 100 / 255 if mode == "raw" else 0.0
+    cells[[0, -1], :, :3], cells[:, [0, -1], :3] = border, border
+    cells[2:4, 3:5] = colour, colour, colour, alpha
     imsave(tmp_path / "m.png", cells)
     text = f"image: m.png\nresolution: 0.5\norigin: [0, 0, 0]\nmode: {mode}\n"
     parts = _plan(file=_file(tmp_path, "map.yaml", text), tolerance=0.0)

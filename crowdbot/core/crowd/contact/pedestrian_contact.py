@@ -12,9 +12,10 @@ from crowdbot.core.crowd.state import (
     People,
 )
 from crowdbot.core.crowd.traits import TraitsRecord
+from crowdbot.core.geometry.segment_grid import cell_of
 from crowdbot.core.support.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows, record_type
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Indices
 
 
 class PlacedRecord:
@@ -40,16 +41,24 @@ def push_apart(
     traits: Rows[TraitsRecord],
     order: NDArray[np.int64],
     walls: Array,
+    frame: Array,
+    first: Indices,
+    near: Indices,
     discs: Array,
+    pillars: int,
     placed: Rows[PlacedRecord],
+    room: Array,
 ) -> None:
     """Push of overlapping people, walls and fixed discs, m/s^2, into ``push_x`` and ``push_y``.
 
     Args:
         order: (N,) all agents in any order; sorted by x afterwards.
         walls: (S, 4) segments.
+        frame, first, near: their `SegmentGrid`, whose reach is at least the largest radius.
         discs: (D, 3) x, y, radius: pillars, and people as they appear across a border.
+        pillars: number of pillars.
         placed: (N,) scratch.
+        room: (N,) output: as of `crowdbot.core.crowd.parameters.Scratch`.
     """
     largest = 0.0
     for i in range(agents.shape[0]):
@@ -57,12 +66,19 @@ def push_apart(
     _sort_along_x(agents, order)
     count = _place(agents, traits, order, placed)
     for a in range(count):
-        _push_by_walls(placed, a, walls)
+        cell = cell_of(frame, placed[a].x, placed[a].y)
+        gap = math.inf
+        if cell >= 0:
+            gap = _push_by_walls(placed, a, walls, near, first[cell], first[cell + 1])
         for d in range(discs.shape[0]):
             reach = placed[a].radius + discs[d, 2]
-            px, py = _push(placed[a].x - discs[d, 0], placed[a].y - discs[d, 1], reach)
+            dx, dy = placed[a].x - discs[d, 0], placed[a].y - discs[d, 1]
+            px, py = _push(dx, dy, reach)
+            if d < pillars and dx * dx + dy * dy < reach * reach:
+                gap = min(gap, math.sqrt(dx * dx + dy * dy) - discs[d, 2])
             placed[a].push_x += placed[a].stiffness * px
             placed[a].push_y += placed[a].stiffness * py
+        room[int(placed[a].row)] = gap
         x, y, own = placed[a].x, placed[a].y, placed[a].radius
         for b in range(a + 1, count):
             if placed[b].x - x >= own + largest:
@@ -134,10 +150,14 @@ def _push_pair(placed: Rows[PlacedRecord], a: int, b: int, reach: float) -> None
 
 
 @inline_kernel
-def _push_by_walls(placed: Rows[PlacedRecord], a: int, walls: Array) -> None:
+def _push_by_walls(
+    placed: Rows[PlacedRecord], a: int, walls: Array, near: Indices, begin: int, end: int
+) -> float:
+    """Push a person; return the distance of its centre from the nearest wall that it overlaps."""
     x, y, radius = placed[a].x, placed[a].y, placed[a].radius
-    clear = radius + _CLEAR
-    for s in range(walls.shape[0]):
+    clear, nearest2 = radius + _CLEAR, math.inf
+    for k in range(begin, end):
+        s = near[k]
         ax, ay, bx, by = walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3]
         if y < min(ay, by) - clear or y > max(ay, by) + clear:
             continue
@@ -147,6 +167,8 @@ def _push_by_walls(placed: Rows[PlacedRecord], a: int, walls: Array) -> None:
         px, py = _push(x - nx, y - ny, radius)
         placed[a].push_x += placed[a].stiffness * px
         placed[a].push_y += placed[a].stiffness * py
+        nearest2 = min(nearest2, (x - nx) * (x - nx) + (y - ny) * (y - ny))
+    return math.sqrt(nearest2)
 
 
 __all__ = ["PLACED", "PlacedRecord", "push_apart"]

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.steering.moment import Moment
+from crowdbot.core.geometry.segment_grid import cell_of, grid_of
 from crowdbot.core.support.compile import kernel
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.dsl.scenario.steering import WallPushSpec
 
 #: Largest push by one wall, m/s^2.
@@ -19,22 +22,29 @@ _LEAST = 4.6  # e-folds: 1 %
 def push_off_walls(part: WallPushSpec, now: Moment, wanted: Array) -> None:
     """Add the pushes of all walls to accelerations (N, 2), m/s^2, in place."""
     view = now.view
+    radius = view.agents.avoided_radius
+    grid = grid_of(view.walls, float(np.max(radius, initial=0.0)) + _LEAST * part.reach)
     _push_all(
-        now.near.decides, view.position, view.agents.avoided_radius, view.walls,
-        part.strength, part.reach, wanted,
+        now.near.decides, view.position, radius, view.walls, *grid, part.strength, part.reach,
+        wanted,
     )  # fmt: skip
 
 
 @kernel
 def _push_all(
     decides: Mask, position: Array, radius: Array, walls: Array,
+    frame: Array, first: Indices, near: Indices,
     strength: float, reach: float, wanted: Array,
 ) -> None:  # fmt: skip
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
         x, y, far = position[i, 0], position[i, 1], radius[i] + _LEAST * reach
-        for s in range(walls.shape[0]):
+        cell = cell_of(frame, x, y)
+        if cell < 0:
+            continue
+        for k in range(first[cell], first[cell + 1]):
+            s = near[k]
             ax, ay, bx, by = walls[s, 0], walls[s, 1], walls[s, 2], walls[s, 3]
             if min(ax, bx) - far > x or max(ax, bx) + far < x:
                 continue

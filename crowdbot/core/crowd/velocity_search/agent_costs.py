@@ -51,7 +51,10 @@ def prepare(
     near_count = gather(
         around.table, around.starts, around.low, around.height, b, around.reach, near
     )
-    wall_count = gather_walls(around.walls, agent.px, agent.py, around.reach, found)
+    wall_count = gather_walls(
+        around.walls, around.grid_frame, around.grid_first, around.grid_cells,
+        agent.px, agent.py, around.reach, found,
+    )  # fmt: skip
     terms = 0
     for k in range(weights.shape[0]):
         items = call_prepare(

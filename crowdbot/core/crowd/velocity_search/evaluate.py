@@ -67,7 +67,10 @@ class Evaluator:
                 around.table, around.starts, around.low, around.height, b, around.reach, around.near
             )
             px, py, radius = (float(agent[name][0]) for name in ("px", "py", "radius"))
-            walls = gather_walls(around.walls, px, py, around.reach, around.found)
+            walls = gather_walls(
+                around.walls, around.grid_frame, around.grid_first, around.grid_cells,
+                px, py, around.reach, around.found,
+            )  # fmt: skip
             seen, tried = immutable_fields(_agent_view(agent)), immutable(velocities[i])
             for cost in self.costs.vectorised:
                 others = immutable_fields(
@@ -129,7 +132,8 @@ def _columns(rows: Rows[Any], chosen: Mask, *names: str) -> Array:
 @kernel
 def _evaluate(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
+    traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord], functions: Functions, weights: Array,
     active: Indices, velocities: Array, total: Array,
@@ -142,8 +146,8 @@ def _evaluate(
         active: (K,) scratch.
     """
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, deciding,
+        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]
     for b in range(table.shape[0]):

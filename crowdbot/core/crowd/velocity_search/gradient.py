@@ -69,7 +69,8 @@ class Descent:
 @kernel
 def _descend(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
+    traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord], functions: Functions, weights: Array, active: Indices, out: Array,
     result: Array,
@@ -82,8 +83,8 @@ def _descend(
         active, out: (K,), (2,) scratch.
     """
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, deciding,
+        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]
     for b in range(table.shape[0]):

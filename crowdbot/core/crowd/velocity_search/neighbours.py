@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.velocity_search.records import NeighbourRecord, WallRecord
+from crowdbot.core.geometry.segment_grid import cell_of
 from crowdbot.core.support.compile import array_kernel, inline_kernel, kernel
 from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.support.stable_order import stable_order
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Indices
 
 
 class DiscRecord:
@@ -136,16 +137,22 @@ def gather(
 
 @inline_kernel
 def gather_walls(
-    walls: Array, px: float, py: float, distance: float, found: Rows[WallRecord]
-) -> int:
+    walls: Array, frame: Array, first: Indices, cells: Indices,
+    px: float, py: float, distance: float, found: Rows[WallRecord],
+) -> int:  # fmt: skip
     """Write the segments within ``distance`` to ``found``; return their number.
 
     Args:
         walls: (S, 4) ends of segments, m.
+        frame, first, cells: their `SegmentGrid`, whose reach is at least the distance.
         found: (>= S,) output.
     """
     count = 0
-    for s in range(walls.shape[0]):
+    cell = cell_of(frame, px, py)
+    if cell < 0:
+        return 0
+    for k in range(first[cell], first[cell + 1]):
+        s = cells[k]
         ax, ay, bx, by = walls[s, 0] - px, walls[s, 1] - py, walls[s, 2] - px, walls[s, 3] - py
         if min(ax, bx) > distance or max(ax, bx) < -distance:
             continue

@@ -170,7 +170,8 @@ def _tabulate(
 @kernel
 def _choose(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
+    traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord],
     functions: Functions, weights: Array,
@@ -195,8 +196,8 @@ def _choose(
         chosen: (N, 2) result, m/s.
     """
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, deciding,
+        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]
     options = FanOptions(base, direction, radius, half, drawn)
@@ -243,7 +244,8 @@ def _choose(
 @kernel
 def _candidates_of(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
-    walls: Array, reach: float, traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
+    walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
+    traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
     deciding: Rows[AgentRecord],
     base: int, direction: int, radius: int, half: float, drawn: bool,
@@ -251,8 +253,8 @@ def _candidates_of(
 ) -> None:  # fmt: skip
     """Write the candidates of all agents (N, S, 2), m/s; arguments as of `_choose`."""
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, reach, traits, settings, random, near,
-        found, deciding,
+        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]
     options = FanOptions(base, direction, radius, half, drawn)

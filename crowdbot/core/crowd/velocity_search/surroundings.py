@@ -21,7 +21,7 @@ from crowdbot.core.crowd.velocity_search.neighbours import (
 from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
 from crowdbot.core.support.compile import array_kernel, inline_kernel
 from crowdbot.core.support.records import Rows, record_type
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
 class DecisionTraitsRecord:
@@ -55,6 +55,7 @@ class Surroundings(NamedTuple):
         who: (N,) True for agents whose choice is wanted.
         goal: (N, 2), m.
         walls: (S, 4) both ends of segments, m.
+        grid_frame, grid_first, grid_cells: their `SegmentGrid`.
         reach: largest centre distance at which a neighbour may count, m.
         traits: (N,) of the agents.
         settings: (1,) for all.
@@ -70,6 +71,9 @@ class Surroundings(NamedTuple):
     who: Mask
     goal: Array
     walls: Array
+    grid_frame: Array
+    grid_first: Indices
+    grid_cells: Indices
     reach: float
     traits: Rows[DecisionTraitsRecord]
     settings: Rows[SettingsRecord]

@@ -43,6 +43,7 @@ from crowdbot.core.crowd.velocity_search.surroundings import (
     Surroundings,
     sort_surroundings,
 )
+from crowdbot.core.geometry.segment_grid import grid_of
 from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
 
@@ -147,8 +148,8 @@ class WeightedCosts:
         return Surroundings(
             self._table[:count], starts, low, height,
             view.present if view.decides is None else view.present & view.decides,
-            view.goal, view.walls, reach, self.traits, self._settings, self.random, self._near,
-            self._found, self._deciding,
+            view.goal, view.walls, *grid_of(view.walls, reach), reach, self.traits,
+            self._settings, self.random, self._near, self._found, self._deciding,
         )  # fmt: skip
 
     def _make_room(self, discs: int, walls: int) -> None:

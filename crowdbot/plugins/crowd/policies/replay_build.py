@@ -25,6 +25,8 @@ from crowdbot.plugins.crowd.policies.velocity_space_build import build as veloci
 class Replay:
     """Keeps the recorded speed, and returns to the record after a push."""
 
+    walks_through_walls = True
+
     def __init__(self, record: RecordedCrowd, contact_stiffness: float = 0.0) -> None:
         self._record = record
         self.contact_stiffness = contact_stiffness

@@ -14,6 +14,7 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.pedestrian_contact import PLACED, push_apart
 from crowdbot.core.crowd.traits import TRAITS
+from crowdbot.core.geometry.segment_grid import segment_grid
 from crowdbot.core.support.records import rows_in, rows_of
 from tests.core.crowd.crowd_reference import Array, agents_of
 from tests.core.crowd.crowd_worlds import TICKS, rows, unmoved, walkers
@@ -38,8 +39,11 @@ def _push_apart(
 ) -> None:
     traits = rows_of(len(people), TRAITS)
     traits["radius"][:], traits["push"][:] = radius, stiffness
-    placed = rows_of(len(people), PLACED)
-    push_apart(rows_in(people, s.PERSON), traits, order, walls, discs, placed)
+    placed, room = rows_of(len(people), PLACED), np.zeros(len(people))
+    grid = segment_grid(walls, float(np.max(radius)))
+    push_apart(
+        rows_in(people, s.PERSON), traits, order, walls, *grid, discs, len(discs), placed, room
+    )
 
 
 def _push(people: Array, radius: float = 0.33, walls: Array | None = None) -> Array:

@@ -1,0 +1,156 @@
+"""How much more does a building with many walls cost than an empty hall?
+
+One process measures both in turn: a decision of 200 people, a tick, the rays of a lidar and of a
+layered one, a depth image, and the search for ways. The building has rooms of 3.5 m x 5 m with
+doors along corridors, as many segments as asked for; both floors have the same size and people.
+
+    python benchmarks/buildings.py --segments 2000
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.routing.parameters import WayFinding
+from crowdbot.core.sensing.depth_renderer import DepthRenderer
+from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.plugin import Pinhole
+
+Array = NDArray[np.float64]
+ROOM, DEPTH, AISLE, DOOR, WALL = 3.5, 5.0, 2.5, 1.0, 0.1  # m
+POLICY = {"kind": "velocity_space", "relaxation_time": 0.5}
+COSTS: dict[str, dict[str, object]] = {
+    "mid_term": {"kind": "ttca_dca", "weight": 20.0, "range": 5.0},
+    "reflex": {"kind": "rvo", "range": {"value": 0.3, "measure": "surface"}},
+}
+
+
+def building(segments: int) -> tuple[Array, Array, float]:
+    """Walls (S, 4) of rooms, the middles (R, 2) of these, and the side of the hall, m."""
+    rows = max(1, round(math.sqrt(segments / 14 * ROOM / (DEPTH + AISLE))))
+    columns = math.ceil(segments / 14 / rows)
+    walls, middles = list[list[float]](), list[tuple[float, float]]()
+    for row in range(rows):
+        for column in range(columns):
+            x, y = column * ROOM, row * (DEPTH + AISLE)
+            a, b = x + 0.5 * (ROOM - DOOR), x + 0.5 * (ROOM + DOOR)
+            top = y + DEPTH
+            for x0, x1 in ((x, a), (b, x + ROOM)):  # the front, left and right of the door
+                box = [(x0, top), (x1, top), (x1, top + WALL), (x0, top + WALL)]
+                walls += [[*p, *q] for p, q in zip(box, [*box[1:], box[0]], strict=True)]
+            walls += [[x, y, x + ROOM, y], [x, y, x, top], [x + ROOM, y, x + ROOM, top]]
+            walls += [[x + 1.0, y + 1.0, x + 1.6, y + 1.0], [x + 1.6, y + 1.0, x + 1.6, y + 1.4]]
+            walls += [[x + 1.0, y + 1.0, x + 1.0, y + 1.4]]
+            middles.append((x + 0.5 * ROOM, y + 0.6 * DEPTH))
+    side = max(columns * ROOM, rows * (DEPTH + AISLE))
+    return np.array(walls[:segments]), np.array(middles), side
+
+
+def hall(side: float) -> Array:
+    """The four walls around."""
+    corners = [(-1.0, -1.0), (side + 1.0, -1.0), (side + 1.0, side + 3.0), (-1.0, side + 3.0)]
+    return np.array([[*a, *b] for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)])
+
+
+def people(middles: Array, count: int) -> Agents:
+    """People in rooms, each on the way to another one."""
+    rng = np.random.default_rng(1)
+    start = middles[np.arange(count) % len(middles)] + rng.uniform(-0.4, 0.4, (count, 2))
+    end = middles[rng.permutation(np.arange(count) % len(middles))]
+    routes = [[(float(x), float(y))] for x, y in end]
+    return Agents.of(x=start[:, 0], y=start[:, 1], radius=0.2, preferred_speed=1.3, routes=routes)
+
+
+def least(function: Callable[[], object], rounds: int) -> float:
+    """The least processor time of several calls, us."""
+    times = []
+    for _ in range(rounds):
+        begin = time.process_time_ns()
+        function()
+        times.append(time.process_time_ns() - begin)
+    return min(times) / 1000.0
+
+
+def crowd(
+    walls: Array, agents: Agents, routing: WayFinding | None
+) -> dict[str, Callable[[], object]]:
+    """What to measure of a crowd: whole steps with and without a decision."""
+    engine = CrowdEngine(agents, CrowdWorld(walls=walls, routing=routing), policy_of(POLICY, COSTS))
+    first = engine.initial_state()
+    for _ in range(32):
+        engine.advance(first)
+    flat = first.copy()
+
+    def step(tick: int) -> Callable[[], object]:
+        def run() -> None:
+            flat[:] = first
+            flat[s.TICK] = tick
+            engine.advance(flat)
+
+        return run
+
+    begin = int(first[s.TICK])
+    return {"with": step(begin), "without": step(begin + 1)}
+
+
+def rays(walls: Array, middles: Array) -> dict[str, Callable[[], object]]:
+    """What to measure of sensors: one reading in each of several rooms."""
+    scene = Scene(walls, (0.0, 2.5), np.zeros(0), 1.7)
+    lidar = RayGrid(np.linspace(-math.pi, math.pi, 720, endpoint=False), [0.0])
+    layered = RayGrid(
+        np.linspace(-math.pi, math.pi, 360, endpoint=False), np.linspace(-0.3, 0.3, 8)
+    )
+    camera = DepthRenderer(Pinhole(width=160, height=120, focal=138.0), 0.4, 8.0)
+    spots = [(float(x), float(y), 0.6) for x, y in middles[:: max(1, len(middles) // 10)]]
+    return {
+        "lidar, 720 rays, 10 m": lambda: [scene.cast_grid(lidar, at, 0.0, 10.0) for at in spots],
+        "lidar, 8 layers": lambda: [scene.cast_grid(layered, at, 0.0, 10.0) for at in spots],
+        "depth image": lambda: [scene.render_depth(camera, at, 0.0) for at in spots],
+    }
+
+
+def measured(walls: Array, middles: Array, count: int, rounds: int) -> dict[str, float]:
+    """Microseconds of each thing."""
+    agents = people(middles, count)
+    straight, routed = crowd(walls, agents, None), crowd(walls, agents, WayFinding())
+    tick = least(straight["without"], rounds)
+    decision = least(straight["with"], rounds) - tick
+    found = {
+        "tick": tick,
+        f"decision of {count} people": decision,
+        "ways, one decision": least(routed["with"], rounds) - tick - decision,
+    }
+    return found | {name: least(run, rounds) for name, run in rays(walls, middles).items()}
+
+
+def main() -> None:
+    """Print microseconds and ratios."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--segments", type=int, default=2000)
+    parser.add_argument("--people", type=int, default=200)
+    parser.add_argument("--rounds", type=int, default=30)
+    parser.add_argument("--json", action="store_true")
+    given = parser.parse_args()
+    walls, middles, side = building(given.segments)
+    empty = measured(hall(side), middles, given.people, given.rounds)
+    full = measured(walls, middles, given.people, given.rounds)
+    if given.json:
+        print(json.dumps({"empty": empty, "full": full}, indent=1))
+        return
+    print(f"{'':26}{'empty':>10}{len(walls):>10} segments   ratio")
+    for name, one in empty.items():
+        print(f"{name:26}{one:10.1f}{full[name]:10.1f} us {full[name] / one:15.2f}")
+
+
+if __name__ == "__main__":
+    main()

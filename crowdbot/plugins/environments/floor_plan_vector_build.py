@@ -1,0 +1,290 @@
+"""GeoJSON and WKT: read geometries, what each of them is, and on which storey it lies."""
+
+from __future__ import annotations
+
+import logging
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped,unused-ignore]
+from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
+
+from crowdbot.core.support.strict_json import DEEPEST, parse_foreign_json
+from crowdbot.plugin import InputError, did_you_mean, nearest
+from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
+from crowdbot.plugins.environments.floor_plan_units_build import (
+    UNITS,
+    check_numbers,
+    declared_crs,
+    in_metres,
+)
+
+_LOG = logging.getLogger(__name__)
+#: The values of the property ``kind``, and which of them are solid, floor, or neither.
+_SOLID, _FLOOR, _NEITHER = ("obstacle", "wall"), ("walkable",), ("zone", "portal")
+_KINDS = (*_FLOOR, *_SOLID, *_NEITHER)
+_WITH_SIDES = ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "GeometryCollection")
+_POINTS = ("Point", "MultiPoint")
+#: Properties that name a storey.
+_LEVELS = ("level", "storey", "story")
+#: Geometries at heights that differ by more lie on different storeys, m.
+_STOREY = 2.0
+#: Part of the floor that may be covered twice without a warning.
+_COVERED_TWICE = 0.25
+_CURVE = re.compile(r"(COMPOUND|MULTI)?CURVE(POLYGON)?|CIRCULARSTRING|MULTISURFACE", re.IGNORECASE)
+_SRID = re.compile(r"\s*SRID\s*=\s*\d+\s*;", re.IGNORECASE)
+
+
+@dataclass
+class Plan:
+    """The parsed plan: the walkable floor, and solids with their heights."""
+
+    walkable: list[Any] = field(default_factory=list)
+    solids: list[tuple[Any, tuple[float, float]]] = field(default_factory=list)
+
+
+_Found = tuple[Any, dict[str, Any]]
+
+
+def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) -> Plan:
+    """Return the plan in a text of WKT or GeoJSON.
+
+    Args:
+        spec: says which of both, and how numbers become metres.
+        text: without a byte order mark.
+        name: the file's name, for messages.
+        told_unit: True if the document gives the unit.
+
+    Raises:
+        InputError: it is not a plan, or one of several storeys.
+    """
+    aside = Counter[str]()
+    if spec.read_as == "wkt":
+        found, crs = [(_from_wkt(text, name), dict[str, Any]())], ""
+    else:
+        content = _from_json(text, name)
+        found, crs = list(_features(content, name, aside)), declared_crs(content)
+    if all(shape.is_empty for shape, _ in found):
+        raise InputError(f"{name}: the plan is empty")
+    found = [one for one in found if _is_of_place(*one, name, aside)]
+    if aside:
+        listed = ", ".join(f"{count} feature(s) {what}" for what, count in sorted(aside.items()))
+        _LOG.warning("%s: left out: %s", name, listed)
+    found = _on_one_storey([one for one in found if not one[0].is_empty], spec, name)
+    check_numbers([shape for shape, _ in found], spec, name, crs, told_unit)
+    plan = Plan()
+    for shape, properties in found:
+        _sort_in(in_metres(shape, spec, name), properties, spec, plan, name)
+    _check_cover(plan.walkable, name)
+    return plan
+
+
+def _from_wkt(text: str, name: str) -> Any:
+    curve = _CURVE.search(text)
+    if curve:
+        raise InputError(
+            f"{name}: {curve[0].upper()}: curves are not read; replace them by lines "
+            "(ST_CurveToLine in PostGIS)"
+        )
+    _check_depth(text, name)
+    try:
+        return shapely.from_wkt(_SRID.sub("", text.strip(), count=1))
+    except shapely.errors.ShapelyError as error:
+        raise InputError(f"{name}: is not well-known text: {error}") from error
+
+
+def _check_depth(text: str, name: str) -> None:
+    """Refuse geometries that are nested deeper than the library's stack allows."""
+    depth = 0
+    for found in re.finditer(r"[()]", text):
+        depth += 1 if found[0] == "(" else -1
+        if depth > DEEPEST:
+            line = text.count("\n", 0, found.start()) + 1
+            column = found.start() - text.rfind("\n", 0, found.start())
+            raise InputError(
+                f"{name}: line {line}, column {column}: nested deeper than {DEEPEST} brackets"
+            )
+
+
+def _from_json(text: str, name: str) -> Any:
+    try:
+        return parse_foreign_json(text)
+    except ValueError as error:
+        raise InputError(f"{name}: is not JSON: {error}") from error
+
+
+def _features(content: Any, name: str, aside: Counter[str]) -> Iterator[_Found]:
+    """Yield each geometry with its properties; count what has no place."""
+    kind = content.get("type") if isinstance(content, dict) else None
+    if kind == "FeatureCollection":
+        features = content.get("features") or ()
+        if not isinstance(features, list):
+            raise InputError(f"{name}: is not GeoJSON: 'features' is not a list")
+        for feature in features:
+            yield from _features(feature, name, aside)
+    elif kind == "Feature":
+        properties, geometry = content.get("properties") or {}, content.get("geometry")
+        if not isinstance(properties, dict):
+            raise InputError(f"{name}: is not GeoJSON: a feature's properties are not an object")
+        if geometry is None:
+            aside["without geometry"] += 1
+            return
+        for shape, _ in _features(geometry, name, aside):
+            yield shape, dict(properties)
+    elif kind in (*_WITH_SIDES, *_POINTS):
+        yield _geometry(content, name), {}
+    else:
+        near = did_you_mean(nearest(str(kind), ("FeatureCollection", "Feature", *_WITH_SIDES)))
+        raise InputError(f"{name}: is not GeoJSON: a geometry has type {kind!r}{near}")
+
+
+def _geometry(content: dict[str, Any], name: str) -> Any:
+    """Return a geometry; members of a collection that are null are left out."""
+    kind = content["type"]
+    members = content.get("geometries")
+    if kind == "GeometryCollection" and isinstance(members, list):
+        content = {**content, "geometries": [m for m in members if m is not None]}
+    try:
+        with np.errstate(invalid="ignore"):  # NaN is reported separately
+            return shape_of(content)
+    except Exception as error:  # shapely raises many types for wrong nesting
+        raise InputError(f"{name}: a {kind} is damaged: {error}") from error
+
+
+def _is_of_place(shape: Any, properties: dict[str, Any], name: str, aside: Counter[str]) -> bool:
+    """Return True if a feature is floor or solid; count others that one may have expected.
+
+    Raises:
+        InputError: its kind is a misspelled one.
+    """
+    kind = kind_of(properties)
+    if kind in _NEITHER:
+        return False
+    if kind and kind not in _KINDS:
+        near = nearest(kind, _KINDS)
+        if near:
+            raise InputError(
+                f"{name}: kind '{kind}' is not one of {', '.join(_KINDS)}{did_you_mean(near)}"
+            )
+        aside[f"of kind '{kind}' (known: {', '.join(_KINDS)})"] += 1
+        return False
+    if shape.geom_type in _POINTS:
+        aside["that are points"] += 1
+        return False
+    return True
+
+
+def kind_of(properties: dict[str, Any]) -> str:
+    """Return what a feature says it is, in small letters, or ""."""
+    kind = properties.get("kind")
+    return "" if kind is None else str(kind).strip().lower()
+
+
+# --------------------------------------------------------------------------------- storeys
+def _on_one_storey(found: list[_Found], spec: FloorPlanFields, name: str) -> list[_Found]:
+    """Return what lies on the chosen storey, or on none in particular.
+
+    Raises:
+        InputError: there are several and none is chosen, or the chosen one is missing.
+    """
+    labels = _labels(found, spec)
+    counts = Counter(label for own in labels for label in own)
+    known = ", ".join(f"'{label}' ({count})" for label, count in sorted(counts.items()))
+    if spec.level is None:
+        if len(counts) > 1:
+            raise InputError(
+                f"{name}: there are {len(counts)} storeys in it: {known}; write which 'level' to "
+                "read"
+            )
+        return found
+    level = _label(spec.level)
+    if level not in counts:
+        near = did_you_mean(nearest(level, counts))
+        listed = f"one of {known}" if counts else "in it; it names no storeys"
+        raise InputError(f"{name}: level '{level}' is not {listed}{near}")
+    return [one for one, own in zip(found, labels, strict=True) if not own or level in own]
+
+
+def _labels(found: list[_Found], spec: FloorPlanFields) -> list[tuple[str, ...]]:
+    """Return the storeys of each feature: named, or else by height if heights differ much."""
+    named = [_named_levels(properties) for _, properties in found]
+    heights = [_height_of(shape) * UNITS.get(spec.unit, 1.0) for shape, _ in found]
+    finite = [z for z in heights if math.isfinite(z)]
+    if any(named) or not finite or max(finite) - min(finite) <= _STOREY:
+        return named
+    return [(_label(round(z, 1)),) if math.isfinite(z) else () for z in heights]
+
+
+def _named_levels(properties: dict[str, Any]) -> tuple[str, ...]:
+    values = (v for key in _LEVELS if (v := properties.get(key)) not in (None, ""))
+    first = next(values, None)
+    return () if first is None else tuple(_label(v) for v in str(first).split(";"))
+
+
+def _label(value: object) -> str:
+    text = str(value).strip()
+    try:
+        return f"{float(text) + 0.0:g}"
+    except ValueError:
+        return text
+
+
+def _height_of(shape: Any) -> float:
+    """Return the mean height of a geometry's corners, or NaN without heights."""
+    heights = shapely.get_coordinates(shape, include_z=True)[:, 2]
+    heights = heights[np.isfinite(heights)]
+    return float(heights.mean()) if len(heights) else math.nan
+
+
+def _check_cover(walkable: Iterable[Any], name: str) -> None:
+    """Warn if much of the floor is covered twice, as by storeys that are not named."""
+    floors = [shapely.make_valid(p) for p in walkable]
+    once = shapely.union_all(floors).area if len(floors) > 1 else 0.0
+    twice = sum(p.area for p in floors) - once
+    if once and twice > _COVERED_TWICE * once:
+        _LOG.warning(
+            "%s: polygons of the floor lie upon each other, %.3g m² of it, and are joined; if "
+            "they are storeys, keep one of them", name, twice,
+        )  # fmt: skip
+
+
+# ------------------------------------------------------------------------ floor and solids
+def _sort_in(
+    shape: Any, properties: dict[str, Any], spec: FloorPlanFields, plan: Plan, name: str
+) -> None:
+    """Add a geometry to the floor or the solids."""
+    kind = kind_of(properties)
+    for part in shapely.get_parts(shape) if is_many(shape) else [shape]:
+        if is_many(part):
+            _sort_in(part, properties, spec, plan, name)
+        elif part.geom_type in ("LineString", "LinearRing"):
+            wall = shapely.buffer(part, 0.5 * spec.thickness, cap_style="flat", join_style="mitre")
+            plan.solids.append((wall, _heights(properties, spec, name)))
+        elif part.geom_type == "Polygon":
+            solid = kind in _SOLID or (kind not in _FLOOR and spec.polygons == "obstacles")
+            if solid:
+                plan.solids.append((part, _heights(properties, spec, name)))
+            else:
+                plan.walkable.append(part)
+
+
+def is_many(shape: Any) -> bool:
+    """Return True if a geometry has members."""
+    return bool(shape.geom_type.startswith("Multi") or shape.geom_type == "GeometryCollection")
+
+
+def _heights(properties: dict[str, Any], spec: FloorPlanFields, name: str) -> tuple[float, float]:
+    base, top = properties.get("base"), properties.get("height")
+    try:
+        base = 0.0 if base is None else float(base)
+        top = spec.wall_height if top is None else float(top)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name}: base and height of an obstacle must be numbers") from error
+    if not 0.0 <= base < top < math.inf:
+        raise InputError(f"{name}: an obstacle has base {base:g} m and height {top:g} m")
+    return base, top
