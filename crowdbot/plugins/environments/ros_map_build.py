@@ -22,6 +22,8 @@ from crowdbot.plugin import Array, InputError, did_you_mean, nearest
 MOST_PIXELS = 64_000_000
 #: Default thresholds, those of ROS, by which the grey 205 is unknown.
 _OCCUPIED, _FREE = 0.65, 0.196
+#: Length of the beginning of a PNG image, up to its width and height, bytes.
+_PNG_HEADER = 24
 Alpha = Literal["averaged", "unknown", "ignored"]
 #: Interpretations of pixels, the default first, and what opacity means in each.
 _OPACITY: dict[str, Alpha] = {"trinary": "averaged", "scale": "unknown", "raw": "ignored"}
@@ -181,6 +183,8 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
 def _read_png(file: Path, content: bytes, alpha: Alpha) -> NDArray[np.float64]:
     from PIL import Image
 
+    if len(content) < _PNG_HEADER:
+        raise InputError(f"{file.name}: is a damaged PNG image: it ends in its header")
     width, height = (int.from_bytes(content[k : k + 4], "big") for k in (16, 20))
     if not 0 < width * height <= MOST_PIXELS:  # before its pixels are unpacked
         raise InputError(f"{file.name}: {width} x {height} pixels are not an image of a map")
