@@ -163,10 +163,16 @@ class ForkServer:
         return left
 
     def _watch(self) -> None:
-        """Wait for a request; end a planner that starts too many processes meanwhile."""
+        """Wait for a request; meanwhile end what a planner leaves that ends, or starts too many.
+
+        Children that hold its pipes would keep the simulator waiting.
+        """
         comes = select.poll()
         comes.register(self._line, select.POLLIN)
         while self._pid and not self._why and not comes.poll(1000.0 * _LOOKS):
+            if self._wait(0.0):
+                end_descendants(limited=self._limited)
+                return
             if all_tasks() < self._tasks + _GROWTH:
                 continue
             if count_descendants(os.getpid()) > _MOST_PROCESSES:

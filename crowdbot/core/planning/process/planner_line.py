@@ -22,6 +22,7 @@ LONGEST_ANSWER = 1 << 20
 #: Largest amount of a planner's output shown per run, bytes.
 LONGEST_OUTPUT = 1 << 20
 _TAIL = 16_384
+_PEER_CLOSED = getattr(select, "POLLRDHUP", 0)
 _CRASH = "Fatal Python error: "
 #: A frame of Python's fault handler output, except for code without a file.
 _FRAME = re.compile(r"File \"([^<\"][^\"]*)\", line (\d+) in")
@@ -48,15 +49,18 @@ class PlannerLine:
     Args:
         write, read, output: descriptors, which this class closes.
         name: name of the planner for messages.
+        server: connection to the planner's fork server, which ends the planner when it is killed.
     """
 
-    def __init__(self, write: int, read: int, output: int, name: str) -> None:
+    def __init__(self, write: int, read: int, output: int, name: str, server: int) -> None:
         self._write, self._read, self._output, self._name = write, read, output, name
         for one in (write, read, output):
             os.set_blocking(one, False)
         self._poll = select.poll()
         self._poll.register(read, select.POLLIN)
         self._poll.register(output, select.POLLIN)
+        self._poll.register(server, _PEER_CLOSED)
+        self._server = server
         self._shown = 0
         self._tail = b""
         self._came = bytearray()
@@ -138,6 +142,8 @@ class PlannerLine:
                     self._show()
                 elif one == self._read:
                     self._receive()
+                elif one == self._server:
+                    raise LineClosed
             answer = self._whole()
             if answer is not None:
                 return answer

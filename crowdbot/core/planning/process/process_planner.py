@@ -252,7 +252,7 @@ class ProcessPlanner:
             for one in (theirs_in, theirs_out, theirs_output):
                 os.close(one)
         self._server = server
-        return PlannerLine(ours_out, ours_in, output, plan.who)
+        return PlannerLine(ours_out, ours_in, output, plan.who, server.descriptor)
 
     def _hello(self) -> dict[str, Any]:
         return {

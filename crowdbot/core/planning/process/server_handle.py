@@ -130,6 +130,11 @@ class ServerHandle:
                 self._process.wait()
 
     @property
+    def descriptor(self) -> int:
+        """Return the descriptor of the connection to the server."""
+        return self._line.fileno()
+
+    @property
     def is_alive(self) -> bool:
         """Return True if it runs and was started by this process."""
         return os.getpid() == self._owner and self._process.poll() is None
