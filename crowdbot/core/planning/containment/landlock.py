@@ -15,6 +15,7 @@ from typing import Any
 
 _CREATE, _ADD_RULE, _RESTRICT = 444, 445, 446  # equal on all architectures
 _GET_ABI, _PATH_BENEATH = 1, 1
+_LIBC: Any = ctypes.CDLL(None, use_errno=True)
 #: Version of the interface that can limit signals.
 ABI_SIGNALS = 6
 
@@ -45,26 +46,40 @@ class _Beneath(ctypes.Structure):
 
 def abi() -> int:
     """Return the version of the interface; 0 if this kernel has none."""
-    return max(0, int(_libc().syscall(_CREATE, None, 0, _GET_ABI)))
+    return max(0, int(_LIBC.syscall(_CREATE, None, 0, _GET_ABI)))
 
 
-def deny_files(version: int, allowed: Iterable[tuple[str, int]], *, network: bool) -> None:
-    """Deny this process all files but some, TCP, and signals to processes that it did not start.
+def make_rules(version: int, allowed: Iterable[tuple[str, int]], *, network: bool) -> int:
+    """Return a set of rules that denies all files but some, TCP, and signals to strangers.
 
     Args:
         version: from `abi`, at least 1.
         allowed: paths and the rights to them and to everything below; missing ones are skipped.
         network: True to leave TCP allowed.
 
+    Returns:
+        Its descriptor, for any number of processes.
+
     Raises:
         OSError: the kernel refuses.
     """
-    rights = (1 << _RIGHTS.get(version, _NEWEST_RIGHTS)) - 1
     tcp = _TCP if version >= _ABI_TCP and not network else 0
-    ruleset = _ruleset(version, rights, tcp)
+    ruleset = _ruleset(version, _rights(version), tcp)
     for path, wanted in allowed:
-        _allow(ruleset, path, wanted & rights)
-    _restrict(ruleset)
+        allow(ruleset, path, wanted & _rights(version))
+    return ruleset
+
+
+def restrict(ruleset: int) -> None:
+    """Apply a set of rules to this process, and to all that it starts, and close it here.
+
+    Raises:
+        OSError: the kernel refuses.
+    """
+    try:
+        _checked(_LIBC.syscall(_RESTRICT, ruleset, 0))
+    finally:
+        os.close(ruleset)
 
 
 def deny_signals(version: int) -> None:
@@ -76,7 +91,7 @@ def deny_signals(version: int) -> None:
     Raises:
         OSError: the kernel refuses.
     """
-    _restrict(_ruleset(version, 0, 0))
+    restrict(_ruleset(version, 0, 0))
 
 
 def _ruleset(version: int, rights: int, tcp: int) -> int:
@@ -84,10 +99,20 @@ def _ruleset(version: int, rights: int, tcp: int) -> int:
     signals = _ABSTRACT_SOCKETS_AND_SIGNALS if version >= ABI_SIGNALS else 0
     fields = 3 if signals else 2 if version >= _ABI_TCP else 1
     given = _Ruleset(rights, tcp, signals)
-    return _checked(_libc().syscall(_CREATE, ctypes.byref(given), 8 * fields, 0))
+    return _checked(_LIBC.syscall(_CREATE, ctypes.byref(given), 8 * fields, 0))
 
 
-def _allow(ruleset: int, path: str, rights: int) -> None:
+def _rights(version: int) -> int:
+    """Return the rights to files that a version knows."""
+    return int((1 << _RIGHTS.get(version, _NEWEST_RIGHTS)) - 1)
+
+
+def allow(ruleset: int, path: str, rights: int) -> None:
+    """Add a rule: rights to a path and to everything below it, if it is there.
+
+    Raises:
+        OSError: the kernel refuses.
+    """
     try:
         found = os.open(path, os.O_PATH | os.O_CLOEXEC)
     except OSError:
@@ -96,16 +121,9 @@ def _allow(ruleset: int, path: str, rights: int) -> None:
         if not stat.S_ISDIR(os.fstat(found).st_mode):
             rights &= _OF_FILES
         beneath = _Beneath(rights, found)
-        _checked(_libc().syscall(_ADD_RULE, ruleset, _PATH_BENEATH, ctypes.byref(beneath), 0))
+        _checked(_LIBC.syscall(_ADD_RULE, ruleset, _PATH_BENEATH, ctypes.byref(beneath), 0))
     finally:
         os.close(found)
-
-
-def _restrict(ruleset: int) -> None:
-    try:
-        _checked(_libc().syscall(_RESTRICT, ruleset, 0))
-    finally:
-        os.close(ruleset)
 
 
 def _checked(answer: int) -> int:
@@ -113,7 +131,3 @@ def _checked(answer: int) -> int:
         number = ctypes.get_errno()
         raise OSError(number, f"landlock: {os.strerror(number)}")
     return answer
-
-
-def _libc() -> Any:
-    return ctypes.CDLL(None, use_errno=True)

@@ -14,6 +14,7 @@ import os
 import platform
 import struct
 from collections.abc import Iterable, Sequence
+from functools import cache
 from typing import Any
 
 _LOAD, _EQUAL, _AT_LEAST, _AND, _RETURN = 0x20, 0x15, 0x35, 0x54, 0x06
@@ -24,6 +25,8 @@ _NUMBER, _ARCHITECTURE, _ARGUMENTS = 0, 4, 16
 _PR_SET_SECCOMP, _PR_GET_SECCOMP, _MODE_FILTER = 22, 21, 2
 _PR_SET_NO_NEW_PRIVS = 38
 
+#: Stands for the number of the filtered process; size of an instruction, bytes.
+_SELF, _INSTRUCTION = 0x7FFFFFF1, 8
 #: Machine -> the kernel's number of the architecture, and the column of `_NUMBERS`.
 _MACHINES = {"x86_64": (0xC000003E, 0), "aarch64": (0xC00000B7, 1)}
 #: On x86-64, calls with this bit are those of another interface, x32.
@@ -111,20 +114,26 @@ def deny_system_calls(*, network: bool, signals: bool) -> None:
     Raises:
         OSError: the kernel refuses.
     """
-    program = _program(network=network, signals=signals)
-    code = b"".join(program)
+    code = filter_program(network=network, signals=signals)
+    code = code.replace(struct.pack("=I", _SELF), struct.pack("=I", os.getpid()))
     libc: Any = ctypes.CDLL(None, use_errno=True)
-    given = _Program(len(program), code)
+    given = _Program(len(code) // _INSTRUCTION, code)
     if libc.prctl(_PR_SET_SECCOMP, _MODE_FILTER, ctypes.byref(given), 0, 0) != 0:
         number = ctypes.get_errno()
         raise OSError(number, f"seccomp: {os.strerror(number)}")
+
+
+@cache
+def filter_program(*, network: bool, signals: bool) -> bytes:
+    """Return the filter's instructions, with `_SELF` for the number of the process."""
+    return b"".join(_program(network=network, signals=signals))
 
 
 def _program(*, network: bool, signals: bool) -> list[bytes]:
     """Return the filter's instructions."""
     architecture, column = _MACHINES[platform.machine()]
     numbers = {name: both[column] for name, both in _NUMBERS.items()}
-    me = os.getpid()
+    me = _SELF
 
     def only(name: str, checks: Sequence[bytes]) -> list[bytes]:
         """Return checks of one call's arguments; they end with a return."""

@@ -25,9 +25,10 @@ import sys
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, NoReturn
 
-from crowdbot.core.planning.containment.enforce import enforce
+from crowdbot.core.planning.containment.enforce import enforce, rules_of
 from crowdbot.core.planning.containment.rights import set_inspectable
 from crowdbot.core.planning.containment.scratch import make_folder, remove_scratch, use_scratch
 from crowdbot.core.planning.process.process_tree import (
@@ -48,6 +49,7 @@ _LAST_WORDS = 0.5
 #: Most processes of a planner; seconds between looks; threads of all processes by which the
 #: machine has to grow before they are counted.
 _MOST_PROCESSES, _LOOKS, _GROWTH = 256, 0.1, 256
+_MOST_USES = 64
 #: Seconds for the server to end by itself.
 _GRACE = 1.0
 _LARGEST_FILE = 1 << 30
@@ -126,6 +128,7 @@ class ForkServer:
         self._tasks = 0
         self._why = ""
         self._scratch = ""
+        self._rules: tuple[Any, int, int] = (None, -1, 0)
 
     def serve_one(self) -> bool:
         """Handle the next request; return False if there are no more."""
@@ -159,6 +162,8 @@ class ForkServer:
         left = end_descendants(limited=self._limited)
         if self._scratch:
             remove_scratch(self._scratch)
+            if Path(self._scratch).exists():  # its folder is not shared with the next planner
+                self._folder = ""
             self._scratch = ""
         return left
 
@@ -192,11 +197,29 @@ class ForkServer:
         """Fork a planner; the descriptors are messages in and out, memory, output."""
         parent = os.getpid()
         self._status, self._why, self._tasks = None, "", all_tasks()
-        self._scratch = make_folder(self._folder or tempfile.gettempdir())
+        self._folder = self._folder or make_folder(tempfile.gettempdir())
+        self._scratch = make_folder(self._folder)
+        rules = self._rules_of(request["contain"])
         self._pid = os.fork()
         if self._pid == 0:
-            _be_planner(request, descriptors, parent, self._scratch)
+            _be_planner(request, descriptors, parent, (self._scratch, rules))
         return {"pid": self._pid}
+
+    def _rules_of(self, given: Mapping[str, Any]) -> int:
+        """Return the rules for files, made again if the planner or one of its files is another.
+
+        Each process adds a rule for its own ``/proc``, so they are not used without end.
+        """
+        files = [(path, _inode(path)) for path in (*given["read"], *given["list"])]
+        key = (self._folder, given["network"], files)
+        known, rules, uses = self._rules
+        if known != key or uses >= _MOST_USES:
+            if rules >= 0:
+                os.close(rules)
+            self._rules = (None, -1, 0)
+            rules, uses = rules_of(given, self._folder), 0
+        self._rules = (key, rules, uses + 1)
+        return rules
 
     def _end(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> dict[str, Any]:
         """End the planner, after a grace period for it to exit."""
@@ -230,14 +253,23 @@ class ForkServer:
         select.select([], [], [], seconds)
 
 
+def _inode(path: str) -> int:
+    try:
+        return os.stat(path).st_ino  # noqa: PTH116 - fast
+    except OSError:
+        return 0
+
+
 def _be_planner(
-    request: Mapping[str, Any], descriptors: Sequence[int], parent: int, scratch: str
+    request: Mapping[str, Any], descriptors: Sequence[int], parent: int, place: tuple[str, int]
 ) -> NoReturn:
     """Run the planner in the new process: detach from the server, contain and limit itself."""
     code = 70
     try:
         os.setsid()
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        scratch, rules = place
+        enforce(request["contain"], rules)
         _take_descriptors(descriptors)
         die_with_parent(parent)
         set_inspectable(False)
@@ -245,7 +277,6 @@ def _be_planner(
         if request["folder"]:
             os.chdir(request["folder"])
         _limit(request["memory"])
-        enforce(request["contain"], scratch)
         for number in (signal.SIGINT, signal.SIGPIPE):
             signal.signal(number, signal.SIG_DFL)
         if command := request.get("command"):
