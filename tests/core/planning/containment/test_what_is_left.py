@@ -11,7 +11,6 @@ import pytest
 
 from crowdbot.errors import PlannerError
 from tests.core.planning.process.process_cases import (
-    below,
     choose,
     hosted,
     is_alive,
@@ -26,11 +25,12 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 #: It has a session of its own, no environment, and no living parent, but all of the pipes.
 TOP = """
 def run_away():
+    planner = os.getpid()
     if os.fork() == 0:
         os.setsid()
         if os.fork():
             os._exit(0)
-        open(os.path.expanduser("~/{name}"), "w").write(str(os.getpid()))
+        open(os.path.expanduser("~/{name}"), "w").write(f"{{os.getpid()}} {{planner}}")
         os.execve("/bin/sleep", ["sleep", "999"], {{}})
 """
 
@@ -40,10 +40,9 @@ def test_what_is_left(killed: list[str], tmp_path: Path) -> None:
     step = "run_away(); time.sleep(0.5 if obs.t == 0 else 1000); return (0.1, 0.0)"
     with hosted(choose(tmp_path, planner_text(step, top=TOP.format(name=tmp_path.name)))) as host:
         host.step(observation())
-        away = int(left(tmp_path.name).read_text())
-        guard = next(p for p in below(os.getpid()) if away in below(p))
-        server = next(p for p in below(guard) if away in below(p))
-        planner = next(p for p in below(server) if p != away and _parent(p) == server)
+        away, planner = map(int, left(tmp_path.name).read_text().split())
+        server = _parent(planner)
+        guard = _parent(server)
         pids = {"planner": planner, "server": server, "guard": guard}
         for name in killed:
             os.kill(pids[name], signal.SIGKILL)
