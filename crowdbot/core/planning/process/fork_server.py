@@ -203,7 +203,7 @@ class ForkServer:
         self._pid = os.fork()
         if self._pid == 0:
             _be_planner(request, descriptors, parent, (self._scratch, rules))
-        return {"pid": self._pid}
+        return {"pid": self._pid, "folder": self._folder}
 
     def _rules_of(self, given: Mapping[str, Any]) -> int:
         """Return the rules for files, made again if the planner or one of its files is another.

@@ -20,6 +20,7 @@ from typing import Any
 
 from crowdbot.core.planning.containment.offer import kernel_offer
 from crowdbot.core.planning.containment.rights import set_inspectable
+from crowdbot.core.planning.containment.scratch import remove_scratch
 from crowdbot.core.planning.process.process_tree import adopt_orphans, end_strays
 from crowdbot.core.registry.plugin_path import path_without_plugins
 from crowdbot.errors import PlannerError
@@ -76,6 +77,7 @@ class ServerHandle:
         self._owner = os.getpid()
         self._imported: set[str] = set()
         self._unanswered = 0
+        self._folder = ""
 
     def has_imported(self, modules: Sequence[str]) -> None:
         """Make sure that modules are imported before the next planner is forked."""
@@ -95,6 +97,7 @@ class ServerHandle:
         answer = self._answer(_IMPORTS)
         if "error" in answer:
             raise PlannerError(answer["error"])
+        self._folder = str(answer["folder"])
         return int(answer["pid"])
 
     def end(self, *, grace: float, ask: bool = False) -> dict[str, Any]:
@@ -117,6 +120,7 @@ class ServerHandle:
         self.close()
         if os.getpid() == self._owner:
             end_strays(_RUNNING)
+            remove_scratch(self._folder)
 
     def close(self) -> None:
         """End the server, and with it everything below it."""
