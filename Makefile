@@ -1,7 +1,7 @@
 # Everything from nothing but Python 3.11 or newer, pip, venv and make.
 #   make demo    set up, then run one challenge scenario
 #   make check   set up, then run what a change has to pass before each commit, in 90 seconds
-#   make test    set up, then run every check
+#   make test    set up, then run every check, and three commands on each Python that is there
 #   make setup   only prepare .venv/
 #   make test-all  run every test, also the longest
 #   make durations  measure which tests are slow, into tests/durations.tsv; make check leaves them out
@@ -30,7 +30,7 @@ BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/'
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
 
-.PHONY: demo check test tests tests-as-they-go test-all durations lint types style kernels coverage docs generate pictures changelog check-js js-where-node-is setup lock sbom clean
+.PHONY: demo check test test-here pythons tests tests-as-they-go test-all durations lint types style kernels coverage docs generate pictures changelog check-js js-where-node-is setup lock sbom clean
 
 demo: setup
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
@@ -39,7 +39,11 @@ check: setup
 	@$(MAKE) --no-print-directory -j2 --output-sync kernels types style
 	$(BIN)/pytest -n auto --dist worksteal -q -m "not slow and not jupedsim"
 
-test: setup
+test: test-here
+	@$(MAKE) --no-print-directory pythons
+
+# Everything but the commands on other versions of Python.
+test-here: setup
 	@$(MAKE) --no-print-directory -j2 --output-sync kernels style js-where-node-is
 	@$(MAKE) --no-print-directory -j2 --output-sync types tests || { $(BIN)/mypy; false; }
 
@@ -50,6 +54,10 @@ tests: setup
 
 tests-as-they-go:
 	$(BIN)/pytest -n $(WORKERS) --dist worksteal
+
+# Three commands on each Python that README names; a line says which are missing.
+pythons: setup
+	@scripts/demo_on_each_python.sh
 
 # What numba compiles, before tests begin: or else each test process would compile it.
 kernels: setup

@@ -5,6 +5,22 @@ import importlib.util
 import platform
 import sys
 
+#: Versions of Python on which CI runs the commands, each with the packages of the lock.
+TRIED = ((3, 11), (3, 12), (3, 13))
+
+
+def tried():
+    # type: () -> str
+    """Return on what crowdbot was tried, and what this machine has."""
+    versions = ", ".join("{}.{}".format(*version) for version in TRIED)
+    here = "{}.{}".format(*sys.version_info[:2])
+    text = "tried on Linux x86-64 with Python {}; this is {} {} with Python {}".format(  # noqa: UP032
+        versions, platform.system(), platform.machine(), here
+    )
+    if sys.version_info[:2] > TRIED[-1]:
+        text += ", which is newer: where Drake has no package for it, make PYTHON=python3.13 ..."
+    return text
+
 
 def problem():
     # type: () -> str
@@ -42,4 +58,5 @@ def _loads(library):
 if __name__ == "__main__":
     text = problem()
     if text:
-        sys.exit("crowdbot: " + text)
+        sys.exit(f"crowdbot: {text} ({tried()})")
+    print("crowdbot: " + tried())

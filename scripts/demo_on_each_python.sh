@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# Run `make demo` in a fresh clone for each Python that README names and this machine has.
+# Run `make demo`, `crowdbot doctor` and a small campaign on each Python that README names and this
+# machine has. The Python of .venv runs in this checkout, each other one in a fresh clone with the
+# packages of the lock, all side by side.
 # Usage: scripts/demo_on_each_python.sh [VERSION...]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 versions=("$@")
-[ $# -gt 0 ] || versions=(3.11 3.12 3.13)
+[ $# -gt 0 ] || versions=(3.11 3.12 3.13 3.14)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
 find_python() {  # prints a working interpreter of version $1; pyenv's are found even if not active
     local candidate
@@ -16,20 +20,45 @@ find_python() {  # prints a working interpreter of version $1; pyenv's are found
     done
 }
 
+version_here() {  # prints the version of this checkout's .venv, if it is set up
+    "$root/.venv/bin/python" -c 'import sys; print("{}.{}".format(*sys.version_info))' 2>/dev/null || true
+}
+
+three_commands() {  # in checkout $1, with the interpreter $2
+    local out
+    make -C "$1" --no-print-directory demo PYTHON="$2"
+    out=$(mktemp -d -p "$work")
+    "$1/.venv/bin/crowdbot" doctor --out "$out"
+    "$1/.venv/bin/crowdbot" campaign challenge-2020 --only 'in-d0125-slow-c01-r02*' \
+        --planner goal_seek --set robots.robot.task.time_limit=2 --no-floors --jobs 1 --out "$out"
+}
+
+run_on() {  # version $1, interpreter $2; prints one line, and all that was printed if it fails
+    local checkout=$root log="$work/$1.log" begin=$SECONDS
+    if [ "$1" != "$(version_here)" ]; then
+        checkout="$work/$1/crowdbot"
+        git clone --quiet "$root" "$checkout"
+    fi
+    if ! three_commands "$checkout" "$2" >"$log" 2>&1; then
+        cat "$log"
+        echo "demo, doctor and campaign on Python $1: failed"
+        return 1
+    fi
+    echo "demo, doctor and campaign on Python $1: ok, $((SECONDS - begin)) s"
+}
+
+jobs=()
 for version in "${versions[@]}"; do
     python=$(find_python "$version")
     if [ -z "$python" ]; then
-        echo "demo on Python $version: skipped, this machine has none"
+        echo "demo, doctor and campaign on Python $version: skipped, this machine has none"
         continue
     fi
-    clone=$(mktemp -d)
-    trap 'rm -rf "$clone"' EXIT
-    git clone --quiet "$root" "$clone/crowdbot"
-    if ! make -C "$clone/crowdbot" --no-print-directory demo PYTHON="$python" >"$clone/log" 2>&1; then
-        cat "$clone/log"
-        echo "demo on Python $version: failed"
-        exit 1
-    fi
-    echo "demo on Python $version: ok"
-    rm -rf "$clone"
+    run_on "$version" "$python" &
+    jobs+=($!)
 done
+failed=0
+for job in "${jobs[@]}"; do
+    wait "$job" || failed=1
+done
+exit $failed

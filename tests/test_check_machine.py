@@ -31,6 +31,14 @@ def test_this_machine_passes() -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_it_says_on_what_it_was_tried(machine: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "tried on Linux x86-64 with Python 3.11, 3.12, 3.13" in machine.tried()
+    assert "newer" not in machine.tried()
+    monkeypatch.setattr(machine.sys, "version_info", (3, 14, 0))
+    assert machine.tried().endswith("make PYTHON=python3.13 ...")
+    assert machine.problem() == ""
+
+
 def test_a_missing_library_is_named_in_one_line(
     machine: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -3,38 +3,46 @@
 from __future__ import annotations
 
 import importlib
-import pkgutil
 from collections.abc import Iterator
 
 import pytest
 from pydrake.systems.framework import LeafSystem, System
 
-import crowdbot.core.sim
+from tests.paths import ROOT
 
 
-def _systems(base: type = LeafSystem) -> Iterator[type]:
-    subclasses: list[type] = base.__subclasses__()
-    for subclass in subclasses:
-        if subclass.__module__.startswith("crowdbot."):
-            yield subclass
-            yield from _systems(subclass)
+def _bound_to_drake(kind: type) -> list[str]:
+    """The attributes of a class that are methods of a class of Drake under another name."""
+    drakes = {
+        id(value): name
+        for base in kind.__mro__
+        if base.__module__.startswith("pydrake")
+        for name, value in vars(base).items()
+        if callable(value)
+    }
+    return [name for name, value in vars(kind).items() if drakes.get(id(value), name) != name]
 
 
-def _bound_to_drake(system: type) -> list[str]:
-    """The ``Do…`` attributes of a system that are methods of Drake instead of its own functions."""
-    drakes = {id(value) for base in System.__mro__ for value in vars(base).values()}
-    drakes |= {id(value) for value in vars(LeafSystem).values()}
-    return [name for name, value in vars(system).items() if id(value) in drakes]
+def _drakes() -> Iterator[type]:
+    """Our classes below one of Drake, from all modules that name it."""
+    for path in sorted((ROOT / "crowdbot").rglob("*.py")):
+        if "pydrake" not in path.read_text(encoding="utf-8") or "templates" in path.parts:
+            continue
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+        for kind in vars(importlib.import_module(name)).values():
+            if isinstance(kind, type) and kind.__module__ == name and _of_drake(kind):
+                yield kind
 
 
-def test_no_system_binds_a_method_of_drake_under_another_name() -> None:
-    package = crowdbot.core.sim
-    for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
-        importlib.import_module(module.name)
-    systems = list(_systems())
-    assert len(systems) >= 10
-    for system in systems:
-        assert _bound_to_drake(system) == [], system
+def _of_drake(kind: type) -> bool:
+    return any(base.__module__.startswith("pydrake") for base in kind.__mro__)
+
+
+def test_nothing_binds_a_method_of_drake_under_another_name() -> None:
+    found = list(_drakes())
+    assert sum(issubclass(kind, System) for kind in found) >= 10
+    for kind in found:
+        assert _bound_to_drake(kind) == [], kind
 
 
 def test_the_check_sees_such_a_binding() -> None:
