@@ -20,7 +20,7 @@ from crowdbot.core.statistics.summary import bounds_of_mean, headline_names
 from crowdbot.core.statistics.summary_estimator import mean_of_rows
 from crowdbot.core.statistics.table import MISSING, OK, Key, Name, Table, counts_of
 from crowdbot.core.types.ending import has_failed
-from crowdbot.errors import UnknownNameError
+from crowdbot.errors import InputError, UnknownNameError, did_you_mean, nearest
 
 #: Labels of a group; and planner -> (n,) its rows of the table.
 _Rows = Mapping[str, NDArray[np.bool_]]
@@ -66,7 +66,8 @@ def by_group(
         variant: None: the metric's headline variant (`headline_names`).
 
     Raises:
-        UnknownNameError: no such axis or metric.
+        UnknownNameError: no such axis.
+        InputError: no run was scored by the metric.
     """
     _check_names(results, metric, by)
     table = Table(results)
@@ -150,4 +151,8 @@ def _check_names(results: Results, metric: str, by: Sequence[str]) -> None:
             raise UnknownNameError("axis", name, known)
     metrics = {s.metric for s in results.scores}
     if results.scores and not any(fnmatchcase(m, metric) for m in metrics):
-        raise UnknownNameError("metric", metric, metrics)
+        near = did_you_mean(nearest(metric, metrics))
+        raise InputError(
+            f"metric '{metric}' was not scored in these runs{near}; 'crowdbot evaluate RUNS "
+            f"--metrics {metric}' shows it, and a suite's field metrics lets new runs be scored"
+        )

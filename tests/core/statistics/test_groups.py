@@ -6,6 +6,7 @@ import pytest
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.statistics.groups import by_group
+from crowdbot.errors import InputError
 from tests.core.statistics.made_up_results import censored, run, score
 
 
@@ -30,3 +31,11 @@ def test_the_rate_is_what_is_usually_asked_for() -> None:
     results = Results(runs=(one,), scores=scores)
     assert by_group(results, "m", ["planner"])[0].mean.value == 0.1
     assert by_group(results, "m", ["planner"], "corrected")[0].mean.value == 9.0
+
+
+def test_a_metric_that_was_not_scored_is_told_with_what_scores_it() -> None:
+    one = run("a", "s0")
+    results = Results(runs=(one,), scores=(score(one, 1.0),))
+    told = "metric 'speed' was not scored in these runs; 'crowdbot evaluate RUNS --metrics speed'"
+    with pytest.raises(InputError, match=told):
+        by_group(results, "speed", ["planner"])
