@@ -24,6 +24,16 @@ version_here() {  # prints the version of this checkout's .venv, if it is set up
     "$root/.venv/bin/python" -c 'import sys; print("{}.{}".format(*sys.version_info))' 2>/dev/null || true
 }
 
+fresh_copy() {  # into folder $1: a clone, or what lies here if that differs or is not a clone
+    if [ -z "$(git -C "$root" status --porcelain 2>&1)" ]; then
+        git clone --quiet "$root" "$1"
+    else
+        mkdir -p "$1"
+        tar -C "$root" --exclude=./.git --exclude=./.venv --exclude=./runs --exclude='./.*_cache' \
+            --exclude=__pycache__ --exclude=node_modules -cf - . | tar -C "$1" -xf -
+    fi
+}
+
 three_commands() {  # in checkout $1, with the interpreter $2
     local out
     make -C "$1" --no-print-directory demo PYTHON="$2"
@@ -37,7 +47,7 @@ run_on() {  # version $1, interpreter $2; prints one line, and all that was prin
     local checkout=$root log="$work/$1.log" begin=$SECONDS
     if [ "$1" != "$(version_here)" ]; then
         checkout="$work/$1/crowdbot"
-        git clone --quiet "$root" "$checkout"
+        fresh_copy "$checkout"
     fi
     if ! three_commands "$checkout" "$2" >"$log" 2>&1; then
         cat "$log"
