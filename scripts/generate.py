@@ -28,6 +28,7 @@ from scripts import (  # noqa: E402
     write_author_surface,
     write_endings,
     write_metric_index,
+    write_planner_pages,
     write_reference,
     write_schemas,
 )
@@ -57,6 +58,7 @@ GENERATED: dict[str, Callable[[], Texts]] = {
     "names for plugins": lambda: _page(
         write_author_surface.PAGE, write_author_surface.author_surface_page()
     ),
+    "parameters of planners": write_planner_pages.pages,
     "metrics by category": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
     "gallery of metrics": make_metric_pictures.pages,
     "endings": _endings,

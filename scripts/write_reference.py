@@ -166,10 +166,16 @@ def _model_of(annotation: Any) -> tuple[type[BaseModel] | None, bool]:
 def _section(
     heading: str, model: type[BaseModel], about: str = "", *, extends: bool = False
 ) -> str:
-    lines = [heading, "", *([about, ""] if about else []), _prose(model), ""]
+    lines = [heading, "", *([about, ""] if about else []), _prose(model), "", field_table(model)]
+    return "\n".join([*lines, *([_EXTENDS] if extends else []), ""])
+
+
+def field_table(model: type[BaseModel]) -> str:
+    """Return the table of a model's fields, without ``kind``."""
     rows = [_row(n, i) for n, i in model.model_fields.items() if n != "kind" and not i.exclude]
-    head = ["| field | type | unit | default | meaning |", "|---|---|---|---|---|"]
-    return "\n".join([*lines, *head, *rows, *([_EXTENDS] if extends else []), ""])
+    return "\n".join(
+        ["| field | type | unit | default | meaning |", "|---|---|---|---|---|", *rows]
+    )
 
 
 def _prose(model: type[BaseModel]) -> str:

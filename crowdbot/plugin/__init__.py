@@ -85,6 +85,7 @@ if TYPE_CHECKING:
     from crowdbot.core.sensing.range_model import RangeModel
     from crowdbot.core.sensing.scene import Scene
     from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
+    from crowdbot.core.sensing.tracking.people_tracker import PeopleTracker, Tracks
     from crowdbot.core.support.compile import array_kernel, declared_kernel, inline_kernel, kernel
     from crowdbot.core.support.immutable import immutable
     from crowdbot.core.support.records import (
@@ -271,6 +272,7 @@ __all__ = [
     "NonNegativeSteeringStiffness",
     "NumpyCost",
     "Observation",
+    "PeopleTracker",
     "Pillar",
     "Pinhole",
     "Place",
@@ -328,6 +330,7 @@ __all__ = [
     "Speed",
     "Task",
     "TiltableMount",
+    "Tracks",
     "Trajectories",
     "Trips",
     "Truth",

@@ -39,6 +39,7 @@ HOMES = {
         "mount_pose mount_tilt sensor_pose_in_world sensor_rotation_in_world"
     ),
     "crowdbot.core.sensing.points": "LidarPoints",
+    "crowdbot.core.sensing.tracking.people_tracker": "PeopleTracker Tracks",
     "crowdbot.core.sensing.range_model": "RangeModel",
     "crowdbot.core.sensing.scene": "Scene",
     "crowdbot.core.sensing.sensor": "DepthCamera NoiseGenerator Sensor SensorWithMemory",

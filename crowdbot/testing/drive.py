@@ -12,9 +12,10 @@ from typing import Any, cast
 from unittest import SkipTest
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core.planning.host import PlannerHost
-from crowdbot.core.planning.planner import Observation, Planner, Truth, named_signal
+from crowdbot.core.planning.planner import Observation, Planner, Truth, named_drawing, named_signal
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.noise import sensor_rng
@@ -127,6 +128,7 @@ class Driven:
         self._privileged = privileged
         self.commands: list[Command] = []
         self.signals: list[tuple[str, float]] = []
+        self.drawings: list[tuple[str, NDArray[np.float32]]] = []
         self._course, self._sensors = course, dict(sensors)
         count = len(course.people)
         self._scene = Scene(
@@ -143,7 +145,7 @@ class Driven:
         infos = {n: replace(s.info(), frame=n) for n, s in self._sensors.items()}
         memory = {n: np.zeros(i.memory) for n, i in infos.items()}
         self.host.reset(self._course.task, infos, seed)
-        self.commands, self.signals = [], []
+        self.commands, self.signals, self.drawings = [], [], []
         pose, twist = self._course.start, Command(0.0, 0.0)
         readings: dict[str, Reading] = {}
         for k in range(steps):
@@ -197,6 +199,7 @@ class Driven:
             goal_zone=task.goal_zone,
             readings=dict(readings),
             log=lambda name, value: self.signals.append(named_signal(name, value)),
+            draw=lambda name, rows: self.drawings.append(named_drawing(name, rows)),
             truth=self._truth(k / RATE, pose, twist) if self._privileged else None,
         )
 

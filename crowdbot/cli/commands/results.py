@@ -165,6 +165,33 @@ def failures(
 
 
 @results.command()
+def tracking(
+    out: _Out = _ROOT,
+    within: Annotated[
+        list[float] | None,
+        typer.Option(min=0.6, metavar="M", help="Distance from the robot; default: 3 and 6."),
+    ] = None,
+    planner: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Only this planner; repeatable.")
+    ] = None,
+    altered: Altered = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_json: _Json = False,
+) -> None:
+    """Show how well planners track people: recall, false tracks, switches and errors.
+
+    Example: crowdbot results tracking --runs runs --within 3
+    """
+    from crowdbot.core.results.tracking import tracking_lines
+
+    found = _only(open_results(out, altered), planner, None)
+    lines = list(tracking_lines(found, out, within or [3.0, 6.0]))
+    print_lines(lines, as_csv=as_csv, as_json=as_json)
+    if not (lines or as_csv or as_json):
+        typer.echo("no run has tracks of people: its planner draws none, or it was not recorded")
+
+
+@results.command()
 def atlas(
     out: _Out = _ROOT,
     floor: Annotated[

@@ -168,5 +168,6 @@ def _protected(obs: Observation) -> Observation:
         goal_zone=_read_only(obs.goal_zone),
         readings=MappingProxyType(readings),
         log=obs.log,
+        draw=obs.draw,
         truth=obs.truth and obs.truth.copy(),
     )

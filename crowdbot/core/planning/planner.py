@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
@@ -19,10 +19,16 @@ from crowdbot.errors import PlannerError, hidden_character
 
 #: Largest length of a signal's name, and numbers of names and values in a run.
 _LONGEST_NAME, _MOST_SIGNALS, _MOST_VALUES = 200, 1000, 2_000_000
+#: Largest shape of a drawing, and number of their numbers in a run.
+_MOST_ROWS, _MOST_COLUMNS, _MOST_DRAWN = 2000, 16, 20_000_000
 
 
-def _ignore(name: str, value: float) -> None:
+def _ignore(name: str, value: object) -> None:
     del name, value
+
+
+#: Name of the drawing with the people that a planner tracks, and number of its columns.
+TRACKS, TRACK_COLUMNS = "tracks", 5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,6 +72,9 @@ class Observation:
         readings: latest reading of each requested sensor.
         log: ``log(name, value)`` records a named signal of the run, a number.
         truth: ground truth for a privileged planner, else None.
+        draw: ``draw(name, rows)`` records what the planner thinks, as numbers in the robot's base
+            frame, m: rows (K, 2) of a path or of points; ``tracks`` has rows (K, 5) of people:
+            number, x, y, vx, vy. The replay shows it.
     """
 
     t: float
@@ -77,6 +86,29 @@ class Observation:
     readings: Mapping[str, Reading] = field(default_factory=lambda: MappingProxyType({}))
     log: Callable[[str, float], None] = _ignore
     truth: Truth | None = None
+    draw: Callable[[str, ArrayLike], None] = _ignore
+
+
+def named_drawing(name: str, rows: ArrayLike) -> tuple[str, NDArray[np.float32]]:
+    """Return a valid drawing for the recording, (K, C).
+
+    Raises:
+        TypeError, ValueError: it is not a named table of finite numbers, or too large.
+    """
+    named_signal(name, 0.0)
+    table = np.array(rows, np.float32)
+    if table.size == 0:
+        table = table.reshape(0, table.shape[1] if table.ndim == 2 else 2)
+    if table.ndim != 2 or not 2 <= table.shape[1] <= _MOST_COLUMNS or len(table) > _MOST_ROWS:
+        raise ValueError(
+            f"draw: '{name}' has rows of 2 to {_MOST_COLUMNS} numbers, at most {_MOST_ROWS} of "
+            f"them, not the shape {table.shape}"
+        )
+    if name == TRACKS and table.shape[1] != TRACK_COLUMNS:
+        raise ValueError(f"draw: rows of '{TRACKS}' are number, x, y, vx, vy, not {table.shape[1]}")
+    if not np.isfinite(table).all():
+        raise ValueError(f"draw: '{name}' holds a number that is not finite")
+    return name, table
 
 
 def named_signal(name: str, value: float) -> tuple[str, float]:
@@ -98,21 +130,29 @@ def named_signal(name: str, value: float) -> tuple[str, float]:
 class SignalBounds:
     """The number of signals in one run, which recordings and pages have to hold."""
 
-    def __init__(self) -> None:
+    def __init__(self, what: str = "log", kind: str = "signals", most: int = _MOST_VALUES) -> None:
         self._names, self._values = set[str](), 0
+        self._what, self._kind, self._most = what, kind, most
 
-    def check(self, name: str) -> None:
-        """Count one value of a signal.
+    def check(self, name: str, values: int = 1) -> None:
+        """Count some values of a signal.
 
         Raises:
             PlannerError: the run has too many.
         """
         self._names.add(name)
-        self._values += 1
+        self._values += values
         if len(self._names) > _MOST_SIGNALS:
-            raise PlannerError(f"log: more than {_MOST_SIGNALS} names of signals in a run")
-        if self._values > _MOST_VALUES:
-            raise PlannerError(f"log: more than {_MOST_VALUES} values of signals in a run")
+            what = f"{_MOST_SIGNALS} names of {self._kind}"
+            raise PlannerError(f"{self._what}: more than {what} in a run")
+        if self._values > self._most:
+            what = f"{self._most} values of {self._kind}"
+            raise PlannerError(f"{self._what}: more than {what} in a run")
+
+
+def drawing_bounds() -> SignalBounds:
+    """Return bounds for the drawings of one run."""
+    return SignalBounds("draw", "drawings", _MOST_DRAWN)
 
 
 class NoValidCommand(Exception):  # noqa: N818 - a word of the planner contract

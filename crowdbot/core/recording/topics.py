@@ -21,6 +21,8 @@ class Topic(StrEnum):
     TRIP = "/crowdbot/trip"
     SIGNAL = "/crowdbot/signal"
     PLANNER_TIME = "/crowdbot/planner_time"
+    TRACKS = "/tracks"
+    THOUGHTS = "/thoughts"
     END = "/crowdbot/end"
     CONTACTS = "/contacts"
     CLOCK = "/clock"

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crowdbot.core.recording.messages as ros
+from crowdbot.core.planning.planner import TRACKS
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.container.own_file import Written
@@ -26,7 +27,7 @@ from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_
 from crowdbot.core.recording.joints import WheelMessages
 from crowdbot.core.recording.motion.candidates import Choosers
 from crowdbot.core.recording.motion.states import SeriesRows, StateSample, StatesWriter
-from crowdbot.core.recording.namespace import NamespacedFile
+from crowdbot.core.recording.namespace import NamespacedFile, in_namespace
 from crowdbot.core.recording.reading.images import REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH
 from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.ros_topics import ToolTopics
@@ -123,6 +124,8 @@ class RecordingWriter:
         self._samples: list[StateSample] = []
         self._series = {topic: SeriesRows() for topic in (Topic.SIGNAL, Topic.PLANNER_TIME)}
         self._waiting: list[Callable[[], None]] = []
+        self._drawn: dict[str, Thinning] = {}
+        self._base = in_namespace(header.namespace, "base_link")
         self._image_bytes = 0
         self._now = 0
         self._closed = False
@@ -217,6 +220,28 @@ class RecordingWriter:
     def signal(self, t: float, name: str, value: float) -> None:
         """Write one value of a named signal."""
         self._series[Topic.SIGNAL].add(name, t, value)
+
+    def drawing(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
+        """Write what a planner thinks: rows (K, C) in the robot's base frame.
+
+        With the rate of the replay page, unless all is recorded.
+        """
+        if self._tools is None:
+            return
+        rate = None if self._whole else REPLAY_RATE
+        if self._drawn.setdefault(name, Thinning(rate)).keeps(ros.nanoseconds(t)):
+            self._waiting.append(partial(self._draw, t, name, rows))
+
+    def _draw(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
+        ns = ros.nanoseconds(t)
+        message = ros.new(
+            "crowdbot_msgs/Drawing",
+            header=ros.header(ns, self._base),
+            name=name,
+            columns=rows.shape[1],
+            data=rows.ravel(),
+        )
+        self._file.put(Topic.TRACKS if name == TRACKS else Topic.THOUGHTS, ns, message)
 
     @_later
     def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:

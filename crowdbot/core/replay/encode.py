@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.geometry.footprint import body_side
 from crowdbot.core.recording.reading.scans import CENTIMETRE
+from crowdbot.core.replay.encode_drawings import encode_drawings
 from crowdbot.core.replay.encode_images import encode_images
 from crowdbot.core.replay.encode_robot import encode_robots
 from crowdbot.core.replay.encode_scans import encode_scans
@@ -45,6 +46,7 @@ def encode(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
         encode_robots(shown),
         encode_scans(shown.scans if run.robot is not None else ()),
         encode_signals(run),
+        encode_drawings(run, shown.drawings),
         encode_images(shown.images),
     )
     for more, packed in parts:

@@ -17,6 +17,7 @@ _SCRIPTS = (
     "script/element.js", "script/decode.js", "script/motion.js", "script/sensing.js",
     "script/gaps.js", "script/colours.js", "script/scenery.js", "script/people.js",
     "script/robots.js", "script/sensors.js", "script/ghosts.js", "script/contacts.js",
+    "script/thoughts.js",
     "script/views.js", "script/timeline.js", "script/series.js", "script/plots.js",
     "script/cameras.js", "script/events.js", "script/legend.js", "script/readout.js",
     "script/pointers.js", "script/follow.js", "script/address.js", "script/player.js",

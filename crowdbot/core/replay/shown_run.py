@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.recording.reading.images import ReplayImages
+from crowdbot.core.recording.reading.one_robot import Drawing
 from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.replay.other_track import OtherTrack, Seen
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -48,6 +49,7 @@ class ShownRun:
         scans: readings of lidars, ultrasounds and infrared sensors; drawn from the robot's true
             pose.
         images: camera images.
+        drawings: what the planner drew, by name, in the robot's base frame.
         scores: shown beside the run; may be empty.
         look: parts of the robot seen from above, lowest first, in its frame; without any, its
             outline and an arrow.
@@ -62,6 +64,7 @@ class ShownRun:
     facts: Mapping[str, str] = field(default_factory=dict)
     scans: Sequence[ReplayScan] = ()
     images: Sequence[ReplayImages] = ()
+    drawings: Mapping[str, Sequence[Drawing]] = field(default_factory=dict)
     scores: Sequence[Score] = ()
     look: Sequence[Seen] = ()
     robot: str = "robot"

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.reading.images import ImageCollector
+from crowdbot.core.recording.reading.one_robot import Drawing
 from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import Registry
@@ -25,10 +26,11 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class SeenRun:
-    """One robot's run, and the readings of its range sensors."""
+    """One robot's run, the readings of its range sensors, and what its planner drew."""
 
     run: Trajectories
     scans: Sequence[ReplayScan]
+    drawings: Mapping[str, Sequence[Drawing]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,11 +70,17 @@ def read_robots(
     also = None if images is None else images.add
     with Recording(path, max_rate=max_rate, observe=also) as recording:
         if len(robots) == 1:
-            return {robots[0]: SeenRun(recording.trajectories(), recording.scans())}
+            return {
+                robots[0]: SeenRun(
+                    recording.trajectories(), recording.scans(), recording.drawings()
+                )
+            }
         if missing := [name for name in robots if name not in recording.robots]:
             raise InputError(f"{path}: robot '{missing[0]}' is not in it")
         return {
-            name: SeenRun(recording.trajectories(name), recording.scans(robot=name))
+            name: SeenRun(
+                recording.trajectories(name), recording.scans(robot=name), recording.drawings(name)
+            )
             for name in robots
         }
 

@@ -149,6 +149,7 @@ def shown_run(
         facts={**several, **replay_facts(record)},
         scans=seen[last].scans,
         images=images,
+        drawings=seen[last].drawings,
         scores=scores,
         look=looks.get(last, ()),
         robot=last,

@@ -22,7 +22,14 @@ from pydrake.systems.framework import (
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
-from crowdbot.core.planning.planner import Observation, SignalBounds, Truth, named_signal
+from crowdbot.core.planning.planner import (
+    Observation,
+    SignalBounds,
+    Truth,
+    drawing_bounds,
+    named_drawing,
+    named_signal,
+)
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
@@ -106,6 +113,7 @@ class PlannerSystem(LeafSystem):
         visible: Mapping[str, None],
         on_step: Callable[[float, HostedCommand], None],
         on_signal: Callable[[float, str, float], None],
+        on_drawing: Callable[[float, str, NDArray[np.float32]], None],
         people: People | None = None,
         crowd_size: int = 0,
         others: OtherRobots,
@@ -127,6 +135,7 @@ class PlannerSystem(LeafSystem):
         self._slots = {n: s for n, s in bank.slots.items() if n in visible}
         self._odometry = next((s for s in bank.slots.values() if is_odometry(s.info)), None)
         self._on_step, self._on_signal, self._bounds = on_step, on_signal, SignalBounds()
+        self._on_drawing, self._drawn = on_drawing, drawing_bounds()
         self._port = self.DeclareVectorInputPort(
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
         )
@@ -203,6 +212,10 @@ class PlannerSystem(LeafSystem):
         self._bounds.check(name)
         self._on_signal(t, name, value)
 
+    def _draw(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
+        self._drawn.check(name, rows.size)
+        self._on_drawing(t, name, rows)
+
     def _observe(self, bank: Array, t: float, truth: Truth | None) -> Observation:
         pose, twist, sideways = self._task.start, (0.0, 0.0), [0.0]
         if self._odometry is not None:
@@ -221,6 +234,7 @@ class PlannerSystem(LeafSystem):
                 if bank[s.stamp] >= 0.0
             },
             log=lambda name, value: self._signal(t, *named_signal(name, value)),
+            draw=lambda name, rows: self._draw(t, *named_drawing(name, rows)),
             truth=truth,
         )
 
@@ -260,6 +274,7 @@ def add_planner(
         rate=built.scenario.rates.planner, visible=dict.fromkeys(built.visible),
         on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
         on_signal=log.writer.signal,
+        on_drawing=log.writer.drawing,
         people=_people(crowd, others.models) if privileged else None,
         crowd_size=0 if crowd is None else crowd.state.size(),
         others=others,

@@ -36,7 +36,7 @@ SensorInfo = namedtuple(
 )
 Reading = namedtuple("Reading", "stamp values colour")
 Truth = namedtuple("Truth", "pose velocity people people_velocity people_radius people_id")
-Observation = namedtuple("Observation", "t pose twist vy goal goal_zone readings log truth")
+Observation = namedtuple("Observation", "t pose twist vy goal goal_zone readings log truth draw")
 #: A planner may raise this if it has no valid command; the robot is stopped.
 NoValidCommand = type("NoValidCommand", (Exception,), {})
 
@@ -71,6 +71,7 @@ class ForeignSide:
         self._parameters: dict[str, Any] = {}
         self._planner: Any = None
         self._signals: list[list[Any]] = []
+        self._drawings: list[list[Any]] = []
         self._doing = ""
 
     def hello(self, sent: dict[str, Any]) -> dict[str, Any]:
@@ -103,9 +104,10 @@ class ForeignSide:
     def observe(self, sent: dict[str, Any]) -> dict[str, Any]:
         """Run one step."""
         self._doing = "step"
-        self._signals = []
-        answer = self._planner.step(self._decoder.observation(sent, self._log))
-        return {"type": "command", **_command(answer), "signals": self._signals}
+        self._signals, self._drawings = [], []
+        answer = self._planner.step(self._decoder.observation(sent, self._log, self._draw))
+        noted = {"signals": self._signals, "drawings": self._drawings}
+        return {"type": "command", **_command(answer), **noted}
 
     def error(self, error: BaseException) -> dict[str, Any]:
         """Convert an exception to a message; ``NoValidCommand`` stops the robot."""
@@ -139,6 +141,11 @@ class ForeignSide:
         if not isinstance(name, str) or not name:
             raise TypeError(f"log: the name of a signal is text, not {name!r}")
         self._signals.append([name, float(value)])
+
+    def _draw(self, name: str, rows: Any) -> None:
+        if not isinstance(name, str) or not name:
+            raise TypeError(f"draw: the name of a drawing is text, not {name!r}")
+        self._drawings.append([name, [[float(x) for x in row] for row in rows]])
 
     def _where(self, error: BaseException) -> str:
         """Return the innermost line in the planner's own files."""

@@ -17,9 +17,17 @@ from types import SimpleNamespace
 from typing import Any
 
 import msgpack
+from numpy.typing import ArrayLike
 
 from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
-from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth, named_signal
+from crowdbot.core.planning.planner import (
+    NoValidCommand,
+    Observation,
+    Planner,
+    Truth,
+    named_drawing,
+    named_signal,
+)
 from crowdbot.core.planning.process import serving
 from crowdbot.core.planning.python_file import (
     build_of_class,
@@ -61,6 +69,7 @@ class OwnSide:
         self._build: Callable[[], Planner] | None = None
         self._guarded: GuardedPlanner | None = None
         self._signals: list[tuple[str, float]] = []
+        self._drawings: list[tuple[str, list[list[float]]]] = []
 
     def hello(self, sent: Mapping[str, Any]) -> dict[str, Any]:
         """Find the planner and return its description."""
@@ -97,10 +106,17 @@ class OwnSide:
     def observe(self, sent: dict[str, Any]) -> dict[str, Any]:
         """Run one step."""
         assert self._guarded is not None
-        self._signals = []
-        obs = self._decoder.observation(sent, self._log)
+        self._signals, self._drawings = [], []
+        obs = self._decoder.observation(sent, self._log, self._draw)
         v, w, vy = self._guarded.step(obs)
-        return {"type": "command", "v": v, "w": w, "vy": vy, "signals": self._signals}
+        return {
+            "type": "command",
+            "v": v,
+            "w": w,
+            "vy": vy,
+            "signals": self._signals,
+            "drawings": self._drawings,
+        }
 
     def error(self, error: BaseException) -> dict[str, Any]:
         """Convert an exception to a message."""
@@ -115,6 +131,10 @@ class OwnSide:
 
     def _log(self, name: str, value: float) -> None:
         self._signals.append(named_signal(name, value))
+
+    def _draw(self, name: str, rows: ArrayLike) -> None:
+        name, table = named_drawing(name, rows)
+        self._drawings.append((name, table.tolist()))
 
     def _file(self) -> _Found:
         path, name = Path(self._what["file"]), self._what["class"]

@@ -361,6 +361,12 @@ class ProcessPlanner:
                 obs.log(name, value)
         except (TypeError, ValueError):
             self._fail(f"step: 'signals' are pairs of a name and a number, not {signals!r:.80}")
+        drawings = said.get("drawings") or ()
+        try:
+            for name, rows in drawings:
+                obs.draw(name, rows)
+        except (TypeError, ValueError):
+            self._fail(f"step: 'drawings' are pairs of a name and rows, not {drawings!r:.80}")
 
     def _command(self, said: Mapping[str, Any]) -> Command:
         numbers = [said.get("v"), said.get("w"), said.get("vy", 0.0)]

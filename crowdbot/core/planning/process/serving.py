@@ -160,7 +160,12 @@ class Decoder:
         }
         return self._types.SensorInfo(**{**sent, **made})
 
-    def observation(self, sent: dict[str, Any], log: Callable[[str, float], None]) -> Any:
+    def observation(
+        self,
+        sent: dict[str, Any],
+        log: Callable[[str, float], None],
+        draw: Callable[[str, Any], None],
+    ) -> Any:
         """Return the planner's input in one step."""
         return self._types.Observation(
             t=sent["t"],
@@ -172,6 +177,7 @@ class Decoder:
             readings=MappingProxyType({n: self._reading(r) for n, r in sent["readings"].items()}),
             log=log,
             truth=self._truth(sent.get("truth")),
+            draw=draw,
         )
 
     def _reading(self, sent: dict[str, Any]) -> Any:

@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
 
 from crowdbot.core.recording.container.records import Record, decode
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader, check_format, with_tilts
@@ -23,6 +25,13 @@ from crowdbot.errors import InputError
 #: The last two are recorded of a robot that goes sideways.
 _ROBOT = ("x", "y", "theta", "v", "w", "vx", "vy")
 _CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bearing")
+
+
+class Drawing(NamedTuple):
+    """A planner's drawing: time (s) and rows (K, C) in the robot's base frame."""
+
+    t: float
+    rows: Array
 
 
 class RobotRecords:
@@ -44,6 +53,8 @@ class RobotRecords:
         Topic.CONTACTS: "crowdbot_msgs/msg/Contact",
         Topic.SIGNAL: "crowdbot_msgs/msg/Series",
         Topic.PLANNER_TIME: "crowdbot_msgs/msg/Series",
+        Topic.TRACKS: "crowdbot_msgs/msg/Drawing",
+        Topic.THOUGHTS: "crowdbot_msgs/msg/Drawing",
         Topic.END: "crowdbot_msgs/msg/RunEnd",
     }
 
@@ -137,6 +148,23 @@ class RobotRecords:
             UnknownNameError: there is no such sensor.
         """
         return self._scans.scans(self.header, sensor)
+
+    def drawings(self) -> dict[str, list[Drawing]]:
+        """Return the drawings of the planner by name, in the order of time.
+
+        Raises:
+            InputError: a drawing is damaged.
+        """
+        found: dict[str, list[Drawing]] = {}
+        for topic in (Topic.TRACKS, Topic.THOUGHTS):
+            records = self._records[topic]
+            for record, message in zip(records, self._messages(topic), strict=True):
+                columns = int(message.columns)
+                if columns < 1 or len(message.data) % columns:
+                    raise InputError(f"{self._path}: damaged: a drawing '{message.name:.40}'")
+                rows = np.asarray(message.data, np.float64).reshape(-1, columns)
+                found.setdefault(message.name, []).append(Drawing(record.ns / 1e9, rows))
+        return found
 
     @cached_property
     def people(self) -> Trajectories | None:

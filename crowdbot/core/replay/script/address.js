@@ -1,7 +1,7 @@
 // The view is stored in the address: #t= and all settings that differ from the defaults.
 
-const SWITCHES = ["lidar", "sonar", "trails", "ghost"];
-const ON_AT_FIRST = { lidar: true, sonar: true, trails: false, ghost: true };
+const SWITCHES = ["lidar", "sonar", "thoughts", "trails", "ghost"];
+const ON_AT_FIRST = { lidar: true, sonar: true, thoughts: true, trails: false, ghost: true };
 let addressDue = 0;
 
 const fragment = () => new URLSearchParams(location.hash.slice(1));

@@ -55,6 +55,7 @@ function arrange() {
   byId("scrub").min = shown.first;
   byId("scrub").max = shown.last;
   const has = { lidar: (run) => run.scans.length, sonar: (run) => run.cones.length,
+    thoughts: (run) => run.drawings.length,
     trails: (run) => run.people?.count, touch: (run) => run.contacts.length };
   for (const [id, test] of Object.entries(has)) byId(id).hidden = !runs.some(test);
   byId("ghost").hidden = runs.length < 2;

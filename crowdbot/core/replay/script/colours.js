@@ -8,7 +8,7 @@ function readColours() {
   const style = getComputedStyle(document.documentElement);
   const read = (name) => style.getPropertyValue(`--${name}`).trim();
   const names = ["floor", "grid", "grid-strong", "wall", "ink", "muted", "robot", "robot-edge",
-    "goal", "lidar", "sonar", "contact", "person-edge", "slow", "fast", "accent", "chosen"];
+    "goal", "lidar", "sonar", "thought", "contact", "person-edge", "slow", "fast", "accent", "chosen"];
   colours = Object.fromEntries(names.map((n) => [n, read(n)]));
   colours.runs = Array.from({ length: RUN_COLOURS }, (_, i) => read(`run-${i}`));
   const channel = (hex, i) => parseInt(hex.slice(1 + 2 * i, 3 + 2 * i), 16);

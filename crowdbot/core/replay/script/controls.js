@@ -56,6 +56,7 @@ const KEYS = {
   f: () => shown.hasRobot && followRobot(),
   l: () => byId("lidar").click(),
   s: () => byId("sonar").click(),
+  p: () => byId("thoughts").click(),
   t: () => byId("trails").click(),
   g: () => byId("ghost").click(),
   c: () => nextEvent(["contact"]),

@@ -85,6 +85,13 @@ async function decodeRun(meta, blob) {
     const rows = await unpackFloats(blob(`signal${i}`), signal.count, 4);
     Object.assign(signal, { t: rows.subarray(0, signal.count), values: rows.subarray(signal.count) });
   }
+  for (const [i, drawing] of run.drawings.entries()) {
+    const count = drawing.rows.reduce((sum, rows) => sum + rows, 0);
+    const rows = await unpackFloats(blob(`drawing${i}`), count, 4);
+    let start = 0;
+    drawing.starts = drawing.rows.map((size) => (start += size) - size);
+    drawing.columns = [0, 1, 2, 3].map((c) => rows.subarray(c * count, (c + 1) * count));
+  }
   for (const [i, camera] of run.cameras.entries()) {
     camera.indices = await unpackImages(blob(`images${i}`), camera.width * camera.height);
   }

@@ -14,6 +14,7 @@ function legendEntries() {
     [chosenPerson() !== null || state.follow.startsWith("robot"), "chosen", "followed"],
     [state.lidar && any((run) => run.scans.length), "lidar", "lidar"],
     [state.sonar && any((run) => run.cones.length), "sonar", "ultrasound, infrared"],
+    [state.thoughts && any((run) => run.drawings.length), "thought", "what the planner thinks"],
     [any((run) => run.contacts.length), "contact", "contact"],
     [any((run) => run.zone.length || run.robots.some(({ goal }) => goal)), "goal", "goal"],
     ...kinds.map(({ whom, text }) => [true, `wall wall-${whom}`, text]),

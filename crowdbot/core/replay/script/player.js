@@ -58,7 +58,7 @@ function optionsFor(run, frames, more) {
     ({ other, ghost: frames[other.index], colour: colourOfRun(other.index) }));
   const colour = shown.runs.length > 1 ? colourOfRun(run.index) : colours.robot;
   const followed = followedIn(run, frames[run.index]);
-  return { grid: 0.5, lidar: state.lidar, sonar: state.sonar, trails: state.trails, ghosts, colour, followed, ...more };
+  return { grid: 0.5, lidar: state.lidar, sonar: state.sonar, thoughts: state.thoughts, trails: state.trails, ghosts, colour, followed, ...more };
 }
 
 /** Centres a view on the followed body, or on the chosen place. */
@@ -99,7 +99,7 @@ function paintWide(view, frames) {
     colour: shown.runs.length > 1 ? colourOfRun(run.index) : colours.accent,
   }));
   const [run] = shown.runs;
-  drawView(run, view, frames[0], optionsFor(run, frames, { grid: 1, sonar: false, trails: false, frames: boxes }));
+  drawView(run, view, frames[0], optionsFor(run, frames, { grid: 1, sonar: false, thoughts: false, trails: false, frames: boxes }));
 }
 
 function paintPanel({ run, view }, frames) {

@@ -36,7 +36,7 @@ function drawView(run, view, frame, options) {
 }
 
 function drawAll(g, run, frame, options, px) {
-  const { lidar, sonar, trails, followed } = options;
+  const { lidar, sonar, thoughts, trails, followed } = options;
   if (lidar) for (const scan of frame.scans) drawFan(g, scan);
   if (sonar) for (const cone of frame.cones) drawCone(g, cone, px);
   drawWalls(g, run, px);
@@ -49,6 +49,7 @@ function drawAll(g, run, frame, options, px) {
   if (sonar) for (const cone of frame.cones) drawEcho(g, cone, px);
   run.robots.forEach((r, i) => drawRobot(g, r, frame.robots[i], options.colour, px));
   if (followed) drawFollowed(g, followed.place, Math.max(followed.radius, 4 * px), px);
+  if (thoughts) drawThoughts(g, run, frame.time, px);
   drawContacts(g, run, frame, px);
 }
 

@@ -12,8 +12,8 @@ import crowdbot.plugins.planners.dwa.parameters_build as entries
 import crowdbot.plugins.planners.dwa.rollouts_build as rollout
 import crowdbot.plugins.planners.dwa.window_build as window
 from crowdbot.plugins.planners.dwa.cost_build import evaluate
-from crowdbot.plugins.planners.dwa.dead_ends.map_build import remembered, way_out
 from crowdbot.plugins.planners.dwa.direction_build import choose_direction, free_time
+from crowdbot.plugins.planners.shared.local_map_build import remembered, way_out
 from crowdbot.plugins.planners.shared.points_build import (
     apart,
     apparent_velocity,

@@ -25,7 +25,7 @@ from crowdbot.plugin import Array, Pose, RobotBody, RobotLimits
 from crowdbot.plugins.planners.dwa.cost_build import evaluate
 from crowdbot.plugins.planners.dwa.dead_ends.legs_build import Legs
 from crowdbot.plugins.planners.dwa.dead_ends.manoeuvre_build import manoeuvre
-from crowdbot.plugins.planners.dwa.dead_ends.map_build import islands
+from crowdbot.plugins.planners.shared.local_map_build import islands
 from crowdbot.plugins.planners.shared.robot_outline_build import (
     core_gap,
     core_of,

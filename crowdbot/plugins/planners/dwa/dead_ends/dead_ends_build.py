@@ -10,9 +10,9 @@ import numpy as np
 
 from crowdbot.plugin import Array, Observation, Pose
 from crowdbot.plugins.planners.dwa.dead_ends.manoeuvring_build import Manoeuvring
-from crowdbot.plugins.planners.dwa.dead_ends.map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.dwa.dwa import DwaSpec
 from crowdbot.plugins.planners.dwa.scene_build import LEGS, REACH, SECTORS, PerceivedScene
+from crowdbot.plugins.planners.shared.local_map_build import AIM, remembered, way_out
 from crowdbot.plugins.planners.shared.people_build import with_discs
 from crowdbot.plugins.planners.shared.points_build import apart, nearest_per_sector
 

@@ -13,7 +13,7 @@ from crowdbot.plugins.planners.dwa.cost_build import evaluate
 from crowdbot.plugins.planners.dwa.dead_ends.legs_build import Legs
 from crowdbot.plugins.planners.dwa.dead_ends.lidar_views_build import LidarViews
 from crowdbot.plugins.planners.dwa.dead_ends.manoeuvre_build import manoeuvre
-from crowdbot.plugins.planners.dwa.dead_ends.map_build import islands
+from crowdbot.plugins.planners.shared.local_map_build import islands
 from crowdbot.plugins.planners.shared.people_build import carry, with_discs
 from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
 

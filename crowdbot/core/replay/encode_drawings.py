@@ -1,0 +1,56 @@
+"""Pack what the planner drew: its tracks of people, paths and points, in the world."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.planning.planner import TRACKS
+from crowdbot.core.recording.reading.one_robot import Drawing
+from crowdbot.core.replay.pack import pack_words
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array
+
+
+def encode_drawings(
+    run: Trajectories, drawings: Mapping[str, Sequence[Drawing]]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return names, times and numbers of rows; and x, y of all rows (2, K), float32.
+
+    Rows of tracks also have their velocities, (4, K). They are placed from the robot's true pose.
+    """
+    about: list[dict[str, Any]] = []
+    blobs: dict[str, str] = {}
+    if run.robot is None:
+        return {"drawings": about}, blobs
+    for name, drawn in sorted(drawings.items()):
+        rows = [_in_world(run, one, tracks=name == TRACKS) for one in drawn]
+        columns = np.concatenate(rows, axis=1)
+        blobs[f"drawing{len(about)}"] = pack_words(columns.astype("<f4"))
+        about.append(
+            {
+                "name": name,
+                "tracks": name == TRACKS,
+                "t": [round(one.t, 6) for one in drawn],
+                "rows": [part.shape[1] for part in rows],
+            }
+        )
+    return {"drawings": about}, blobs
+
+
+def _in_world(run: Trajectories, drawing: Drawing, *, tracks: bool) -> Array:
+    """Return x and y (2, K) of rows, with the velocities of tracks (4, K)."""
+    assert run.robot is not None
+    at = int(np.argmin(np.abs(run.t - drawing.t)))
+    yaw = float(run.robot.theta[at])
+    c, s = math.cos(yaw), math.sin(yaw)
+    rotation = np.array([[c, -s], [s, c]])
+    first = 1 if tracks else 0
+    places = rotation @ drawing.rows[:, first : first + 2].T
+    places += np.array([[run.robot.x[at]], [run.robot.y[at]]])
+    if not tracks:
+        return np.asarray(places)
+    return np.concatenate([places, rotation @ drawing.rows[:, 3:5].T])

@@ -1,0 +1,44 @@
+// Draws what the planner thought at a time: the people that it tracks, paths and points.
+
+const THOUGHT_AGE = 0.5; // s; older drawings are not shown
+const AHEAD = 1; // s; a track's line ends where it would be then
+
+/** Draws the latest drawing of each name. */
+function drawThoughts(g, run, time, px) {
+  for (const drawing of run.drawings) {
+    const j = lastBefore(drawing.t, time);
+    if (j < 0 || time - drawing.t[j] > THOUGHT_AGE) continue;
+    const [from, to] = [drawing.starts[j], drawing.starts[j] + drawing.rows[j]];
+    (drawing.tracks ? drawTracks : drawPath)(g, drawing, from, to, px);
+  }
+}
+
+/** Draws a cross on each track, and a line to where it would be. */
+function drawTracks(g, { columns: [x, y, vx, vy] }, from, to, px) {
+  const r = Math.max(0.1, 3 * px);
+  g.beginPath();
+  for (let i = from; i < to; i++) {
+    g.moveTo(x[i] - r, y[i]);
+    g.lineTo(x[i] + r, y[i]);
+    g.moveTo(x[i], y[i] - r);
+    g.lineTo(x[i], y[i] + r);
+    g.moveTo(x[i], y[i]);
+    g.lineTo(x[i] + AHEAD * vx[i], y[i] + AHEAD * vy[i]);
+  }
+  g.strokeStyle = colours.thought;
+  g.lineWidth = 1.5 * px;
+  g.stroke();
+}
+
+/** Draws rows as a line with a dot at its end. */
+function drawPath(g, { columns: [x, y] }, from, to, px) {
+  if (from === to) return;
+  g.beginPath();
+  for (let i = from; i < to; i++) g[i === from ? "moveTo" : "lineTo"](x[i], y[i]);
+  g.strokeStyle = g.fillStyle = colours.thought;
+  g.lineWidth = 2 * px;
+  g.stroke();
+  g.beginPath();
+  g.arc(x[to - 1], y[to - 1], 3 * px, 0, 2 * Math.PI);
+  g.fill();
+}

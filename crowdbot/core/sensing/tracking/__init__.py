@@ -1,0 +1,1 @@
+"""People tracker for planners: legs in lidar points, a map of what stands, tracks of people."""

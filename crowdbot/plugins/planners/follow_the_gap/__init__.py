@@ -1,0 +1,1 @@
+"""Steer into the widest gap, less the farther the nearest obstacle."""

@@ -1,0 +1,112 @@
+"""MPPI: see, sample around the last plan, drive the mean.
+
+Williams, Drews, Goldfain, Rehg, Theodorou, "Aggressive driving with model predictive path integral
+control", ICRA 2016. Numbers of samples, noise, temperature and control weight are the defaults of
+nav2's MPPI controller (docs.nav2.org, configuration of the MPPI controller).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.mppi import rollouts_build as rollouts
+from crowdbot.plugins.planners.mppi.mppi import MppiSpec
+from crowdbot.plugins.planners.shared.cover_build import covering_discs
+from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
+from crowdbot.plugins.planners.shared.driven_path_build import driven
+from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
+from crowdbot.plugins.planners.shared.surroundings_build import Surroundings, people_near
+from crowdbot.plugins.planners.shared.way_build import Way
+
+_ARRIVED, _BESIDE = 0.1, 0.12
+#: At most this many people are predicted, the nearest.
+_PEOPLE = 30
+
+
+class Mppi:
+    """Remembers its plan."""
+
+    def __init__(self, spec: MppiSpec) -> None:
+        self._spec = spec
+        self._surroundings = Surroundings(spec)
+        self._field = DistanceField()
+        self._limits: RobotLimits | None = None
+        self._robot = covering_discs(spec.robot_radius, None)
+        self._way = Way(1.0)
+        self._p: Array = np.zeros(rollouts.PARAMETERS)
+        self._samples = rollouts.drawn(2, spec.steps, 0)
+        self._next = 0.0
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Draw the noise; compile kernels that are not compiled yet."""
+        spec = self._spec
+        self._limits, self._next = limits, 0.0
+        self._surroundings.reset(sensors)
+        self._robot = covering_discs(spec.robot_radius, task.robot)
+        self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
+        self._p = _parameters(spec, limits)
+        self._samples = rollouts.drawn(2, spec.steps, 0)
+        around = rollouts.Around(
+            np.ones((1, 5)), self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
+        )
+        rollouts.improve(around, self._p, (0.0,) * 6, self._samples)
+        rollouts.shift(self._samples.plan)
+        self._samples = rollouts.drawn(spec.samples, spec.steps, seed)
+
+    def step(self, obs: Observation) -> Command:
+        """Return the first control of the improved plan; zero at the goal."""
+        assert self._limits is not None
+        spec, limits = self._spec, self._limits
+        scene = self._surroundings.see(obs)
+        pose = scene.pose
+        distance, _ = bearing(pose, obs.goal)
+        if distance <= _ARRIVED:
+            self._samples.plan[:] = 0.0
+            return Command(0.0, 0.0)
+        self._shift(obs.t)
+        top = min(spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
+        self._p[rollouts.TOP] = top
+        aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
+        self._field.fill(scene.points, pose.x, pose.y)
+        people = people_near(scene, limits.v_max, spec.steps * spec.step_time, _PEOPLE)
+        around = rollouts.Around(people, self._field.values, self._field.corner, self._robot, aim)
+        state = (pose.x, pose.y, pose.yaw, *scene.twist)
+        cost = rollouts.improve(around, self._p, state, self._samples)
+        obs.log("mppi/cost", min(cost, 100.0))
+        obs.draw("plan", driven(self._samples.plan[::2], 2.0 * spec.step_time))
+        v, w, vy = self._samples.plan[0].tolist()
+        return Command(v, w, vy)
+
+    def _shift(self, t: float) -> None:
+        """Move the plan on to a time, s."""
+        if t <= self._next - self._spec.step_time:
+            self._next = t
+        while self._next < t:
+            rollouts.shift(self._samples.plan)
+            self._next += self._spec.step_time
+
+
+def _parameters(spec: MppiSpec, limits: RobotLimits) -> Array:
+    p = np.zeros(rollouts.PARAMETERS)
+    p[rollouts.A_MAX], p[rollouts.ALPHA_MAX] = limits.a_max, limits.alpha_max
+    p[rollouts.V_MIN], p[rollouts.V_MAX] = limits.v_min, limits.v_max
+    p[rollouts.W_MAX], p[rollouts.VY_MAX] = limits.w_max, limits.vy_max
+    p[rollouts.DT], p[rollouts.TEMPERATURE] = spec.step_time, spec.temperature
+    p[rollouts.CONTROL], p[rollouts.COMFORT] = spec.control_weight, spec.comfort
+    p[rollouts.GROWTH], p[rollouts.PROGRESS] = spec.margin_growth, spec.progress
+    p[rollouts.HEADING], p[rollouts.CLEARANCE] = spec.heading, spec.clearance
+    p[rollouts.COLLISION], p[rollouts.BACKWARD] = spec.collision, spec.backward
+    p[rollouts.V_NOISE], p[rollouts.W_NOISE] = spec.speed_noise, spec.yaw_rate_noise
+    p[rollouts.TOP] = spec.speed * limits.v_max
+    return p
+
+
+def build(spec: MppiSpec) -> Mppi:
+    """Build a planner from its spec."""
+    return Mppi(spec)

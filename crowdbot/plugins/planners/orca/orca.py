@@ -1,0 +1,40 @@
+"""ORCA: the velocity nearest to the wanted one that avoids everyone for some seconds."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le
+from pydantic import Field
+
+from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration
+from crowdbot.plugins.planners.shared.rungs import RungSpec
+
+
+class OrcaSpec(RungSpec):
+    """People are expected to take their share of each evasion, walls none."""
+
+    kind: Literal["orca"] = "orca"
+    time_horizon: PositiveDuration = Field(
+        default=2.0, description="Time for which no person is touched, s."
+    )
+    obstacle_horizon: PositiveDuration = Field(
+        default=1.0, description="Time for which nothing that stands is touched, s."
+    )
+    share: Annotated[float, Gt(0), Le(1)] = Field(
+        default=0.5, description="The robot's share of an evasion; 0.5: people take the other half."
+    )
+    neighbours: Annotated[int, Ge(1), Le(200)] = Field(
+        default=20, description="People that are considered, the nearest first."
+    )
+    tracking_error: NonNegativeLength = Field(
+        default=0.05,
+        description="How far a robot that cannot go sideways may be off the chosen velocity, m.",
+    )
+
+
+ORCA = Component(
+    spec=OrcaSpec,
+    build="crowdbot.plugins.planners.orca.orca_build:build",
+    summary="optimal reciprocal collision avoidance, non-holonomic (Alonso-Mora et al. 2013)",
+)

@@ -1,0 +1,58 @@
+"""People MPC: the best of some hundred plans of four seconds among predicted people."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.plugin import (
+    Component,
+    NonNegativeLength,
+    NonNegativeSpeed,
+    PositiveDuration,
+    PositiveLength,
+)
+from crowdbot.plugins.planners.shared.rungs import RungSpec
+
+Weight = Annotated[float, Ge(0)]
+
+
+class PeopleMpcSpec(RungSpec):
+    """Plans are two stretches: a velocity, and then a direction beside that of the goal."""
+
+    kind: Literal["people_mpc"] = "people_mpc"
+    person_radius: NonNegativeLength = Field(
+        default=0.2, description="Disc that is kept clear around people, m."
+    )
+    window: PositiveDuration = Field(
+        default=0.5, description="First velocities are those reachable in this time, s."
+    )
+    speeds: Annotated[int, Ge(2), Le(16)] = Field(default=5, description="First speeds.")
+    yaw_rates: Annotated[int, Ge(3), Le(32)] = Field(default=11, description="First yaw rates.")
+    horizon: PositiveDuration = Field(default=4.0, le=10.0, description="Length of a plan, s.")
+    turn_time: PositiveDuration = Field(default=0.8, description="Length of its first stretch, s.")
+    margin: NonNegativeLength = Field(
+        default=0.05, description="Clearance below which a plan counts as a hit, m."
+    )
+    comfort: PositiveLength = Field(
+        default=0.5, description="Clearance above which more is no better, m."
+    )
+    margin_growth: NonNegativeSpeed = Field(
+        default=0.03, description="Clearance to people lost to doubt, m/s."
+    )
+    progress: Weight = Field(default=1.0, description="Weight of the way made to the goal.")
+    clearance: Weight = Field(default=0.25, description="Weight of the closest approach.")
+    impact: Weight = Field(default=1.0, description="Weight of an early and fast hit.")
+    heading: Weight = Field(
+        default=0.8, description="Weight of the angle to the goal after the first stretch."
+    )
+    smoothness: Weight = Field(default=0.05, description="Weight of a change of command.")
+
+
+PEOPLE_MPC = Component(
+    spec=PeopleMpcSpec,
+    build="crowdbot.plugins.planners.people_mpc.people_mpc_build:build",
+    summary="the best of some hundred plans of four seconds among tracked, predicted people",
+)

@@ -1,0 +1,127 @@
+"""People MPC: see, predict, choose the best plan, drive its beginning, and plan again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_aside
+from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.people_mpc import plans_build as plans
+from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
+from crowdbot.plugins.planners.shared.cover_build import covering_discs
+from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
+from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
+from crowdbot.plugins.planners.shared.surroundings_build import Surroundings, in_base, people_near
+from crowdbot.plugins.planners.shared.way_build import Way
+
+_ARRIVED = 0.1
+#: At most this many people are predicted, the nearest.
+_PEOPLE = 40
+#: Free space beside the robot on the way past what stands, m.
+_BESIDE = 0.12
+
+
+class PeopleMpc:
+    """Remembers its last plan; `Surroundings` remembers people and `Way` what stands."""
+
+    def __init__(self, spec: PeopleMpcSpec) -> None:
+        self._spec = spec
+        self._surroundings = Surroundings(spec)
+        self._field = DistanceField()
+        self._limits: RobotLimits | None = None
+        self._robot = covering_discs(spec.robot_radius, None)
+        self._way = Way(1.0)
+        self._p: Array = np.zeros(plans.PARAMETERS)
+        self._last, self._aside = (0.0, 0.0, 0.0), 0.0
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Store the limits and mounts; compile kernels that are not compiled yet."""
+        del seed
+        spec = self._spec
+        self._limits = limits
+        self._surroundings.reset(sensors)
+        self._robot = covering_discs(spec.robot_radius, task.robot)
+        self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
+        self._p = _parameters(spec, limits)
+        self._last, self._aside = (0.0, 0.0, 0.0), 0.0
+        self._firsts((0.0, 0.0, 0.0), 1.0, 0.0)
+        world = plans.World(
+            np.ones((1, 5)), self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
+        )
+        state = (0.0,) * 6
+        plans.best_plan(world, self._p, state, np.zeros((1, 3)), self._last, 0.0)
+        plans.path_of(self._p, state, (9.0, 0.0), self._last, 0.0, 1.0)
+
+    def step(self, obs: Observation) -> Command:
+        """Return the beginning of the best plan; zero at the goal."""
+        assert self._limits is not None
+        scene = self._surroundings.see(obs)
+        pose = scene.pose
+        distance, _ = bearing(pose, obs.goal)
+        if distance <= _ARRIVED:
+            self._last = (0.0, 0.0, 0.0)
+            return Command(0.0, 0.0)
+        aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
+        _, error = bearing(pose, aim)
+        top = min(
+            self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
+        )
+        firsts = self._firsts(scene.twist, top, error)
+        self._field.fill(scene.points, pose.x, pose.y)
+        people = people_near(scene, self._p[plans.V_MAX], self._spec.horizon, _PEOPLE)
+        world = plans.World(people, self._field.values, self._field.corner, self._robot, aim)
+        state = (pose.x, pose.y, pose.yaw, *scene.twist)
+        at, aside, pace, cost = plans.best_plan(
+            world, self._p, state, firsts, self._last, self._aside
+        )
+        self._last, self._aside = (0.0, 0.0, 0.0), 0.0
+        if at >= 0:
+            v, w, vy = firsts[at].tolist()
+            self._last, self._aside = (v, w, vy), plans.ASIDE[aside]
+            chosen = plans.path_of(
+                self._p, state, aim, self._last, plans.ASIDE[aside], plans.PACES[pace]
+            )
+            obs.draw("plan", in_base(pose, chosen))
+        obs.log("people_mpc/cost", min(cost, 100.0))
+        obs.log("people_mpc/pace", plans.PACES[pace])
+        return Command(*self._last)
+
+    def _firsts(self, twist: tuple[float, float, float], top: float, error: float) -> Array:
+        """Return (C, 3) first velocities v, w, vy that the robot reaches within the window."""
+        assert self._limits is not None
+        spec, limits = self._spec, self._limits
+        v, w, vy = twist
+        dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
+        left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
+        wish = max(left, min(right, 2.0 * error))
+        if limits.vy_max > 0.0:
+            rates = np.array([wish])
+            return candidates_aside((v, vy), dv, top, spec.speeds, error, rates)
+        low = min(max(v - dv, 0.0), top)
+        high = max(min(v + dv, top), low)
+        found = candidates(low, high, spec.speeds, left, right, spec.yaw_rates, wish)
+        return np.column_stack([found, np.zeros(len(found))])
+
+
+def _parameters(spec: PeopleMpcSpec, limits: RobotLimits) -> Array:
+    p = np.zeros(plans.PARAMETERS)
+    p[plans.A_MAX], p[plans.ALPHA_MAX] = limits.a_max, limits.alpha_max
+    p[plans.V_MAX], p[plans.W_MAX] = spec.speed * limits.v_max, limits.w_max
+    p[plans.HORIZON], p[plans.TURN_TIME] = spec.horizon, spec.turn_time
+    p[plans.MARGIN], p[plans.COMFORT] = spec.margin, spec.comfort
+    p[plans.GROWTH], p[plans.PROGRESS] = spec.margin_growth, spec.progress
+    p[plans.CLEARANCE], p[plans.IMPACT] = spec.clearance, spec.impact
+    p[plans.SMOOTHNESS], p[plans.HEADING] = spec.smoothness, spec.heading
+    p[plans.SIDEWAYS] = 1.0 if limits.vy_max > 0.0 else 0.0
+    p[plans.ASIDE_COST] = 0.5 * spec.smoothness
+    return p
+
+
+def build(spec: PeopleMpcSpec) -> PeopleMpc:
+    """Build a planner from its spec."""
+    return PeopleMpc(spec)

@@ -1,0 +1,269 @@
+"""Plans of the people MPC, rolled out among people who keep their velocity; compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from crowdbot.plugin import Array, array_kernel, kernel
+from crowdbot.plugins.planners.shared.distance_field_build import distance_at
+
+#: Time step of a rollout, s.
+STEP = 0.16
+#: Directions of the second stretch beside the goal's, rad, and its speeds as shares.
+ASIDE = (0.0, 0.35, -0.35, 0.8, -0.8, 1.4, -1.4)
+PACES = (1.0, 0.5)
+#: A plan's heading follows its direction with this gain, 1/s; slower while it turns more.
+_GAIN = 2.0
+#: Share of the cost of a hit that remains if the robot stands and a person walks into it.
+_STANDING = 0.15
+#: What is already too near may be passed but not approached, m.
+_SLACK = 1e-3
+#: Columns of a first velocity, and of people.
+V, W, VY = range(3)
+#: Indices into the parameter vector.
+A_MAX, ALPHA_MAX, V_MAX, W_MAX, HORIZON, TURN_TIME, MARGIN, COMFORT, GROWTH = range(9)
+PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, SIDEWAYS, ASIDE_COST, HEADING = range(9, 16)
+PARAMETERS = 16
+
+
+class World(NamedTuple):
+    """The surroundings that plans are tested against.
+
+    Attributes:
+        people: (N, 5) x, y, vx, vy, radius; m, m/s.
+        field: distances to what stands, `DistanceField.values`.
+        corner: of the field, m.
+        robot: (K, 3) discs that hold the robot, in its frame, m.
+        goal: m.
+    """
+
+    people: Array
+    field: Array
+    corner: tuple[float, float]
+    robot: Array
+    goal: tuple[float, float]
+
+
+class Outcome(NamedTuple):
+    """The end of a rollout.
+
+    Attributes:
+        mean: mean distance to the goal, m; after a hit it no longer falls.
+        hit: time of the first hit, s; the horizon if there is none.
+        speed: speed at the hit, m/s.
+        close: 0 (farther than comfort) to 1 (touching).
+        aside: angle between heading, or motion sideways, and the goal after the first stretch, rad.
+    """
+
+    mean: float
+    hit: float
+    speed: float
+    close: float
+    aside: float
+
+
+@kernel
+def gaps(world: World, x: float, y: float, yaw: float, t: float) -> tuple[float, float]:
+    """Return the gap from the robot to the nearest person in ``t`` seconds, and to walls, m."""
+    person, wall = math.inf, math.inf
+    c, s = math.cos(yaw), math.sin(yaw)
+    for k in range(world.robot.shape[0]):
+        px = x + c * world.robot[k, 0] - s * world.robot[k, 1]
+        py = y + s * world.robot[k, 0] + c * world.robot[k, 1]
+        r = world.robot[k, 2]
+        wall = min(wall, distance_at(world.field, world.corner, px, py) - r)
+        for i in range(world.people.shape[0]):
+            dx = world.people[i, 0] + t * world.people[i, 2] - px
+            dy = world.people[i, 1] + t * world.people[i, 3] - py
+            most = person + r + world.people[i, 4]
+            square = dx * dx + dy * dy
+            if most > 0.0 and square > most * most:
+                continue  # most cases
+            person = min(person, math.sqrt(square) - r - world.people[i, 4])
+    return person, wall
+
+
+@kernel
+def _slewed(value: float, target: float, change: float) -> float:
+    return min(max(target, value - change), value + change)
+
+
+@kernel
+def roll(
+    world: World,
+    p: Array,
+    state: tuple[float, float, float, float, float, float],
+    first: tuple[float, float, float],
+    aside: float,
+    pace: float,
+    budget: float,
+) -> Outcome:
+    """Roll a plan out: a first velocity, then a direction beside the goal's.
+
+    It ends where it can no longer cost less than the budget, with an infinite mean.
+
+    Args:
+        p: parameters.
+        state: x, y, yaw, v, w, vy of the robot.
+        first: v, w, vy of the first stretch.
+        aside: angle of the second direction from that of the goal, rad; it shrinks as the plan
+            goes on, so that plans end towards the goal.
+        pace: speed of the second stretch as a share of the largest.
+        budget: cost of progress and clearance beyond which the plan is of no interest.
+    """
+    x, y, yaw, v, w, vy = state
+    person, wall = gaps(world, x, y, yaw, 0.0)
+    need = min(p[MARGIN], min(person, wall) - _SLACK)
+    close, t, total, beside = 0.0, 0.0, 0.0, 0.0
+    gx, gy = world.goal[0] - x, world.goal[1] - y
+    start, scale = math.sqrt(gx * gx + gy * gy), 2.0 / (p[V_MAX] * p[HORIZON])
+    while t < p[HORIZON] - 0.5 * STEP:
+        t += STEP
+        gx, gy = world.goal[0] - x, world.goal[1] - y
+        away = math.sqrt(gx * gx + gy * gy)
+        brake = math.sqrt(2.0 * p[A_MAX] * away)
+        vt, wt, vyt = first
+        if t > p[TURN_TIME] + 0.5 * STEP:
+            fade = max(0.0, 1.0 - t / p[HORIZON])
+            off = math.atan2(gy, gx) - yaw
+            top = min(pace * p[V_MAX], brake)
+            if p[SIDEWAYS] > 0.0:
+                wt = _GAIN * _wrapped(off)
+                vt, vyt = top * math.cos(off + aside * fade), top * math.sin(off + aside * fade)
+            else:
+                off = _wrapped(off + aside * fade)
+                wt = _GAIN * off
+                vt = top * max(0.0, math.cos(off)) if abs(off) < 1.3 else 0.0
+            wt = max(-p[W_MAX], min(p[W_MAX], wt))
+        else:
+            vt = min(vt, brake)
+            beside = abs(_wrapped(math.atan2(gy, gx) - yaw))
+        dv, dvy = vt - v, vyt - vy
+        most, change = p[A_MAX] * STEP, math.sqrt(dv * dv + dvy * dvy)
+        if change > most:
+            dv, dvy = dv * most / change, dvy * most / change
+        w_next = _slewed(w, wt, p[ALPHA_MAX] * STEP)
+        middle = yaw + (w + w_next) / 4.0 * STEP
+        c, s = math.cos(middle), math.sin(middle)
+        ahead, left = (v + 0.5 * dv) * STEP, (vy + 0.5 * dvy) * STEP
+        x += ahead * c - left * s
+        y += ahead * s + left * c
+        yaw += (w + w_next) / 2.0 * STEP
+        v, vy, w = v + dv, vy + dvy, w_next
+        person, wall = gaps(world, x, y, yaw, t)
+        gap = min(person, wall)
+        gx, gy = world.goal[0] - x, world.goal[1] - y
+        away = math.sqrt(gx * gx + gy * gy)
+        if gap < need:
+            speed = math.sqrt(v * v + vy * vy)
+            mean = (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON]
+            return Outcome(mean, t, speed, 1.0, beside)
+        total += away * STEP
+        need = min(p[MARGIN], max(need, gap))
+        doubted = min(person - p[GROWTH] * t, wall + 0.5 * p[COMFORT])
+        close = max(close, (1.0 - doubted / p[COMFORT]) * (1.0 - 0.6 * t / p[HORIZON]))
+        left = p[HORIZON] - t
+        least = total + max(0.0, left * (away - 0.5 * p[V_MAX] * left))
+        made = (start - least / p[HORIZON]) * scale
+        if p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * close > budget:
+            return Outcome(math.inf, t, 0.0, close, beside)
+    speed = math.sqrt(v * v + vy * vy)
+    return Outcome(total / p[HORIZON], p[HORIZON], speed, min(1.0, close), beside)
+
+
+@kernel
+def _wrapped(angle: float) -> float:
+    return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
+
+
+@kernel
+def best_plan(
+    world: World,
+    p: Array,
+    state: tuple[float, float, float, float, float, float],
+    firsts: Array,
+    last: tuple[float, float, float],
+    last_aside: float,
+) -> tuple[int, int, int, float]:
+    """Return the best plan after whose beginning the robot can stop before the first hit.
+
+    Args:
+        firsts: (C, 3) first velocities v, w, vy.
+        last: last command, v, w, vy.
+        last_aside: second direction of the last plan, rad.
+
+    Returns:
+        indices of the first velocity (-1: no plan is admissible), of `ASIDE` and of `PACES`; cost.
+    """
+    best, at, at_aside, at_pace = math.inf, -1, 0, 0
+    gx, gy = world.goal[0] - state[0], world.goal[1] - state[1]
+    away = math.sqrt(gx * gx + gy * gy)
+    going = math.sqrt(state[3] ** 2 + state[5] ** 2)
+    outlined = world.robot.shape[0] > 1
+    for k in range(firsts.shape[0] - 1, -1, -1):  # fast ones first, which are seldom worse
+        first = firsts[k, V], firsts[k, W], firsts[k, VY]
+        speed = math.sqrt(first[0] ** 2 + first[2] ** 2)
+        change = abs(first[0] - last[0]) + abs(first[2] - last[2])
+        base = p[SMOOTHNESS] * (change / p[V_MAX] + abs(first[1] - last[1]) / p[W_MAX])
+        if base >= best:
+            continue
+        stop = max(going, speed) / p[A_MAX] + STEP
+        if outlined and speed == 0.0 and first[1] != 0.0:
+            stop = abs(first[1]) / p[ALPHA_MAX] + STEP
+        moves = speed > 0.0 or (outlined and first[1] != 0.0)
+        for a in range(len(ASIDE)):
+            turn = base + p[ASIDE_COST] * abs(ASIDE[a] - last_aside)
+            if turn >= best:
+                continue
+            for n in range(len(PACES)):
+                end = roll(world, p, state, first, ASIDE[a], PACES[n], best - turn)
+                if end.mean == math.inf:
+                    continue
+                if moves and end.hit < stop:
+                    continue
+                made = (away - end.mean) / (0.5 * p[V_MAX] * p[HORIZON])  # earlier is better
+                blow = (1.0 - end.hit / p[HORIZON]) * (_STANDING + end.speed / p[V_MAX])
+                cost = turn + p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * end.close
+                cost += p[IMPACT] * blow + p[HEADING] * end.aside / math.pi
+                if cost < best:
+                    best, at, at_aside, at_pace = cost, k, a, n
+    return at, at_aside, at_pace, best
+
+
+@array_kernel
+def path_of(
+    p: Array,
+    state: tuple[float, float, float, float, float, float],
+    goal: tuple[float, float],
+    first: tuple[float, float, float],
+    aside: float,
+    pace: float,
+) -> Array:
+    """Return the places (S, 2) of a plan at each step, as if nothing was hit, m.
+
+    Args:
+        goal: m; the others as for `roll`.
+    """
+    out = np.empty((int(p[HORIZON] / STEP), 2))
+    x, y, yaw, v, w, vy = state
+    for n in range(out.shape[0]):
+        t = (n + 1) * STEP
+        vt, wt, vyt = first
+        if t > p[TURN_TIME] + 0.5 * STEP:
+            off = math.atan2(goal[1] - y, goal[0] - x) - yaw
+            turn = _wrapped(off + aside * max(0.0, 1.0 - t / p[HORIZON]))
+            vt = pace * p[V_MAX] * max(0.0, math.cos(turn))
+            wt, vyt = _GAIN * turn, 0.0
+            if p[SIDEWAYS] > 0.0:
+                wt = _GAIN * _wrapped(off)
+                vt, vyt = pace * p[V_MAX] * math.cos(turn), pace * p[V_MAX] * math.sin(turn)
+        v, vy = _slewed(v, vt, p[A_MAX] * STEP), _slewed(vy, vyt, p[A_MAX] * STEP)
+        w = _slewed(w, max(-p[W_MAX], min(p[W_MAX], wt)), p[ALPHA_MAX] * STEP)
+        yaw += w * STEP
+        x += (v * math.cos(yaw) - vy * math.sin(yaw)) * STEP
+        y += (v * math.sin(yaw) + vy * math.cos(yaw)) * STEP
+        out[n, 0], out[n, 1] = x, y
+    return out

@@ -1,0 +1,57 @@
+"""RPP: follow the way, slower in bends and near obstacles, and stop before a collision."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.plugin import (
+    Component,
+    PositiveAngle,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveSpeed,
+)
+from crowdbot.plugins.planners.shared.rungs import RungSpec
+
+
+class RppSpec(RungSpec):
+    """Defaults are those of nav2's regulated pure pursuit controller; speeds are the robot's."""
+
+    kind: Literal["rpp"] = "rpp"
+    look_ahead_time: PositiveDuration = Field(
+        default=1.5, description="It aims at the point of the way this far ahead at its speed, s."
+    )
+    look_ahead_min: PositiveLength = Field(default=0.3, description="Least look-ahead, m.")
+    look_ahead_max: PositiveLength = Field(default=0.9, description="Largest look-ahead, m.")
+    turn_in_place: PositiveAngle = Field(
+        default=0.785, description="Heading error above which the robot turns on the spot, rad."
+    )
+    turn_gain: PositiveFrequency = Field(
+        default=2.0, description="Yaw rate per heading error on the spot, 1/s."
+    )
+    bend_radius: PositiveLength = Field(
+        default=0.9, description="Slower in bends with a smaller radius than this, m."
+    )
+    min_speed: PositiveSpeed = Field(
+        default=0.25, description="Bends and obstacles do not slow it below this speed, m/s."
+    )
+    proximity: PositiveLength = Field(
+        default=0.6, description="Slower with an obstacle nearer than this, m."
+    )
+    proximity_gain: Annotated[float, Ge(0), Le(1)] = Field(
+        default=1.0, description="Share of the gap, of `proximity`, to which it slows."
+    )
+    collision_time: PositiveDuration = Field(
+        default=1.0, description="It stops if its arc hits something within this time, s."
+    )
+
+
+RPP = Component(
+    spec=RppSpec,
+    build="crowdbot.plugins.planners.rpp.rpp_build:build",
+    summary="regulated pure pursuit, nav2's (Macenski, Singh, Martín, Ginés 2023)",
+)

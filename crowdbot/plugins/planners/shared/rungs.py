@@ -1,0 +1,42 @@
+"""Parameters of planners that reason about people: rungs of the ladder of sensing."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Gt, Le
+from pydantic import Field
+
+from crowdbot.plugin import NonNegativeLength, PlannerSpec, PositiveLength
+
+
+class RungSpec(PlannerSpec):
+    """The ladder of sensing: the same planner with better and better knowledge.
+
+    On its last rungs, ``truth``, the planner is privileged.
+    """
+
+    needs: ClassVar[tuple[str, ...]] = ("lidar",)
+
+    tracks: Literal["lidar", "tracker", "truth"] = Field(
+        default="tracker",
+        description="People: of the last scans, as the people tracker follows them, or the truth.",
+    )
+    localisation: Literal["odometry", "corrected", "truth"] = Field(
+        default="corrected",
+        description="The robot's pose: by wheels, with the heading of walls, or the truth.",
+    )
+    robot_radius: PositiveLength | None = Field(
+        default=None, description="Radius of the robot, m; unset: the robot's own outline."
+    )
+    person_radius: NonNegativeLength = Field(
+        default=0.25, description="Disc that is kept clear around people, m."
+    )
+    speed: Annotated[float, Gt(0), Le(1)] = Field(
+        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    )
+
+    @property
+    def privileged(self) -> bool:
+        """Return True if a rung is the truth."""
+        return "truth" in (self.tracks, self.localisation)

@@ -1,0 +1,1 @@
+"""The social force model as a robot's planner."""

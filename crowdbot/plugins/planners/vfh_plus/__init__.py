@@ -1,0 +1,1 @@
+"""Vector field histogram with the robot's width and turning."""

@@ -1,0 +1,109 @@
+"""What planners draw: checked, recorded, read again, shown, and compared with the truth."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import crowdbot
+from crowdbot.cli import main
+from crowdbot.core.planning.planner import drawing_bounds, named_drawing
+from crowdbot.core.replay.encode_drawings import encode_drawings
+from crowdbot.errors import PlannerError
+
+PLANNER = """
+class Draws:
+    needs = ("lidar",)
+
+    def reset(self, task, limits, sensors, seed):
+        pass
+
+    def step(self, obs):
+        obs.draw("path", [[0.0, 0.0], [1.0, 0.5]])
+        obs.draw("nothing", [])
+        return 0.2, 0.0
+"""
+SCENARIO = "challenge-2026", "counter-d020-attentive-n01"
+
+
+def run(tmp_path: Path, planner: object, **more: object) -> crowdbot.Run:
+    changes = {"robots.robot.task.time_limit": "3 s", "crowd.seed.root": 9}
+    scenario = crowdbot.load(SCENARIO[0], SCENARIO[1] + "*", set=changes)
+    return crowdbot.simulate(
+        scenario, planner=planner, out=tmp_path / "runs", references=False,  # type: ignore[arg-type]
+        metrics="success", **more,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ([[1.0]], "rows of 2 to 16"),
+        ([[1.0, float("nan")]], "not finite"),
+        (np.zeros((3000, 2)), "at most 2000"),
+        ([1.0, 2.0], "shape"),
+    ],
+)
+def test_a_drawing_is_a_small_table_of_numbers(rows: object, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        named_drawing("path", rows)  # type: ignore[arg-type]
+
+
+def test_tracks_have_five_columns() -> None:
+    with pytest.raises(ValueError, match="number, x, y, vx, vy"):
+        named_drawing("tracks", [[1.0, 2.0]])
+    assert named_drawing("tracks", [[1, 2, 3, 4, 5]])[1].shape == (1, 5)
+
+
+@pytest.mark.parametrize("in_process", [True, False])
+def test_drawings_of_a_file_are_recorded(tmp_path: Path, in_process: bool) -> None:
+    file = tmp_path / "draws.py"
+    file.write_text(PLANNER)
+    done = run(tmp_path, f"{file}:Draws", in_process=in_process)
+    with crowdbot.Recording(done.directory / "run.mcap") as recording:
+        drawn = recording.drawings()
+        topics = recording.info.topics
+    assert topics["/thoughts"][0] == "crowdbot_msgs/msg/Drawing"
+    assert set(drawn) == {"path", "nothing"}
+    assert len(drawn["path"]) >= 20  # 8 Hz for 3 s
+    assert drawn["path"][0].rows.tolist() == [[0.0, 0.0], [1.0, 0.5]]
+    assert drawn["nothing"][0].rows.shape == (0, 2)
+
+
+def test_tracks_are_compared_with_the_truth_and_shown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    done = run(tmp_path, "people_mpc")
+    with crowdbot.Recording(done.directory / "run.mcap") as recording:
+        drawn, truth = recording.drawings(), recording.trajectories()
+    assert {"tracks", "plan"} <= set(drawn)
+    about, blobs = encode_drawings(truth, drawn)
+    assert [one["name"] for one in about["drawings"]] == sorted(drawn)
+    assert set(blobs) == {f"drawing{k}" for k in range(len(drawn))}
+    page = (done.directory / "replay.html").read_text()
+    assert "drawThoughts" in page
+    assert 'id="blob-0-drawing0"' in page
+    code = main(["results", "tracking", "--runs", str(tmp_path / "runs"), "--altered", "--json"])
+    assert code == 0
+    near, far = json.loads(capsys.readouterr().out)
+    assert (near["within"], far["within"]) == (3.0, 6.0)
+    assert far["people"] > 0
+    assert far["recall"] > 0.8
+
+
+def test_runs_without_tracks_are_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(tmp_path, "stand_still")
+    assert main(["results", "tracking", "--runs", str(tmp_path / "runs"), "--altered"]) == 0
+    assert "no run has tracks" in capsys.readouterr().out
+
+
+def test_the_drawings_of_a_run_are_bounded() -> None:
+    bounds = drawing_bounds()
+    bounds.check("plan", 20_000_000)
+    with pytest.raises(PlannerError, match="draw: more than 20000000 values of drawings"):
+        bounds.check("plan")
