@@ -40,6 +40,8 @@ SCORES = (
     ("safe_efficiency", "corrected", "", True),
     ("contacts_at_fault", "corrected", "", False),
     ("contacts_per_km", "corrected", "way", False),
+    ("push_work", "demanded", "way", False),
+    ("intrusion", "room", "way", False),
     ("push_work", "rate", "way", False),
     ("intrusion", "rate", "way", False),
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from crowdbot.core.trajectories.demanded_evasion import MOST, demanded_evasion, robot_approach
 from crowdbot.core.trajectories.disc_around_robot import as_disc
 from crowdbot.core.trajectories.dynamic_time_warping import least_warping, spaced
 from crowdbot.core.trajectories.encounters import (
@@ -53,6 +54,7 @@ from crowdbot.core.trajectories.trips import (
 
 __all__ = [
     "DISTANCE_TOLERANCE",
+    "MOST",
     "TLX_SCALES",
     "USE_ITEMS",
     "Answer",
@@ -68,6 +70,7 @@ __all__ = [
     "at_fault",
     "contact_events",
     "contact_runs",
+    "demanded_evasion",
     "displacement",
     "durations",
     "encounter",
@@ -87,6 +90,7 @@ __all__ = [
     "person_contacts",
     "present",
     "relative_velocity",
+    "robot_approach",
     "robot_of",
     "robot_velocities",
     "samples_of_shorter",

@@ -28,8 +28,8 @@ PRIMARY = MainScore("safe efficiency", "safe_efficiency")
 MAIN_SCORES = (
     PRIMARY,
     MainScore("contacts", "contacts_per_km"),
-    MainScore("burden", "push_work", "rate"),
-    MainScore("comfort", "intrusion", "rate"),
+    MainScore("burden", "push_work", "demanded"),
+    MainScore("comfort", "intrusion", "room"),
 )
 _PLACES = {(s.metric, s.variant): place for place, s in enumerate(MAIN_SCORES)}
 

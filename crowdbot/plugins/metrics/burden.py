@@ -6,7 +6,14 @@ from functools import partial
 from typing import Literal
 
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import EvasionReach, ForcedHeadway, JumpSpeed, LeastWay
+from crowdbot.plugins.metrics.parameters import (
+    DemandRoom,
+    DemandTime,
+    EvasionReach,
+    ForcedHeadway,
+    JumpSpeed,
+    LeastWay,
+)
 
 declare = partial(declare_metric, category="burden")
 
@@ -15,6 +22,8 @@ class PushWorkSpec(MetricSpec):
     """Work of pushing people aside, per metre of progress and per person met."""
 
     kind: Literal["push_work"] = "push_work"
+    demand_time: DemandTime
+    demand_room: DemandRoom
     forced_headway: ForcedHeadway
     least_way: LeastWay
     evasion_reach: EvasionReach
@@ -29,6 +38,7 @@ PUSH_WORK = declare(
     better="lower",
     variants={
         "rate": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
+        "demanded": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
         "corrected": {"minimum": 0.0, "mass_exponent": 1},
         "total": {"minimum": 0.0, "more_people": "up", "better": "none", "mass_exponent": 1},
         "excess": {"self_value": 0.0, "mass_exponent": 1},

@@ -14,7 +14,16 @@ from crowdbot.plugin import (
     Trajectories,
     truncate_at_arrival,
 )
-from crowdbot.plugin.for_metrics import Evasion, evasion, ghost_run, own_legs, people, share_below
+from crowdbot.plugin.for_metrics import (
+    Evasion,
+    demanded_evasion,
+    evasion,
+    ghost_run,
+    own_legs,
+    people,
+    robot_approach,
+    share_below,
+)
 from crowdbot.plugins.metrics.burden import (
     EVASIVE_ACCELERATION,
     PUSH_WORK,
@@ -46,6 +55,7 @@ class PushWork:
         rate, way = rate_and_way(factory, run, self._forced(run), self.spec.least_way)
         return [
             rate,
+            rate_and_way(factory, run, self._demanded(run), self.spec.least_way, "demanded")[0],
             factory.ok("corrected", work / met, extras),
             factory.ok("total", work, extras),
             _excess(factory, run, refs, self.spec, self._difference),
@@ -58,6 +68,13 @@ class PushWork:
         found = evasion(run, spec.evasion_reach, spec.jump_speed)
         share = share_below(run, spec.forced_headway, spec.jump_speed)
         return found.work(people(run).mass, share)
+
+    def _demanded(self, run: Trajectories) -> float:
+        """Return the work that people need against the robot to keep the demanded room, J."""
+        spec, run = self.spec, truncate_at_arrival(run)
+        need = demanded_evasion(run, spec.demand_time, spec.demand_room, spec.jump_speed)
+        power = need * robot_approach(run, spec.jump_speed)
+        return float(np.diff(run.t) @ power @ people(run).mass)
 
     def _difference(self, run: Trajectories, ghost: Trajectories) -> float:
         return self._per_person(run) - self._per_person(ghost)

@@ -69,19 +69,19 @@ def way_made_good(
 
 
 def rate_and_way(
-    factory: ScoreFactory, run: Trajectories, amount: float, least: float
+    factory: ScoreFactory, run: Trajectories, amount: float, least: float, variant: str = "rate"
 ) -> tuple[Score, Score]:
-    """Score ``rate`` and ``way`` of a cost (lower is better) per metre of progress.
+    """Score ``rate`` (or another variant) and ``way`` of a cost per metre of progress.
 
     A robot that comes nearer by less than ``least`` (m) has no rate, whatever its cost.
     """
-    way = way_made_good(factory, run, ("rate", "way"))
+    way = way_made_good(factory, run, (variant, "way"))
     if isinstance(way, list):
         return way[0], way[1]
     over = factory.ok("way", max(way, least))
     if way < least - _NOTHING:
-        return factory.undefined("rate", "zero_denominator"), over
-    return factory.ok("rate", amount / way, {"amount": amount, "way": way}), over
+        return factory.undefined(variant, "zero_denominator"), over
+    return factory.ok(variant, amount / way, {"amount": amount, "way": way}), over
 
 
 def shortest_way(

@@ -11,6 +11,7 @@ from crowdbot.plugins.metrics.parameters import (
     EvasionReach,
     JumpSpeed,
     LeastWay,
+    Room,
     TimeGap,
 )
 
@@ -22,6 +23,7 @@ class IntrusionSpec(MetricSpec):
 
     kind: Literal["intrusion"] = "intrusion"
     time_gap: TimeGap
+    room: Room
     least_way: LeastWay
     compliance: Compliance
     evasion_reach: EvasionReach
@@ -37,6 +39,7 @@ INTRUSION = declare(
     minimum=0.0,
     variants={
         "rate": {"unit": "1", "rate_over": "way"},
+        "room": {"unit": "1", "rate_over": "way"},
         "corrected": {},
         "total": {"better": "none", "more_people": "up"},
         "way": {"better": "none"},

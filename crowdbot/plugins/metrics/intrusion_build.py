@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from crowdbot.plugin import (
     References,
     Score,
@@ -46,9 +48,13 @@ class Intrusion:
         extras = {"people_met": met}
         short = share_below(run, spec.time_gap, spec.jump_speed)
         hurried = float(found.dt @ (found.approach * short).sum(axis=1))
+        lacking = np.clip(1.0 - room / spec.room, 0.0, 1.0)
+        lacking = np.where(found.near & np.isfinite(room), lacking, 0.0)
+        narrow = float(found.dt @ (found.approach * lacking).sum(axis=1))
         rate, over = rate_and_way(factory, run, hurried, spec.least_way)
         return [
             rate,
+            rate_and_way(factory, run, narrow, spec.least_way, "room")[0],
             factory.ok("corrected", way / met, extras),
             factory.ok("total", way, extras),
             over,

@@ -167,6 +167,17 @@ TimeGap = Annotated[
     PositiveDuration,
     Field(default=1.0, description="People who, standing, would be reached sooner are crowded, s."),
 ]
+DemandTime = Annotated[
+    PositiveDuration,
+    Field(default=2.0, description="Longest time before the smallest gap that people evade in, s."),
+]
+DemandRoom = Annotated[
+    NonNegativeLength,
+    Field(default=0.5, description="Gap that people have to get beside the robot, m."),
+]
+Room = Annotated[
+    PositiveLength, Field(default=0.75, description="A person with this gap has room, m.")
+]
 LeastWay = Annotated[
     PositiveLength, Field(default=1.0, description="Less way counts as this much, m.")
 ]
