@@ -38,12 +38,13 @@ BLIND, CAREFUL = ("goal_seek", "wall_hug"), ("dwa", "stop_and_go")
 #: Score of a run, its variant, the variant that a rate is over, and whether more is better.
 SCORES = (
     ("safe_efficiency", "corrected", "", True),
+    ("acceptance", "corrected", "", True),
     ("contacts_at_fault", "corrected", "", False),
     ("contacts_per_km", "corrected", "way", False),
-    ("push_work", "demanded", "way", False),
-    ("intrusion", "room", "way", False),
     ("push_work", "rate", "way", False),
     ("intrusion", "rate", "way", False),
+    ("push_work", "forced", "way", False),
+    ("intrusion", "hurried", "way", False),
 )
 #: Others that are shown, without a comparison.
 SHOWN = (("evasive_acceleration", "corrected"), ("regress", "time_share"))
@@ -92,10 +93,11 @@ def rows(out: Path) -> dict[str, dict[str, Numbers]]:
         scores = crowdbot.evaluate(record.parent, METRICS)
         one: Numbers = {}
         for metric, variant, over, _ in SCORES:
-            one[metric] = number(scores, metric, variant)
-            one[f"{metric}/way"] = number(scores, metric, over) if over else 1.0
+            name = f"{metric}.{variant}"
+            one[name] = number(scores, metric, variant)
+            one[f"{name}/way"] = number(scores, metric, over) if over else 1.0
         for metric, variant in SHOWN:
-            one[metric] = number(scores, metric, variant)
+            one[f"{metric}.{variant}"] = number(scores, metric, variant)
         one["arrived"] = float(json.loads(record.read_text())["status"] == "arrived")
         one["aside"] = scores.find("safe_efficiency").extras["driven_aside"]
         found.setdefault(planner, {})[scenario] = one
@@ -122,19 +124,20 @@ def columns(runs: dict[str, Numbers], names: Sequence[str], metric: str) -> tupl
 
 def show(found: dict[str, dict[str, Numbers]]) -> None:
     """Means of each planner, then each pair in each score."""
-    measures = [m for m, *_ in SCORES] + [m for m, _ in SHOWN] + ["arrived", "aside"]
-    print(f"{'':14}" + "".join(f"{m[:19]:>20}" for m in ["runs", *measures]))
+    measures = [f"{m}.{v}" for m, v, *_ in (*SCORES, *SHOWN)] + ["arrived", "aside"]
+    print(f"{'':14}" + "".join(f"{m[-19:]:>20}" for m in ["runs", *measures]))
     for planner, runs in found.items():
         names = sorted(runs)
         means = [float(mean(*columns(runs, names, m))) for m in measures]
         print(f"{planner:14}{len(names):20}" + "".join(f"{m:20.3f}" for m in means))
     print()
-    for metric, _, _, more in SCORES:
+    for metric, variant, _, more in SCORES:
+        name = f"{metric}.{variant}"
         for careful in CAREFUL:
             for blind in BLIND:
                 if careful in found and blind in found:
-                    lead = compare(found, metric, careful, blind, more)
-                    print(f"{metric:20} {careful:12} {blind:10} {lead}")
+                    lead = compare(found, name, careful, blind, more)
+                    print(f"{name:28} {careful:12} {blind:10} {lead}")
 
 
 def compare(

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core.trajectories.encounters import robot_velocities
+from crowdbot.core.trajectories.encounters import encounter, robot_velocities
 from crowdbot.core.trajectories.evasion import evasion
-from crowdbot.core.trajectories.headway import share_below
 from scripts.metric_pictures.figure import BAD, PERSON, QUIET, ROBOT, Array, Figure
 from scripts.metric_pictures.registry import draws
 from scripts.metric_pictures.world import JUMP, World, mean_of
@@ -57,6 +56,13 @@ def _space_compliance(world: World, metric: str) -> Figure:
     return figure.line(world.t, world.gap, ROBOT, "gap to the nearest person").level(0.5, "0.5 m")
 
 
+@draws("acceptance", "Gap to the nearest person, with the limits that people mind.")
+def _acceptance(world: World, metric: str) -> Figure:
+    figure = _gap(world, metric).spans(world.t, world.gap < 0.25, "crowding")
+    figure.line(world.t, world.gap, ROBOT, "gap to the nearest person")
+    return figure.level(0.25, "at any speed").level(0.5, "at speed")
+
+
 @draws("proximity", "The reciprocal of the distance to the nearest person; its mean is the score.")
 def _proximity(world: World, metric: str) -> Figure:
     each = 1.0 / np.maximum(world.distance, 0.1)
@@ -91,14 +97,16 @@ def _local_density(world: World, metric: str) -> Figure:
     return figure.line(x, y, BAD, "within 3 m", dashed=True)
 
 
-@draws("intrusion", "Where the robot drives at a person whom it would reach in the time gap.")
+@draws("intrusion", "How fast the robot drives at people, weighted by the room that they lack.")
 def _intrusion(world: World, metric: str) -> Figure:
     found = evasion(world.run, 2.0, JUMP)
-    short = share_below(world.run, 1.0, JUMP)
-    speed = (found.approach * short).sum(axis=1)
+    gap = encounter(world.run, JUMP).gap
+    room = np.nan_to_num((gap[1:] + gap[:-1]) / 2, nan=np.inf)
+    lacking = np.clip(1.0 - room / 0.75, 0.0, 1.0)
+    speed = (found.approach * lacking).sum(axis=1)
     middle = (world.t[1:] + world.t[:-1]) / 2
     figure = world.lines(
-        metric, "speed at people in m/s", [(middle, speed, ROBOT, "approach with little time")]
+        metric, "speed at people in m/s", [(middle, speed, ROBOT, "approach, weighted")]
     )
     return figure.area(middle, np.zeros_like(speed), speed, "way that is counted")
 

@@ -15,7 +15,7 @@ from crowdbot.core.bundle.standings import Standings
 from crowdbot.core.bundle.verification import JUDGED
 from crowdbot.core.results.rows import processes
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main
 from crowdbot.core.statistics import OUTCOMES
 from crowdbot.core.statistics.estimate_text import NOTHING, estimate_text, range_text
 from crowdbot.core.support.atomic_write import atomic_write
@@ -163,7 +163,7 @@ def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
             "better": label.better,
             "cells": [_cell(table, metric, e) for e in ranked],
         }
-        main = is_main(metric, label.variant)
+        main = beside_main(metric, label.variant)
         found.setdefault(FOUR_SCORES if main else label.category, []).append(row)
     return dict(sorted(found.items(), key=lambda item: (item[0] != FOUR_SCORES, item[0])))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main, main_first
 from crowdbot.core.statistics import Table, headline_names
 from crowdbot.core.statistics.summary_estimator import Centre, centre_of
 
@@ -75,7 +75,7 @@ def all_series(table: Table, named: Sequence[str] = ()) -> list[Series]:
                 metric=label.metric,
                 variant=label.variant,
                 symbol=label.symbol,
-                category=FOUR_SCORES if is_main(*name) else label.category,
+                category=FOUR_SCORES if beside_main(*name) else label.category,
                 unit=label.unit,
                 better=label.better,
                 plain=plain,

@@ -28,19 +28,28 @@ PRIMARY = MainScore("safe efficiency", "safe_efficiency")
 MAIN_SCORES = (
     PRIMARY,
     MainScore("contacts", "contacts_per_km"),
-    MainScore("burden", "push_work", "demanded"),
-    MainScore("comfort", "intrusion", "room"),
+    MainScore("burden", "push_work", "rate"),
+    MainScore("comfort", "intrusion", "rate"),
 )
-_PLACES = {(s.metric, s.variant): place for place, s in enumerate(MAIN_SCORES)}
+#: Shown beside the primary score, but not tested: what people would say.
+BESIDE_PRIMARY = MainScore("acceptance", "acceptance")
+_SHOWN = (PRIMARY, BESIDE_PRIMARY, *MAIN_SCORES[1:])
+_PLACES = {(s.metric, s.variant): place for place, s in enumerate(_SHOWN)}
+_MAIN = frozenset((s.metric, s.variant) for s in MAIN_SCORES)
 
 
 def is_main(metric: str, variant: str) -> bool:
     """Return True if a score is one of the four."""
+    return (metric, variant) in _MAIN
+
+
+def beside_main(metric: str, variant: str) -> bool:
+    """Return True if a score is shown with the four: one of them, or acceptance."""
     return (metric, variant) in _PLACES
 
 
 def main_first(items: Iterable[_Item], name: Callable[[_Item], tuple[str, str]]) -> list[_Item]:
-    """Return the four scores in their order, then all others in theirs.
+    """Return the four scores in their order, acceptance second, then all others in theirs.
 
     Args:
         items: items that represent scores.

@@ -12,7 +12,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main, main_first
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main, main_first
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text import wrap_name
 from crowdbot.core.support.text_files import read_text
@@ -213,7 +213,7 @@ def _name(score: Score) -> tuple[str, str]:
 
 def section_of(score: Score) -> str:
     """Return the heading of a score: its category, except for the four main scores."""
-    return FOUR_SCORES if is_main(*_name(score)) else score.category
+    return FOUR_SCORES if beside_main(*_name(score)) else score.category
 
 
 def scores_table(scores: Sequence[Score]) -> Table:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
-from typing import Any, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +17,7 @@ from crowdbot.core.support.arguments import mapping_of, number_of, point_of
 from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.from_recordings import FromRecordings
+from crowdbot.core.trajectories.own_recordings import arrival
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -164,7 +165,7 @@ class Trajectories(FromRecordings):
         robot_vy: ArrayLike | None = None,
         robot_radius: float | None = None,
         robot_mass: float | None = None,
-        robot_goal_time: float | None = None,
+        robot_goal_time: float | Literal["derived"] | None = "derived",
         robot_goal: tuple[float, float] | None = None,
         robot_goal_radius: float = 0.0,
         robot_speed_limit: float | None = None,
@@ -191,7 +192,9 @@ class Trajectories(FromRecordings):
 
         An omnidirectional robot gives ``robot_vx`` and ``robot_vy`` (world frame, m/s), and may
         leave out ``robot_v``. Velocities that are left out, or NaN, are derived from positions
-        and headings. ``robot_footprint`` is a polygon (K, 2), or the (2, 2) ends of a
+        and headings. ``robot_goal_time`` is when the robot arrived, s; None: never; left out, it is
+        the first time within ``robot_goal_radius`` (or the robot's radius) of ``robot_goal``, or
+        inside ``goal_zone``. ``robot_footprint`` is a polygon (K, 2), or the (2, 2) ends of a
         capsule of radius ``robot_radius``, in the robot's frame. ``contacts`` has the columns of
         `ContactEvents`, of which ``bearing`` may be left out.
 
@@ -199,6 +202,7 @@ class Trajectories(FromRecordings):
             InputError: a shape is wrong, time does not increase, a part is missing.
         """
         arguments = locals()
+        arguments["robot_goal_time"] = _arrival(arguments)
         run = cls(
             t=_read_only(t),
             robot=_robot(arguments) if robot_x is not None else None,
@@ -258,6 +262,30 @@ def _require(arguments: Mapping[str, Any], *names: str) -> None:
     missing = [n for n in names if arguments[n] is None]
     if missing:
         raise InputError(f"trajectories: {', '.join(missing)} missing")
+
+
+def _arrival(arguments: Mapping[str, Any]) -> Any:
+    """Return when the robot arrived, s, derived from goal or goal zone unless given.
+
+    Raises:
+        InputError: it is a text other than ``derived``.
+    """
+    given = arguments["robot_goal_time"]
+    if not isinstance(given, str):
+        return given
+    if given != "derived":
+        raise InputError(f"robot_goal_time is a time in s, None or 'derived', not {given!r}")
+    goal, zone = arguments["robot_goal"], arguments["goal_zone"]
+    if arguments["robot_x"] is None or (goal is None and zone is None):
+        return None
+    columns = {n: _read_only(arguments[n]) for n in ("t", "robot_x", "robot_y")}
+    if any(column.shape != columns["t"].shape for column in columns.values()):
+        return None  # refused later
+    radius = number_of("robot_goal_radius", arguments["robot_goal_radius"], "m")
+    if radius == 0.0 and arguments["robot_radius"] is not None:
+        radius = number_of("robot_radius", arguments["robot_radius"], "m")
+    point = None if goal is None else point_of("robot_goal", goal)
+    return arrival(columns, point, radius, zone)
 
 
 def _robot(arguments: Mapping[str, Any]) -> RobotTrack:

@@ -38,7 +38,7 @@ PUSH_WORK = declare(
     better="lower",
     variants={
         "rate": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
-        "demanded": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
+        "forced": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
         "corrected": {"minimum": 0.0, "mass_exponent": 1},
         "total": {"minimum": 0.0, "more_people": "up", "better": "none", "mass_exponent": 1},
         "excess": {"self_value": 0.0, "mass_exponent": 1},

@@ -52,10 +52,10 @@ class PushWork:
             return found
         work, met = found.work(people(run).mass), float(found.met.sum())
         extras = {"people_met": met}
-        rate, way = rate_and_way(factory, run, self._forced(run), self.spec.least_way)
+        rate, way = rate_and_way(factory, run, self._demanded(run), self.spec.least_way)
         return [
             rate,
-            rate_and_way(factory, run, self._demanded(run), self.spec.least_way, "demanded")[0],
+            rate_and_way(factory, run, self._forced(run), self.spec.least_way, "forced")[0],
             factory.ok("corrected", work / met, extras),
             factory.ok("total", work, extras),
             _excess(factory, run, refs, self.spec, self._difference),

@@ -39,7 +39,7 @@ INTRUSION = declare(
     minimum=0.0,
     variants={
         "rate": {"unit": "1", "rate_over": "way"},
-        "room": {"unit": "1", "rate_over": "way"},
+        "hurried": {"unit": "1", "rate_over": "way"},
         "corrected": {},
         "total": {"better": "none", "more_people": "up"},
         "way": {"better": "none"},

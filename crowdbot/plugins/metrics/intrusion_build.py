@@ -26,9 +26,9 @@ class Intrusion:
     spec: IntrusionSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score advances with little time left, per progress.
+        """Score advances on people with little room, per progress, per person and in total.
 
-        With little room, per person and in total.
+        And advances with little time left.
         """
         del refs
         factory, spec = ScoreFactory(INTRUSION), self.spec
@@ -51,10 +51,10 @@ class Intrusion:
         lacking = np.clip(1.0 - room / spec.room, 0.0, 1.0)
         lacking = np.where(found.near & np.isfinite(room), lacking, 0.0)
         narrow = float(found.dt @ (found.approach * lacking).sum(axis=1))
-        rate, over = rate_and_way(factory, run, hurried, spec.least_way)
+        rate, over = rate_and_way(factory, run, narrow, spec.least_way)
         return [
             rate,
-            rate_and_way(factory, run, narrow, spec.least_way, "room")[0],
+            rate_and_way(factory, run, hurried, spec.least_way, "hurried")[0],
             factory.ok("corrected", way / met, extras),
             factory.ok("total", way, extras),
             over,

@@ -157,6 +157,12 @@ ForcedFactor = Annotated[
     Le(1),
     Field(default=0.5, description="Share of the score that is left for each person driven aside."),
 ]
+WallFactor = Annotated[
+    float,
+    Ge(0),
+    Le(1),
+    Field(default=0.5, description="Share of the score that is left for each contact with a wall."),
+]
 ForcedHeadway = Annotated[
     PositiveDuration,
     Field(

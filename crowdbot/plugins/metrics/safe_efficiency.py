@@ -18,6 +18,7 @@ from crowdbot.plugins.metrics.parameters import (
     ForcedPush,
     JumpSpeed,
     ReleaseGap,
+    WallFactor,
     ZeroTol,
 )
 
@@ -25,7 +26,7 @@ declare = partial(declare_metric, category="task")
 
 
 class SafeEfficiencySpec(MetricSpec):
-    """Timely arrival without a contact at fault and without pushing people aside."""
+    """Timely arrival without a contact at fault, pushing people aside or touching walls."""
 
     kind: Literal["safe_efficiency"] = "safe_efficiency"
     fault_speed: FaultSpeed
@@ -34,6 +35,7 @@ class SafeEfficiencySpec(MetricSpec):
     fault_margin: FaultMargin
     forced_push: ForcedPush
     forced_factor: ForcedFactor
+    wall_factor: WallFactor
     forced_headway: ForcedHeadway
     evasion_reach: EvasionReach
     contact_tol: ContactTol
@@ -45,7 +47,7 @@ class SafeEfficiencySpec(MetricSpec):
 SAFE_EFFICIENCY = declare(
     SafeEfficiencySpec,
     symbol="E_s",
-    spec_version=3,
+    spec_version=4,
     unit="1",
     better="higher",
     minimum=0.0,

@@ -24,6 +24,7 @@ from crowdbot.plugin.for_metrics import (
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.fault_build import fault_rule
 from crowdbot.plugins.metrics.safe_efficiency import SAFE_EFFICIENCY, SafeEfficiencySpec
+from crowdbot.plugins.metrics.walls_build import wall_contacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class SafeEfficiency:
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
         """Score 0 without arrival or with a contact at fault, else shortest time over time taken.
 
-        Each person driven aside takes off a share.
+        Each person driven aside and each contact with a wall takes off a share.
         """
         del refs
         factory, spec = ScoreFactory(SAFE_EFFICIENCY), self.spec
@@ -47,15 +48,16 @@ class SafeEfficiency:
         faults = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
         taken = travel_time(run, robot_of(run))
         aside = self._driven_aside(run)
+        walls = wall_contacts(run, spec.contact_tol, spec.release_gap, spec.jump_speed)
         extras = {
             "contacts_at_fault": float(faults), "driven_aside": float(aside),
-            "shortest_time": shortest, "time": taken,
+            "wall_contacts": float(walls), "shortest_time": shortest, "time": taken,
         }  # fmt: skip
         if shortest <= spec.zero_tol:
             return factory.all_undefined("zero_denominator")
         if faults or robot_of(run).goal_time is None:
             return [factory.ok("corrected", 0.0, extras)]
-        share = spec.forced_factor**aside
+        share = spec.forced_factor**aside * spec.wall_factor**walls
         return [factory.ok("corrected", share * shortest / max(taken, shortest), extras)]
 
     def _driven_aside(self, run: Trajectories) -> int:

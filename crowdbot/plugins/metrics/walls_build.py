@@ -50,7 +50,7 @@ class WallContactCount:
         if run.robot is None:
             return ScoreFactory(WALL_CONTACT_COUNT).all_undefined("invalid_no_robot")
         run = truncate_at_arrival(run)
-        return [self._recorded(run), self._geometric(run)]
+        return [self._recorded(run), self.geometric(run)]
 
     def _recorded(self, run: Trajectories) -> Score:
         factory = ScoreFactory(WALL_CONTACT_COUNT)
@@ -58,7 +58,8 @@ class WallContactCount:
             return factory.undefined("recorded", "invalid_no_contacts")
         return factory.ok("recorded", (run.contacts.agent == -1).sum())
 
-    def _geometric(self, run: Trajectories) -> Score:
+    def geometric(self, run: Trajectories) -> Score:
+        """Score contacts by the geometry of walls and outline."""
         factory, tol = ScoreFactory(WALL_CONTACT_COUNT), self.spec.contact_tol
         gap = wall_gap(factory, run)
         if isinstance(gap, list):
@@ -89,6 +90,19 @@ class WallContactCount:
                 first = np.minimum(first, swept)
         first = np.where(gap[:-1] <= tol, 0.0, first)
         return np.where(first <= 1.0, first, np.nan)
+
+
+def wall_contacts(
+    run: Trajectories, contact_tol: float, release_gap: float, jump_speed: float
+) -> int:
+    """Return the number of contacts with walls: recorded, else by geometry; 0 without walls."""
+    if run.contacts is not None:
+        return int((run.contacts.agent == -1).sum())
+    spec = WallContactCountSpec(
+        contact_tol=contact_tol, release_gap=release_gap, jump_speed=jump_speed
+    )
+    value = WallContactCount(spec).geometric(run).value
+    return 0 if value is None else int(value)
 
 
 @dataclass(frozen=True, slots=True)

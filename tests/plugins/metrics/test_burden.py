@@ -73,7 +73,7 @@ def forced(robot_speed: float, gap: float, gain: float) -> float:
     """The rate of a robot behind somebody who speeds up."""
     person = speeding_up(T, REACH + gap, robot_speed, gain)
     run = scene(T, line(T, (0, 0), (robot_speed, 0)), [person], robot_goal=(20.0, 0.0))
-    return value_of(scores_of("push_work", run), "rate")
+    return value_of(scores_of("push_work", run), "forced")
 
 
 def test_the_rate_is_work_on_those_who_had_to_make_way() -> None:
@@ -88,11 +88,11 @@ def test_the_rate_of_who_waits_is_zero_and_of_who_stays_unknown() -> None:
     """People may do what they like around a robot that stands; parking wins nothing."""
     jumps = speeding_up(T, REACH + 0.05, 0.0, 2.0)
     parked = scene(T, line(T, (0, 0), (0, 0)), [jumps], robot_goal=(20.0, 0.0))
-    assert scores_of("push_work", parked)["rate"].reason == "zero_denominator"
+    assert scores_of("push_work", parked)["forced"].reason == "zero_denominator"
     later = np.where(T < 2.0, 0.0, T - 2.0)
     robot = Body(-later, 0 * T, np.where(T < 2.0, 0.0, -1.0), 0 * T)
     leaves = scene(T, robot, [jumps], robot_goal=(-20.0, 0.0))
-    assert value_of(scores_of("push_work", leaves), "rate") == 0.0
+    assert value_of(scores_of("push_work", leaves), "forced") == 0.0
 
 
 def test_who_stops_in_time_has_forced_nobody() -> None:
@@ -103,7 +103,7 @@ def test_who_stops_in_time_has_forced_nobody() -> None:
     careful = scene(
         T, Body(slows, 0 * T, 2.0 * np.exp(-T), 0 * T), [steps_back], robot_goal=(20.0, 0.0)
     )
-    rates = [value_of(scores_of("push_work", run), "rate") for run in (fast, careful)]
+    rates = [value_of(scores_of("push_work", run), "forced") for run in (fast, careful)]
     assert rates[1] == 0.0
     assert value_of(scores_of("push_work", careful)) > 0.0
     assert rates[0] > 0.0

@@ -68,6 +68,10 @@ def test_it_is_a_way_and_no_time(speed: float) -> None:
 
 
 def rated(run: Trajectories) -> float:
+    return value_of(scores_of("intrusion", run), "hurried")
+
+
+def lacking(run: Trajectories) -> float:
     return value_of(scores_of("intrusion", run), "rate")
 
 
@@ -86,7 +90,7 @@ def towards(gap: float, speed: float, way: float = 20.0) -> Trajectories:
         (1.1, 1.0, 0.0),
     ],
 )
-def test_the_rate_asks_for_time_and_not_for_room(gap: float, speed: float, rate: float) -> None:
+def test_hurried_asks_for_time_and_not_for_room(gap: float, speed: float, rate: float) -> None:
     assert rated(towards(gap, speed)) == pytest.approx(rate)
 
 
@@ -111,9 +115,25 @@ def test_who_stays_has_no_rate_and_who_passes_at_a_distance_has_a_good_one() -> 
     assert rated(passes) == 0.0
 
 
+@pytest.mark.parametrize(("gap", "rate"), [(0.0, 1.0), (0.3, 0.6), (0.6, 0.2), (0.8, 0.0)])
+def test_the_rate_weighs_the_way_by_what_is_missing_of_the_room(gap: float, rate: float) -> None:
+    for speed in (0.25, 1.0):
+        assert lacking(towards(gap, speed)) == pytest.approx(rate)
+
+
+def test_the_rate_blames_neither_who_waits_nor_who_leaves() -> None:
+    close = line(T, (0.6, 0), (0, 0))
+    leaves = scene(T, line(T, (0, 0), (-0.2, 0)), [close], robot_goal=(-5.0, 0.0))
+    assert lacking(leaves) == 0.0
+    waits = line(T, (0, 0), (0, 0))
+    assert why(scores_of("intrusion", scene(T, waits, [close], robot_goal=(5.0, 0.0)))) >= {
+        ("undefined", "zero_denominator")
+    }
+
+
 def test_without_a_goal_there_is_no_rate() -> None:
     found = scores_of("intrusion", following(0.3))
-    assert {found[v].reason for v in ("rate", "way")} == {"invalid_no_goal"}
+    assert {found[v].reason for v in ("rate", "hurried", "way")} == {"invalid_no_goal"}
     assert value_of(found) == pytest.approx(5.0)
 
 

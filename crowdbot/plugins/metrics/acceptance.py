@@ -1,0 +1,60 @@
+"""What people would say of a drive: a small monotone model, fitted to ratings."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+from pydantic import Field
+
+from crowdbot.plugin import MetricSpec, declare_metric
+from crowdbot.plugins.metrics.parameters import (
+    ContactTol,
+    DemandRoom,
+    DemandTime,
+    JumpSpeed,
+    ReleaseGap,
+)
+
+declare = partial(declare_metric, category="task")
+_Weight = Annotated[float, Ge(0)]
+
+
+class AcceptanceSpec(MetricSpec):
+    """What people would say of the drive: 1 is fine, 0 is unacceptable."""
+
+    kind: Literal["acceptance"] = "acceptance"
+    not_arrived: _Weight = Field(default=1.0, description="Weight of not reaching the goal.")
+    touched: _Weight = Field(default=0.3, description="Weight of touching people.")
+    wall: _Weight = Field(default=0.3, description="Weight of touching walls.")
+    near: _Weight = Field(
+        default=0.3, description="Weight of 1 minus the rating of the smallest distance."
+    )
+    crowding: _Weight = Field(
+        default=1.5, description="Weight of the share of time with a person within 0.25 m."
+    )
+    fast: _Weight = Field(
+        default=2.0,
+        description="Weight of the largest product of the robot's speed and what is missing to "
+        "0.5 m of room, s/m².",
+    )
+    forcing: _Weight = Field(
+        default=0.3, description="Weight of the largest demanded evasion, relative to 3 m/s²."
+    )
+    demand_time: DemandTime
+    demand_room: DemandRoom
+    contact_tol: ContactTol
+    release_gap: ReleaseGap
+    jump_speed: JumpSpeed
+
+
+ACCEPTANCE = declare(
+    AcceptanceSpec,
+    symbol="A",
+    unit="1",
+    better="higher",
+    minimum=0.0,
+    maximum=1.0,
+    more_people="down",
+)
