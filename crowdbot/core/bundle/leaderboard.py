@@ -18,6 +18,7 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main
 from crowdbot.core.statistics import OUTCOMES
 from crowdbot.core.statistics.estimate_text import NOTHING, estimate_text, range_text
+from crowdbot.core.statistics.pareto import pareto
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 
@@ -67,6 +68,7 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
         "suspicion": table.suspicion,
         "crowds": table.crowds,
         "by_crowd": table.by_crowd,
+        "pareto": pareto(table.summary),
         "audit": table.audit.text if table.audit else "this suite has not been audited",
         "level": f"{table.summary.level:.0%}",
     }

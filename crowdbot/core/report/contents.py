@@ -25,6 +25,7 @@ from crowdbot.core.statistics import (
 )
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
+from crowdbot.core.statistics.pareto import ParetoPoint, pareto
 from crowdbot.core.types.ending import ATTEMPTED
 from crowdbot.errors import InputError
 
@@ -86,6 +87,11 @@ class Contents:
     def planners(self) -> tuple[str, ...]:
         """Labels, sorted."""
         return self.figures.planners
+
+    @property
+    def pareto(self) -> tuple[ParetoPoint, ...]:
+        """Return planners by safe efficiency and acceptance; empty for fewer than two."""
+        return pareto(self.figures.headline)
 
     @property
     def seeds(self) -> list[int]:

@@ -31,6 +31,8 @@ def markdown(contents: Contents) -> str:
         lines += [f"Warning: {_plain(text)}", ""]
     lines += [*_table(*_endings(contents)), "", "## Scores", "", _meaning(summary), ""]
     lines += [*_table(*_scores(contents)), ""]
+    if contents.pareto:
+        lines += ["## Safe efficiency and acceptance", "", *_table(*_pareto(contents)), ""]
     lines += _by_crowd(contents.ranks) if contents.ranks else []
     if any(not v.reason for v in summary.variances):
         lines += ["## What varies with which", "", *_table(*_variances(summary)), ""]
@@ -39,6 +41,15 @@ def markdown(contents: Contents) -> str:
         lines += [*_table(*_comparisons(summary)), ""]
     lines += ["## Methods", "", _plain(methods(contents)), ""]
     return "\n".join(lines)
+
+
+def _pareto(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
+    """Return planners by both scores, and which are dominated."""
+    rows: list[Sequence[str]] = [
+        (_plain(p.planner), joined_text(p.efficiency), joined_text(p.acceptance), _plain(p.text))
+        for p in contents.pareto
+    ]
+    return ("planner", "safe efficiency", "acceptance", "Pareto"), rows
 
 
 def _by_crowd(ranks: CrowdRanks) -> list[str]:

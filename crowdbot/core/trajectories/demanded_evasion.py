@@ -15,7 +15,7 @@ from crowdbot.core.types.arrays import Array
 #: No evasion is planned in less than this, s, or with more than people reach, m/s^2: 3 m/s^2 stops
 #: a walker in one or two steps (Hase, Stein 1998).
 _SOONEST, MOST = 0.5, 3.0
-#: Relative speeds below this bring nobody nearer, m/s.
+#: Lower relative speeds bring no one nearer, m/s.
 _STILL = 1e-3
 
 

@@ -1,4 +1,4 @@
-"""What people would say of a drive: a small monotone model, fitted to ratings."""
+"""Metric of the opinion of people on a drive: a small monotone model, fitted to ratings."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _Weight = Annotated[float, Ge(0)]
 
 
 class AcceptanceSpec(MetricSpec):
-    """What people would say of the drive: 1 is fine, 0 is unacceptable."""
+    """Opinion of people on the drive, estimated: 1 is fine, 0 is unacceptable."""
 
     kind: Literal["acceptance"] = "acceptance"
     not_arrived: _Weight = Field(default=1.0, description="Weight of not reaching the goal.")

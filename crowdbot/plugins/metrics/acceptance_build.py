@@ -1,4 +1,4 @@
-"""Scoring of what people would say."""
+"""Scoring of the opinion of people on a drive."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from crowdbot.plugins.metrics.walls_build import wall_contacts
 _AT_ONE_METRE, _BY_FACTOR, _NEAREST = 56.0, 38.0, 0.05
 #: Gaps that people mind, m: at any speed, and at speed.
 _CLOSE, _AT_SPEED = 0.25, 0.5
-#: A robot that comes nearer more slowly forces nobody to evade, m/s.
+#: A robot that comes nearer more slowly forces no one to evade, m/s.
 _CREEPS = 0.05
 
 
