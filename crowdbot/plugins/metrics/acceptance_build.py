@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.plugin import (
     Array,
@@ -99,7 +100,7 @@ def _nearest(gap: Array) -> Array:
     return np.asarray(np.where(np.isfinite(gap), gap, np.inf).min(axis=1, initial=np.inf))
 
 
-def _share_of_time(t: Array, true: Array) -> float:
+def _share_of_time(t: Array, true: NDArray[np.bool_]) -> float:
     """Return the share of time of a condition at the samples."""
     weight = np.diff(t)
     both = (true[1:].astype(np.float64) + true[:-1]) / 2.0

@@ -85,7 +85,7 @@ def test_a_polite_pass_costs_little_and_each_fault_is_named() -> None:
 
 
 def test_arrival_and_walls_count() -> None:
-    run = {"goal_time": 9.0, "robot_goal": (2.0, 0.0)}
+    run: dict[str, Any] = {"goal_time": 9.0, "robot_goal": (2.0, 0.0)}
     there, missed = passing(2.0, **run), passing(2.0, robot_goal=(9.0, 0.0))
     assert acceptance(missed) / acceptance(there) == pytest.approx(np.exp(-1.0), rel=0.01)
     wall = np.array([[-3.0, 2.0 + REACH, 9.0, 2.0 + REACH]])
