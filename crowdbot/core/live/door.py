@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.message import LiveMessage, OfferedTopic
 
 
 class Door(Protocol):
@@ -14,7 +14,7 @@ class Door(Protocol):
     Failures of a connection never stop the simulation.
     """
 
-    def open(self, offers: Sequence[Offer]) -> None:
+    def open(self, offers: Sequence[OfferedTopic]) -> None:
         """Start a run that offers these topics."""
         ...
 

@@ -13,7 +13,7 @@ from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.commands import twist
 from crowdbot.core.live.foxglove_gate import FoxgloveGate
 from crowdbot.core.live.foxglove_parameters import parameters, set_parameters
-from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.robot_topics import namespaces, robot_topic
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
@@ -29,8 +29,8 @@ from crowdbot.errors import InputError
 
 #: Data for spectators, hidden from planners: people, and the true pose of each robot.
 SEEN = (
-    Offer(str(Topic.PEOPLE_MARKER), MARKER),
-    Offer(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
+    OfferedTopic(str(Topic.PEOPLE_MARKER), MARKER),
+    OfferedTopic(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
 )
 _POSE = "geometry_msgs/msg/PoseStamped"
 #: Largest command and request of a client, bytes; largest number of its command topics.
@@ -97,14 +97,14 @@ class FoxgloveDoor:
         return self._gate.port
 
     # ---------------------------------------------------------------- the simulation's thread
-    def open(self, offers: Sequence[Offer]) -> None:
+    def open(self, offers: Sequence[OfferedTopic]) -> None:
         """Start a run that offers these topics."""
         with self._lock:
             self._latest.clear()
         self._make_channels((*offers, *SEEN))
         self._server.publish_parameter_values(parameters(self._session))
 
-    def _make_channels(self, offers: Sequence[Offer]) -> None:
+    def _make_channels(self, offers: Sequence[OfferedTopic]) -> None:
         from foxglove import Channel, Schema
 
         for offer in offers:
@@ -137,7 +137,7 @@ class FoxgloveDoor:
         agents = shared.agents
         spaces = namespaces(robots)
         self._poses = {robot_topic(str(Topic.POSE), s): name for name, s in spaces.items()}
-        self._make_channels([Offer(topic, _POSE) for topic in self._poses])
+        self._make_channels([OfferedTopic(topic, _POSE) for topic in self._poses])
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
 

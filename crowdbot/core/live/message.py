@@ -10,7 +10,7 @@ from crowdbot.core.recording import messages as ros
 
 
 @dataclass(frozen=True, slots=True)
-class Offer:
+class OfferedTopic:
     """A topic that a live run publishes; ``latched``: late subscribers get the last message."""
 
     topic: str

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.live.message import LiveMessage, Offer, told
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
@@ -65,20 +65,24 @@ class Observed:
         self._odom, self._clock = template.odometry(base, odom), template.clock()
         self._told: dict[str, float] = {}
 
-    def offers(self) -> list[Offer]:
+    def offers(self) -> list[OfferedTopic]:
         """Return the topics, the clock last."""
-        found = [Offer(n, t.msgtype) for s, t in self._topics.items() for n in self._names[s]]
+        found = [
+            OfferedTopic(n, t.msgtype) for s, t in self._topics.items() for n in self._names[s]
+        ]
         for name, info in self._sensors.items():
             kinds = () if info.camera is None else ("depth", "color")[: 1 + info.camera.colour]
             for kind in kinds:
-                found.append(Offer(f"/{name}/{kind}/image_raw", "sensor_msgs/msg/Image"))
-                found.append(Offer(f"/{name}/{kind}/camera_info", "sensor_msgs/msg/CameraInfo"))
+                found.append(OfferedTopic(f"/{name}/{kind}/image_raw", "sensor_msgs/msg/Image"))
+                found.append(
+                    OfferedTopic(f"/{name}/{kind}/camera_info", "sensor_msgs/msg/CameraInfo")
+                )
         if not self._odometry:
-            found.append(Offer(_ODOM, self._odom.msgtype))
-        found.append(Offer(str(Topic.TF), self._tf.msgtype))
-        found.append(Offer(JOINTS, _JOINTS))
-        found.append(Offer(OBSERVATION, _OBSERVED))
-        found.append(Offer(str(Topic.CLOCK), self._clock.msgtype))
+            found.append(OfferedTopic(_ODOM, self._odom.msgtype))
+        found.append(OfferedTopic(str(Topic.TF), self._tf.msgtype))
+        found.append(OfferedTopic(JOINTS, _JOINTS))
+        found.append(OfferedTopic(OBSERVATION, _OBSERVED))
+        found.append(OfferedTopic(str(Topic.CLOCK), self._clock.msgtype))
         return found
 
     def messages(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:

@@ -32,7 +32,7 @@ class LivePlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Offer the topics of this robot, and its constant data."""
+        """OfferedTopic the topics of this robot, and its constant data."""
         del limits
         messages = RobotMessages(self._scene, task, sensors, seed, self._manner.epoch)
         self._steps.join(self._scene.name, messages)

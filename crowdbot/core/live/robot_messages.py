@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from crowdbot.core.live.message import LiveMessage, Offer, told
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
 from crowdbot.core.live.observed import Observed
 from crowdbot.core.live.robot_topics import robot_topic
 from crowdbot.core.live.scene import LiveScene, latched
@@ -38,7 +38,7 @@ class RobotMessages:
         self._observed = Observed(sensors, scene.model, epoch=epoch, namespace=scene.namespace)
         self.constant = list(self._named(latched(scene, task, seed, epoch)))
 
-    def offers(self) -> list[Offer]:
+    def offers(self) -> list[OfferedTopic]:
         """Return the topics of observations, the clock last."""
         offers = self._observed.offers()
         return [replace(o, topic=robot_topic(o.topic, self._space)) for o in offers]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from crowdbot.core.live.door import Door
 from crowdbot.core.live.manner import Manner
-from crowdbot.core.live.message import LiveMessage, Offer, told
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
 from crowdbot.core.live.robot_messages import RobotMessages, clock_last, constant_of
 from crowdbot.core.live.robot_topics import STATUS, namespaces
 from crowdbot.core.live.session import LiveSession
@@ -61,8 +61,8 @@ class LiveSteps:
         self._t = self._began = self._told = -math.inf
         self._open = set()
         constant = constant_of(self._robots.values())
-        offers = [Offer(m.topic, m.msgtype, latched=True) for m in constant]
-        offers.append(Offer(STATUS, _STATUS, latched=True))
+        offers = [OfferedTopic(m.topic, m.msgtype, latched=True) for m in constant]
+        offers.append(OfferedTopic(STATUS, _STATUS, latched=True))
         offers += [offer for each in self._robots.values() for offer in each.offers()]
         for door in self._doors:
             door.open(list(dict.fromkeys(offers)))

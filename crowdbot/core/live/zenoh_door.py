@@ -10,7 +10,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.ros2_keys import (
     PUBLISHER,
     SERVER,
@@ -118,7 +118,7 @@ class ZenohDoor:
             self._kept.append(live.declare_subscriber(fits, came, history=True))
 
     # ---------------------------------------------------------------- the simulation's thread
-    def open(self, offers: Sequence[Offer]) -> None:
+    def open(self, offers: Sequence[OfferedTopic]) -> None:
         """Start a run that offers these topics."""
         names = {o.topic for o in offers}
         for name in [n for n in self._publishers if n not in names]:
@@ -152,7 +152,7 @@ class ZenohDoor:
     def _topic(self, name: str, msgtype: str, *, latched: bool = False) -> Ros2Topic:
         return Ros2Topic(name, msgtype, hash_in(msgtype, self._network.distro), latched)
 
-    def _declare(self, offer: Offer) -> _Publisher:
+    def _declare(self, offer: OfferedTopic) -> _Publisher:
         topic = self._topic(offer.topic, offer.msgtype, latched=offer.latched)
         key, domain = topic.key(self._network.domain), self._network.domain
         text = topic.token(domain, self._name, next(self._entities), PUBLISHER, _NODE)

@@ -11,13 +11,13 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
-from crowdbot.core.live.message import LiveMessage, Offer, told
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 
-CLOCK = Offer("/clock", "rosgraph_msgs/msg/Clock")
+CLOCK = OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")
 AT_MOST = 60.0
 _NUMBERS = itertools.count()
 

@@ -18,7 +18,7 @@ from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.foxglove_door import FoxgloveDoor
 from crowdbot.core.live.foxglove_parameters import set_parameters
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.message import Offer, told
+from crowdbot.core.live.message import OfferedTopic, told
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
@@ -38,8 +38,8 @@ def _both(*robots: str) -> Iterator[tuple[FoxgloveDoor, LiveSession, ClientConne
     try:
         door.open(
             [
-                Offer("/clock", "rosgraph_msgs/msg/Clock"),
-                Offer("/map", "rosgraph_msgs/msg/Clock", True),
+                OfferedTopic("/clock", "rosgraph_msgs/msg/Clock"),
+                OfferedTopic("/map", "rosgraph_msgs/msg/Clock", True),
             ]
         )
         uri = f"ws://127.0.0.1:{door.port}"

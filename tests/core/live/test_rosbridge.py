@@ -13,7 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
 
-from crowdbot.core.live.message import Offer, told
+from crowdbot.core.live.message import OfferedTopic, told
 from crowdbot.core.live.rosbridge.frames import as_numbers
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.session import LiveSession
@@ -113,7 +113,12 @@ def test_who_comes_late_gets_what_a_waiting_step_said() -> None:
 
 def test_in_real_time_only_latched_messages_wait_for_who_comes_late() -> None:
     with serving(resend=False) as (server, _), client(server) as socket:
-        server.open([Offer("/clock", "rosgraph_msgs/msg/Clock"), Offer("/map", "x", latched=True)])
+        server.open(
+            [
+                OfferedTopic("/clock", "rosgraph_msgs/msg/Clock"),
+                OfferedTopic("/map", "x", latched=True),
+            ]
+        )
         still = told("/map", 1, ros.clock(1), latched=True)
         server.publish([clock(5), still])
         say(socket, "subscribe", topic="/clock")

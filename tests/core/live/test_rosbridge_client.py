@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.server import ServerConnection, serve
 
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.message import Offer, told
+from crowdbot.core.live.message import OfferedTopic, told
 from crowdbot.core.live.rosbridge.client import RosbridgeClient
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
@@ -24,9 +24,9 @@ from tests.core.live.live_cases import clock, until
 
 TWIST = {"linear": {"x": 0.25}, "angular": {"z": -0.5}}
 OFFERS = [
-    Offer("/map", "rosgraph_msgs/msg/Clock", latched=True),
-    Offer("/clock", "rosgraph_msgs/msg/Clock"),
-    Offer("/cam/image_raw", "sensor_msgs/msg/Image"),
+    OfferedTopic("/map", "rosgraph_msgs/msg/Clock", latched=True),
+    OfferedTopic("/clock", "rosgraph_msgs/msg/Clock"),
+    OfferedTopic("/cam/image_raw", "sensor_msgs/msg/Image"),
 ]
 
 

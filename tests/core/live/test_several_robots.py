@@ -11,7 +11,7 @@ import pytest
 
 from crowdbot.api import registry
 from crowdbot.core.live.manner import Manner
-from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.serve import LiveServe, live_robots, serve_runs
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.planning.resolve import PlannerChoice
@@ -30,10 +30,10 @@ class Driver:
 
     def __init__(self, session: LiveSession, speeds: dict[str, float]) -> None:
         self._session, self._speeds = session, speeds
-        self.opened: list[Sequence[Offer]] = []
+        self.opened: list[Sequence[OfferedTopic]] = []
         self.heard: list[LiveMessage] = []
 
-    def open(self, offers: Sequence[Offer]) -> None:
+    def open(self, offers: Sequence[OfferedTopic]) -> None:
         self.opened.append(offers)
         for name in self._speeds:
             self._session.drive(self, name)

@@ -18,7 +18,7 @@ import zenoh
 from rosbags.typesys import Stores, get_typestore
 
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.message import Offer, told
+from crowdbot.core.live.message import OfferedTopic, told
 from crowdbot.core.live.ros2_keys import Ros2Topic, attachment, gid_of, hash_in, in_distro
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.zenoh_door import Network, ZenohDoor
@@ -92,7 +92,7 @@ def test_an_attachment_has_33_bytes() -> None:
 
 def test_a_listener_gets_messages_with_their_attachment() -> None:
     with _both() as (door, _, other):
-        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
         assert not door.wants("/clock")
         heard: list[Any] = []
         key = f"0/clock/rosgraph_msgs::msg::dds_::Clock_/{hash_in(CLOCK, 'jazzy')}"
@@ -111,7 +111,7 @@ def test_who_comes_late_gets_the_map() -> None:
     from zenoh import ext
 
     with _both() as (door, _, other):
-        door.open([Offer("/map", "rosgraph_msgs/msg/Clock", latched=True)])
+        door.open([OfferedTopic("/map", "rosgraph_msgs/msg/Clock", latched=True)])
         door.publish([told("/map", 5, ros.clock(5), latched=True)])
         heard: list[Any] = []
         key = (
@@ -123,7 +123,7 @@ def test_who_comes_late_gets_the_map() -> None:
 
 def test_ros2_topic_list_sees_us() -> None:
     with _both() as (door, _, other):
-        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
 
         def tokens() -> list[str]:
             return [str(r.ok.key_expr) for r in other.liveliness().get("@ros2_lv/**") if r.ok]
@@ -139,7 +139,7 @@ def test_ros2_topic_list_sees_us() -> None:
 def test_lockstep_over_zenoh(stamped: bool) -> None:
     kind = "geometry_msgs/msg/TwistStamped" if stamped else "geometry_msgs/msg/Twist"
     with _both() as (door, session, other):
-        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
         types = JAZZY.types
         vector, time = types["geometry_msgs/msg/Vector3"], types["builtin_interfaces/msg/Time"]
         command = Ros2Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
@@ -235,7 +235,7 @@ def test_garbage_is_not_a_command() -> None:
 
 def test_the_clock_may_come_from_outside() -> None:
     with _both(external_clock=True) as (door, session, other):
-        door.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
         assert not door.wants("/clock")
         kind = "rosgraph_msgs/msg/Clock"
         other.put(Ros2Topic("/clock", kind, hash_in(kind, "jazzy")).key(0), clock(2 * 10**9).data)
@@ -270,7 +270,7 @@ def test_what_is_latched_reaches_another_implementation() -> None:
     endpoint = _endpoint()
     host, _, port = endpoint.removeprefix("tcp/").partition(":")
     with _both(endpoint) as (door, _, _):
-        door.open([Offer(t, kind, latched=True) for t, kind in types.items()])
+        door.open([OfferedTopic(t, kind, latched=True) for t, kind in types.items()])
         door.publish([told(t, 1, message, latched=True) for t, message in said.items()])
         request = json.dumps({"topics": types, "definitions": _definitions(types.values())})
         argv = [python, str(Path(__file__).with_name("zenoh_sdk_listener.py")), host, port]

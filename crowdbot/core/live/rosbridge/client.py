@@ -10,7 +10,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.live.commands import time_ns, twist
-from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.plain import Ros, ros_type
 from crowdbot.core.live.rosbridge.bad_frame import BadFrame
 from crowdbot.core.live.rosbridge.frames import encoded, parse
@@ -45,7 +45,7 @@ class RosbridgeClient:
         """
         self._session, self._uri, self._ros = session, uri, ros
         self._stamped, self._external_clock = stamped, external_clock
-        self._offers: dict[str, Offer] = {}
+        self._offers: dict[str, OfferedTopic] = {}
         self._latest: dict[str, LiveMessage] = {}
         self._known = frozenset[str]()
         self._connected = threading.Event()
@@ -60,7 +60,7 @@ class RosbridgeClient:
             raise InputError(f"{uri}: no rosbridge server: {self._why or 'no answer'}")
 
     # ---------------------------------------------------------------- the simulation's thread
-    def open(self, offers: Sequence[Offer]) -> None:
+    def open(self, offers: Sequence[OfferedTopic]) -> None:
         """Start a run that offers these topics."""
         mine = [o for o in offers if o.msgtype not in _LEFT_OUT]
         if self._external_clock:
@@ -162,7 +162,7 @@ class RosbridgeClient:
     def _put(self, **message: Any) -> None:
         self._outbox.put(json.dumps(message))
 
-    def _opened(self, offers: Sequence[Offer]) -> None:
+    def _opened(self, offers: Sequence[OfferedTopic]) -> None:
         new = [o for o in offers if o.topic not in self._offers]
         self._offers = {o.topic: o for o in offers}
         self._latest.clear()

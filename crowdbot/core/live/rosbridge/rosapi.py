@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core.live.message import Offer
+from crowdbot.core.live.message import OfferedTopic
 from crowdbot.core.live.plain import Ros, ros_type
 from crowdbot.core.live.services import Fields, Service, Values
 from crowdbot.core.recording import messages as ros
@@ -29,7 +29,7 @@ class RosapiWorld:
     """
 
     ros: Ros
-    offers: Sequence[Offer] = ()
+    offers: Sequence[OfferedTopic] = ()
     services: dict[str, Service] = field(default_factory=dict)
     parameters: dict[str, Any] = field(default_factory=lambda: {"/use_sim_time": "true"})
     now: Callable[[], int] = lambda: 0

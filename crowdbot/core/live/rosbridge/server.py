@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
 from crowdbot.core.live.admission import Admission
-from crowdbot.core.live.message import LiveMessage, Offer
+from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.plain import Ros
 from crowdbot.core.live.rosbridge.connection import Connection
 from crowdbot.core.live.rosbridge.feed import Wishes
@@ -118,7 +118,7 @@ class RosbridgeServer:
         """Return all services, by name."""
         return self._world.services
 
-    def open(self, offers: Sequence[Offer]) -> None:
+    def open(self, offers: Sequence[OfferedTopic]) -> None:
         """Start a run that offers these topics."""
         mine = [o for o in offers if not (self.external_clock and o.topic == "/clock")]
         self._soon(self._opened, mine)
@@ -153,7 +153,7 @@ class RosbridgeServer:
             self._loop.call_soon_threadsafe(what, *given)
 
     # ------------------------------------------------------------------ the server's thread
-    def _opened(self, offers: Sequence[Offer]) -> None:
+    def _opened(self, offers: Sequence[OfferedTopic]) -> None:
         self._world.offers = list(offers)
         self._latest.clear()
         self._latched = frozenset(o.topic for o in offers if o.latched)
