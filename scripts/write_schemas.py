@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crowdbot.cli.commands.schema import DocumentKind, build, to_text
+from crowdbot.cli.commands.extend.schema import DocumentKind, build, to_text
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.support.atomic_write import atomic_write
 

@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 
 from crowdbot import cli
-from crowdbot.cli.commands.schema import DocumentKind
+from crowdbot.cli.commands.extend.schema import DocumentKind
 from scripts.write_schemas import schema_texts
 from tests.paths import ROOT
 

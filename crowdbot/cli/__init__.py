@@ -1,6 +1,6 @@
 """The command line: one file per command, found by its name, imported when it is called.
 
-A module ``crowdbot/cli/commands/x.py`` offers the command ``x``: a function ``x``, or a
+A module ``crowdbot/cli/commands/GROUP/x.py`` offers the command ``x``: a function ``x``, or a
 `typer.Typer` named ``x`` for a command with commands of its own. Its docstring ends with an
 example. Heavy imports stay inside functions: ``--help`` imports every command.
 """

@@ -16,7 +16,7 @@ from rich.console import Console
 
 from crowdbot import cli
 from crowdbot.cli.app import complete as _complete
-from crowdbot.cli.commands.docs import _excerpt
+from crowdbot.cli.commands.start.docs import _excerpt
 from crowdbot.cli.output import doctor as _doctor
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scoring.scores_csv import scores_table

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.cli.commands import verify
+from crowdbot.cli.commands.challenge import verify
 from crowdbot.core.registry.registry import discover
 from crowdbot.dsl.suite.commitment import commitment_of
 from crowdbot.errors import SpecError

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from crowdbot.cli.commands.info import _show
+from crowdbot.cli.commands.look.info import _show
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.results_lines import print_table
 from crowdbot.core.recording.reading.contents import RecordingContents, TopicContents

@@ -56,7 +56,7 @@ def test_components_of_plugins_are_in_it(tmp_path: Path) -> None:
     code = (
         "from pathlib import Path\n"
         "from crowdbot.core.registry.registry import discover\n"
-        "from crowdbot.cli.commands.schema import build\n"
+        "from crowdbot.cli.commands.extend.schema import build\n"
         "import json\n"
         "schema = build('suite', discover(extra=[Path('plugins/acme_rooms.py')], allow=()))\n"
         "words = schema['$defs']['environment']['properties']['kind']['oneOf']\n"

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from crowdbot.cli.commands.verify import _trusting
+from crowdbot.cli.commands.challenge.verify import _trusting
 from crowdbot.core.bundle.rerun_verdict import RerunVerdict
 from crowdbot.core.registry.registry import Registry, discover
 from tests.cli.plugin_packages import planner

@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
-from crowdbot.cli.app.command_names import command_names
+from crowdbot.cli.app.command_names import command_groups, command_names
 from crowdbot.cli.app.complete import offer
 from crowdbot.cli.app.given_once import refuse_repetition
 from crowdbot.errors import did_you_mean, nearest
@@ -43,7 +43,7 @@ class _Commands(TyperGroup):
 
     def list_commands(self, ctx: Any) -> list[str]:
         del ctx
-        return command_names()
+        return list(command_groups())
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         known = command_names()
@@ -55,14 +55,14 @@ class _Commands(TyperGroup):
 
 def load(name: str) -> Any:
     """Return the command of a module, with ``-v`` and ``-q`` added."""
-    module = name.replace("-", "_")
-    found = getattr(importlib.import_module(f"crowdbot.cli.commands.{module}"), module)
+    module, group = name.replace("-", "_"), command_groups()[name]
+    found = getattr(importlib.import_module(f"crowdbot.cli.commands.{group}.{module}"), module)
     if not isinstance(found, typer.Typer):
         app = typer.Typer(**_SETTINGS)
         app.command(name=name)(found)
         found = app
     command = get_command(found)
-    command.name = name
+    command.name, command.rich_help_panel = name, group.capitalize()
     for one in (command, *getattr(command, "commands", {}).values()):
         one.help = _unwrapped(one.help)
         if one.help and not one.short_help:  # otherwise click would truncate it

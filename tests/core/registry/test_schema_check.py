@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.cli.commands.schema import build
+from crowdbot.cli.commands.extend.schema import build
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.registry.schema_check import describable

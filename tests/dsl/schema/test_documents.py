@@ -16,7 +16,7 @@ import pytest
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from crowdbot.cli.commands.schema import build
+from crowdbot.cli.commands.extend.schema import build
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.identity.canonical import canonical_bytes, dump_scenario_yaml

@@ -71,7 +71,7 @@ def bundle(
 
     Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --check
     """
-    from crowdbot.cli.commands.verify import Asked, print_verdict, verify_bundle
+    from crowdbot.cli.commands.challenge.verify import Asked, print_verdict, verify_bundle
     from crowdbot.core.bundle.pack import Submission, other_seeds, pack
     from crowdbot.core.planning.choice import ANYWHERE
     from crowdbot.core.registry.plugin import BUILTIN

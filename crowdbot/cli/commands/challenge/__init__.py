@@ -1,0 +1,1 @@
+"""Commands of challenges: locks, draws, bundles, judging, leaderboards."""

@@ -1,0 +1,1 @@
+"""Commands that show scenarios, recordings and runs."""

@@ -1,0 +1,1 @@
+"""Commands to begin with: the machine, the documents, scenarios that are checked."""
