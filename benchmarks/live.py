@@ -24,7 +24,7 @@ import cbor2
 import numpy as np
 from websockets.sync.client import connect
 
-from crowdbot.core.live.message import Offer
+from crowdbot.core.live.message import OfferedTopic
 from crowdbot.core.live.observed import Observed
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.services import services
@@ -94,7 +94,7 @@ def measure(form: str, steps: int) -> tuple[list[float], Spent]:
     session = LiveSession()
     server = RosbridgeServer(session, Address(port=0), services(session))
     observed = Observed({"front": LIDAR}, _model())
-    server.open([Offer(o.topic, o.msgtype) for o in observed.offers()])
+    server.open([OfferedTopic(o.topic, o.msgtype) for o in observed.offers()])
     argv = [sys.executable, __file__, "client", str(server.port), form, str(steps)]
     scans, times = np.random.default_rng(0).uniform(0.1, 25.0, (steps, 720)), []
     with subprocess.Popen(argv, stdout=subprocess.PIPE, text=True) as other:

@@ -29,7 +29,7 @@ import cbor2
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from crowdbot.core.live.message import Offer, told
+from crowdbot.core.live.message import OfferedTopic, told
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
@@ -65,7 +65,7 @@ def main() -> int:
     session = LiveSession()
     server = RosbridgeServer(session, Address(port=0), services(session))
     logging.getLogger("websockets").setLevel(logging.CRITICAL)  # of clients that hang up
-    server.open([Offer("/clock", "rosgraph_msgs/msg/Clock")])
+    server.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
     rng = random.Random(chosen.seed)
     grew = False
     with connect(_uri(server), compression=None) as driver:

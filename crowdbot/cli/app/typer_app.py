@@ -61,7 +61,7 @@ def load(name: str) -> Any:
         app = typer.Typer(**_SETTINGS)
         app.command(name=name)(found)
         found = app
-    command = get_command(found)
+    command: Any = get_command(found)
     command.name, command.rich_help_panel = name, group.capitalize()
     for one in (command, *getattr(command, "commands", {}).values()):
         one.help = _unwrapped(one.help)

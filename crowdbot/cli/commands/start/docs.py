@@ -71,7 +71,7 @@ def documents() -> Path:
     Raises:
         InputError: there is neither.
     """
-    package = Path(__file__).parent.parent.parent
+    package = Path(__file__).parents[3]
     for folder in (package / "docs", package.parent / "docs"):
         if (folder / "index.md").is_file():
             return folder
