@@ -6,21 +6,19 @@ of `discover` instead, and its class's name; another process discovers the same 
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable
-from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import BaseModel
 
+from crowdbot.core.registry.registry_source import RegistrySource, Whereabouts, whereabouts
+
 if TYPE_CHECKING:
-    from crowdbot.core.registry.registry import Registry, RegistrySource
     from crowdbot.dsl.spec.spec import ComponentSpec
 
 Specs = tuple[tuple[str, type["ComponentSpec"]], ...]
-#: Paths of plugins that are not installed, the allow-list, whether entry points are read.
-Whereabouts = tuple[tuple[str, ...], tuple[str, ...] | None, bool]
+#: Returns an object without fields of the class with a name, which unpickling fills in.
+Blank = Callable[[Whereabouts, str], BaseModel]
 Model = TypeVar("Model", bound=BaseModel)
 
 
@@ -29,13 +27,18 @@ class Models(dict[str, type[BaseModel]]):
 
     source: RegistrySource | None = None
 
+    def __init__(self, blank: Blank) -> None:
+        """Build it empty; ``blank`` has to be a function of a module."""
+        super().__init__()
+        self._blank = blank
+
     def keep(self, model: type[Model], name: str) -> type[Model]:
         """Keep a class under a name; its objects can be pickled."""
 
         def reduce(one: BaseModel) -> tuple[Any, ...]:
             if type(one) is not model:
                 return tuple(object.__reduce_ex__(one, 2))
-            return _blank, (whereabouts(self.source), name), one.__getstate__()
+            return self._blank, (whereabouts(self.source), name), one.__getstate__()
 
         model.__reduce__ = reduce  # type: ignore[method-assign, assignment]
         self[name] = model
@@ -48,46 +51,18 @@ _shared: dict[Specs, Models] = {}
 _KEPT = 8
 
 
-def models_of(specs: Specs, source: RegistrySource | None) -> Models:
+def models_of(specs: Specs, source: RegistrySource | None, blank: Blank) -> Models:
     """Return the classes so far for some specs by category; to be added to.
 
     Args:
         specs: category and class of each component's spec.
         source: arguments of `discover` that find them; None if they were not discovered.
+        blank: as in `Models`.
     """
     if specs not in _shared:
         if len(_shared) == _KEPT:
             del _shared[next(iter(_shared))]
-        _shared[specs] = Models()
+        _shared[specs] = Models(blank)
     models = _shared[specs]
     models.source = models.source or source
     return models
-
-
-def whereabouts(source: RegistrySource | None) -> Whereabouts:
-    """Return what another process needs to find the components of a registry.
-
-    Raises:
-        PicklingError: it was put together by hand.
-    """
-    if source is None:
-        raise pickle.PicklingError(
-            "components of plugins that were not discovered cannot be found by another process"
-        )
-    return tuple(map(str, source.extra)), source.allow, source.entry_points
-
-
-def _blank(where: Whereabouts, name: str) -> BaseModel:
-    """Return an object without fields, which unpickling fills in."""
-    model = registry_of(where).narrowed(name)
-    return model.__new__(model)
-
-
-@cache
-def registry_of(where: Whereabouts) -> Registry:
-    """Return the registry that another process had, discovered once per process."""
-    from crowdbot.core.registry.registry import discover
-
-    discovering: Callable[..., Registry] = discover
-    extra, allow, entry_points = where
-    return discovering(extra=[Path(p) for p in extra], allow=allow, entry_points=entry_points)

@@ -11,7 +11,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, Union, cast
 
@@ -23,6 +23,7 @@ from crowdbot.core.registry.entry_points import ALLOW, find_plugins
 from crowdbot.core.registry.narrowed_models import Models, models_of
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
+from crowdbot.core.registry.registry_source import RegistrySource, Whereabouts
 from crowdbot.core.support.gc_throttle import seldom_collected
 from crowdbot.dsl.scenario.components import components
 from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Robot, Scenario
@@ -38,15 +39,6 @@ __all__ = ["Plugin", "Registry", "assemble", "discover"]
 Built = TypeVar("Built")
 
 _IN_SCENARIOS = tuple(c.category for c in CATEGORIES if c not in (PlannerSpec, MetricSpec))
-
-
-@dataclass(frozen=True, slots=True)
-class RegistrySource:
-    """The arguments of `discover`."""
-
-    extra: tuple[Path, ...]
-    allow: tuple[str, ...] | None
-    entry_points: bool
 
 
 @dataclass(frozen=True)
@@ -206,6 +198,7 @@ class Registry:
                 for component in self._by_category[category].values()
             ),
             self.source,
+            blank_of,
         )
 
     def _narrowed_scenario(self) -> type[Scenario]:
@@ -353,3 +346,16 @@ def _disable(plugins: Sequence[Plugin], errors: Mapping[int, str]) -> list[Plugi
         replace(p, components=(), scenario_dirs=(), error=errors[i]) if i in errors else p
         for i, p in enumerate(plugins)
     ]
+
+
+@cache
+def registry_of(where: Whereabouts) -> Registry:
+    """Return the registry that another process had, discovered once per process."""
+    extra, allow, entry_points = where
+    return discover(extra=[Path(p) for p in extra], allow=allow, entry_points=entry_points)
+
+
+def blank_of(where: Whereabouts, name: str) -> BaseModel:
+    """Return an object without fields of a narrowed class, which unpickling fills in."""
+    model = registry_of(where).narrowed(name)
+    return model.__new__(model)

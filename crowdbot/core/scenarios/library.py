@@ -15,9 +15,9 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core.registry.narrowed_models import Whereabouts, registry_of, whereabouts
 from crowdbot.core.registry.plugin_boundary import PluginCall
-from crowdbot.core.registry.registry import Registry
+from crowdbot.core.registry.registry import Registry, registry_of
+from crowdbot.core.registry.registry_source import Whereabouts, whereabouts
 from crowdbot.core.support.gc_throttle import seldom_collected
 from crowdbot.core.support.text_files import suggest_files
 from crowdbot.dsl.scenario.lock import LockFiles

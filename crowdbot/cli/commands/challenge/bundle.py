@@ -83,12 +83,14 @@ def bundle(
             f"{root} is a file; ROOT is a folder of runs. To check a bundle that is there: "
             f"crowdbot verify {root}"
         )
-    if suite is None or planner is None:
+    if suite is None:
         raise UsageError(f"which runs? Give --suite SPEC and --planner LABEL; {_offer(root)}")
     registry = installed(plugin, no_plugins)
     expansion, lock = open_suite(suite, registry)
     for scenario in expansion.scenarios:
         check_revealed(scenario)
+    if planner is None:
+        raise UsageError(f"which planner? Give --planner LABEL; {_offer(root)}")
     submission = Submission(
         root=root, planner=planner, team=team, contact=contact, partial=partial,
         recordings=recordings,

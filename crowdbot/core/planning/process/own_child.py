@@ -146,7 +146,8 @@ class OwnSide:
 
     def _kind(self) -> _Found:
         from crowdbot.core.planning.registered import build_of_kind, load_kind  # slow imports
-        from crowdbot.core.registry.registry import RegistrySource, discover
+        from crowdbot.core.registry.registry import discover
+        from crowdbot.core.registry.registry_source import RegistrySource
 
         where: RegistrySource = self._what["plugins"]
         registry = discover(extra=where.extra, allow=where.allow, entry_points=where.entry_points)
