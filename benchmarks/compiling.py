@@ -55,7 +55,7 @@ def measure(every: bool, ahead: bool) -> None:
     """Simulate in this process and print what was compiled."""
     import crowdbot
     import crowdbot.core  # tells numba where compiled functions go, before it is imported
-    from crowdbot.core.support import compile_ahead
+    from crowdbot.core.support.compiling import compile_ahead
 
     if not ahead:
         setattr(compile_ahead, "available_cores", lambda: 1)  # noqa: B010

@@ -86,7 +86,12 @@ if TYPE_CHECKING:
     from crowdbot.core.sensing.scene import Scene
     from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
     from crowdbot.core.sensing.tracking.people_tracker import PeopleTracker, Tracks
-    from crowdbot.core.support.compile import array_kernel, declared_kernel, inline_kernel, kernel
+    from crowdbot.core.support.compiling.compile import (
+        array_kernel,
+        declared_kernel,
+        inline_kernel,
+        kernel,
+    )
     from crowdbot.core.support.immutable import immutable
     from crowdbot.core.support.records import (
         RecordType,

@@ -43,7 +43,7 @@ HOMES = {
     "crowdbot.core.sensing.range_model": "RangeModel",
     "crowdbot.core.sensing.scene": "Scene",
     "crowdbot.core.sensing.sensor": "DepthCamera NoiseGenerator Sensor SensorWithMemory",
-    "crowdbot.core.support.compile": "array_kernel declared_kernel inline_kernel kernel",
+    "crowdbot.core.support.compiling.compile": "array_kernel declared_kernel inline_kernel kernel",
     "crowdbot.core.support.immutable": "immutable",
     "crowdbot.core.support.records": "RecordType Rows as_record as_rows record_type record_values",
     "crowdbot.core.support.stable_order": "stable_order",

@@ -24,7 +24,7 @@ from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.crowd.velocity_search.surroundings import describe
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 

@@ -19,7 +19,7 @@ from crowdbot.core.crowd.velocity_search.candidates import Sampling
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.crowd.world import CrowdWorld
-from crowdbot.core.support.compile_ahead import compiled_ahead
+from crowdbot.core.support.compiling.compile_ahead import compiled_ahead
 from crowdbot.core.types.arrays import Array
 
 

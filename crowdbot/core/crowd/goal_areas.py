@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import record_type
 
 

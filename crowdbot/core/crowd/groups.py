@@ -16,7 +16,7 @@ from crowdbot.core.crowd.state import (
     PRESENT,
     People,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows, record_type, record_values, rows_in
 from crowdbot.core.types.arrays import Array, Indices
 

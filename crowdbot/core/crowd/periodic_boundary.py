@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from crowdbot.core.crowd.state import People
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 #: x0, x1, y0, y1, m.

@@ -16,7 +16,7 @@ from crowdbot.core.crowd.state import (
     People,
 )
 from crowdbot.core.crowd.velocity_search import counter_rng
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 

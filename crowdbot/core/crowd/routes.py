@@ -15,7 +15,7 @@ from crowdbot.core.crowd.state import (
     People,
 )
 from crowdbot.core.crowd.velocity_search import counter_rng
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 
 
 @kernel

@@ -35,7 +35,7 @@ from crowdbot.core.crowd.state import (
     People,
 )
 from crowdbot.core.crowd.traits import TRAITS
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows, as_record, as_rows
 from crowdbot.core.types.arrays import Array, Indices
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: With fewer segments all are tried: that costs less than finding the cell.

@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.core.realism.bins import DENSITY_EDGES, DISC, DT, NEVER, REACH
 from crowdbot.core.realism.tracks import Tracks
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Columns of people's rows: cell of the density, then the features.

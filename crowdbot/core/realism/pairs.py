@@ -13,7 +13,7 @@ import numpy as np
 
 from crowdbot.core.realism.bins import CELLS, DENSITY_EDGES, PAIR_EDGES
 from crowdbot.core.realism.tracks import Tracks
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 #: Time shifts for chance pairs, as shares of the compared frames.

@@ -21,7 +21,7 @@ from crowdbot.core.sensing.body_model import (
     Y,
     place_people,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
 

@@ -31,7 +31,7 @@ from crowdbot.core.sensing.projection import (
     depth_reading,
     project_body,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 

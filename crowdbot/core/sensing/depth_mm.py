@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 
 _FARTHEST = np.float32(65.535)  # m, in millimetres of 16 bits
 _PER_METRE = np.float32(1000.0)

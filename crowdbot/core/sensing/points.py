@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from crowdbot.core.geometry.rotation import rotation
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.immutable import immutable
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import Reading, SensorInfo

@@ -20,7 +20,7 @@ from crowdbot.core.sensing.mount import (
 )
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import NoiseGenerator
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.immutable import immutable
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.types.arrays import Array

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 #: Ends of a wall are extended by this fraction, so that no ray passes through a corner.

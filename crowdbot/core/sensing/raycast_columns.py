@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core.geometry.rough_angle import rough_angle
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Largest number of bodies per column; the farthest are dropped.

@@ -23,7 +23,7 @@ from crowdbot.core.sensing.raycast import (
     wall_incidence,
 )
 from crowdbot.core.sensing.raycast_columns import RayGrid
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 Indices = NDArray[np.int64]

@@ -18,7 +18,7 @@ from pydrake.systems.framework import (
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import HolonomicDrive, RobotState

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 Order = NDArray[np.int64]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import crowdbot
-from crowdbot.core.registry.narrowed_models import whereabouts
+from crowdbot.core.registry.registry_source import whereabouts
 from crowdbot.dsl.suite.expand import Expansion
 
 IDS = ("in-d0125-slow-c01-r02", "counter-d0250-dispersed-c20-r05")

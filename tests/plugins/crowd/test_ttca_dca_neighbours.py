@@ -10,7 +10,7 @@ import pytest
 from crowdbot.core.crowd.velocity_search import cost as c
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of, call_prepare
 from crowdbot.core.crowd.velocity_search.records import AGENT, NEIGHBOUR, WALL, WORK_COLUMNS
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 
 
 @kernel

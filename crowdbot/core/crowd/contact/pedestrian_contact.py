@@ -13,7 +13,7 @@ from crowdbot.core.crowd.state import (
 )
 from crowdbot.core.crowd.traits import TraitsRecord
 from crowdbot.core.geometry.segment_grid import cell_of
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.types.arrays import Array, Indices
 

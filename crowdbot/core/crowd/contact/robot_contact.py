@@ -17,7 +17,7 @@ from crowdbot.core.crowd.state import (
     TouchRecord,
 )
 from crowdbot.core.crowd.traits import TraitsRecord
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows, as_record, as_rows, record_type
 from crowdbot.core.types.arrays import Array, Indices
 

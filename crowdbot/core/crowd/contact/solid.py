@@ -7,7 +7,7 @@ import math
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.state import People
 from crowdbot.core.geometry.segment_grid import cell_of
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Largest overlap of a body with anything solid where this is a limit, m.

@@ -18,7 +18,7 @@ from crowdbot.core.crowd.response.parameters import DecisionResponse
 from crowdbot.core.crowd.state import (
     People,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows, as_rows
 from crowdbot.core.types.arrays import Array, Mask
 

@@ -17,7 +17,7 @@ from crowdbot.core.crowd.state import (
     UNAWARE,
     People,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 

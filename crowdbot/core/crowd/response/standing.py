@@ -19,7 +19,7 @@ from crowdbot.core.crowd.response.parameters import TickResponse
 from crowdbot.core.crowd.state import (
     People,
 )
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 

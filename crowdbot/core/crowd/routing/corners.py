@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core.crowd.routing.sight import Sight, crosses, is_clear
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Columns of a corner: position; positions of its neighbours on the outline; a unit vector from the

@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.core.crowd.routing.corners import CORNER_COLUMNS
 from crowdbot.core.crowd.routing.sight import Sight
-from crowdbot.core.support.compile import inline_kernel
+from crowdbot.core.support.compiling.compile import inline_kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: The head: end of the corners in ``reals``; then, for each sight, start and end of its arrays:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Average number of edges per cell; smallest size of cells, m.

@@ -6,7 +6,7 @@ import math
 
 from crowdbot.core.crowd.routing.corners import Corners, X, Y, bends_past
 from crowdbot.core.crowd.routing.sight import Sight, is_clear
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: In place of a next corner: the goal itself.

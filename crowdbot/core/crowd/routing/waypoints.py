@@ -19,7 +19,7 @@ from crowdbot.core.crowd.state import (
     People,
 )
 from crowdbot.core.crowd.velocity_search import counter_rng
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Share of the room at a corner over which people spread.

@@ -7,7 +7,7 @@ import math
 from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.dsl.scenario.steering import PersonalSpaceSpec

@@ -13,7 +13,7 @@ from crowdbot.core.crowd.velocity_search.neighbour_discs import (
     write_discs,
 )
 from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 

@@ -9,7 +9,7 @@ import numpy as np
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.geometry.segment_grid import cell_of, grid_of
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.dsl.scenario.steering import WallPushSpec
 

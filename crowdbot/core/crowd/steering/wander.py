@@ -12,7 +12,7 @@ import numpy as np
 
 from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.velocity_search.counter_rng import WANDER, uniform
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.dsl.scenario.steering import WanderSpec
 

@@ -12,7 +12,7 @@ from crowdbot.core.crowd.velocity_search.cost_calls import call_base, call_exces
 from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Table (K, 8) of addresses: a row per cost function, columns as below.

@@ -14,7 +14,7 @@ import numpy as np
 
 from crowdbot.core.crowd.velocity_search.minstd import between, following
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 # Codes of the options of `Sampling`.

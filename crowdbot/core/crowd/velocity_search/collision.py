@@ -13,7 +13,7 @@ from crowdbot.core.crowd.velocity_search.records import (
     NeighbourRecord,
     WallRecord,
 )
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.support.records import Rows, as_record, as_rows, record_type
 
 

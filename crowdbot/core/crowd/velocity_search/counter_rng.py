@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import uint64
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 
 #: Purposes of draws, which keep draws with equal counters separate.
 GOAL, ENTRY, ROUTE, WANDER = 0, 1, 2, 3

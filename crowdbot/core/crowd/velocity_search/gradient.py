@@ -28,7 +28,7 @@ from crowdbot.core.crowd.velocity_search.surroundings import (
     describe,
 )
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
-from crowdbot.core.support.compile import array_kernel, inline_kernel
+from crowdbot.core.support.compiling.compile import array_kernel, inline_kernel
 
 _MODULUS = 2147483647
 

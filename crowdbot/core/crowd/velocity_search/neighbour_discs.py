@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.velocity_search.records import NeighbourRecord, WallRecord
 from crowdbot.core.geometry.segment_grid import cell_of
-from crowdbot.core.support.compile import array_kernel, inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, inline_kernel, kernel
 from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.support.stable_order import stable_order
 from crowdbot.core.types.arrays import Array, Indices

@@ -20,7 +20,7 @@ from crowdbot.core.crowd.velocity_search.agent_costs import (
 from crowdbot.core.crowd.velocity_search.candidates import draw_candidates
 from crowdbot.core.crowd.velocity_search.cost_calls import call_lower_bound
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Largest relative rounding error of a cost.

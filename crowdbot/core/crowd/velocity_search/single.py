@@ -20,7 +20,7 @@ from crowdbot.core.crowd.velocity_search.candidates import (
 )
 from crowdbot.core.crowd.velocity_search.minstd import between, following
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 

@@ -19,7 +19,7 @@ from crowdbot.core.crowd.velocity_search.neighbours import (
     strip_height,
 )
 from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
-from crowdbot.core.support.compile import array_kernel, inline_kernel
+from crowdbot.core.support.compiling.compile import array_kernel, inline_kernel
 from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.types.arrays import Array, Indices, Mask
 

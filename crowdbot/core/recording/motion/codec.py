@@ -39,7 +39,7 @@ from crowdbot.core.recording.motion.prediction import (
     target_velocity,
     towards,
 )
-from crowdbot.core.support.compile import inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 
 #: Added to the number of a prediction without stored differences, since all four are 0.
 EXACT = np.uint8(128)

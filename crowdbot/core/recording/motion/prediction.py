@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.recording.motion.candidates import CandidateTable
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 

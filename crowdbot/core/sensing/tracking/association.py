@@ -6,7 +6,7 @@ import math
 
 from crowdbot.core.sensing.tracking import clusters as c
 from crowdbot.core.sensing.tracking import tracks as k
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: A leg is at most this far from where its person is expected, plus this many deviations, m.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 #: Columns of a cluster: place (m), width (m), first point, end, 1 if a pillar or wall stood there,

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from crowdbot.core.sensing.tracking import association, still_map
 from crowdbot.core.sensing.tracking import clusters as c
 from crowdbot.core.sensing.tracking import tracks as k
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Sectors of the full turn in which the nearest point is known, to see who is hidden.

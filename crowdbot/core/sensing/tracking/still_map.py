@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 #: Width of a cell, m, and cells along each side of the window.

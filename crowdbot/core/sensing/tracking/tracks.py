@@ -6,7 +6,7 @@ velocity serves both.
 
 from __future__ import annotations
 
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 #: Columns of a track: number; place (m), velocity (m/s); variances of place and velocity, and

@@ -19,7 +19,7 @@ from crowdbot.core.sensing.depth_mm import depth_mm
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import DepthCamera, Sensor
 from crowdbot.core.sim import ports
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotState

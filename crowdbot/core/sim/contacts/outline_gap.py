@@ -6,7 +6,7 @@ import math
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.contact.robot_contact import from_outline
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
 #: Points that touch within this distance are one contact, such as a box side along a wall, m.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.contact.robot_contact import R_BODY, R_YAW, RX, RY, extent_of, from_outline
-from crowdbot.core.support.compile import kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Mask
 
 

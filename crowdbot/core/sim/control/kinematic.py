@@ -23,7 +23,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.contacts.outline_gap import outline_gap
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
-from crowdbot.core.support.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from crowdbot.core.support.compiled_state import CompiledState, state_of
+from crowdbot.core.support.compiling.compiled_state import CompiledState, state_of
 
 SOURCE = """
 SPEED = 1.3

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numba import njit, types
 
-from crowdbot.core.support.compile import array_kernel, declared_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, declared_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 
@@ -121,7 +121,7 @@ print(json.dumps(ours))
 """
 LOOPS = """
 import numpy as np
-from crowdbot.core.support.compile import array_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, kernel
 @kernel
 def inner(values):
     return values[1] * 3.0

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.support import compile_ahead
-from crowdbot.core.support.compile_ahead import compiled_ahead
+from crowdbot.core.support.compiling import compile_ahead
+from crowdbot.core.support.compiling.compile_ahead import compiled_ahead
 from tests.core.planning.process.process_cases import is_alive
 from tests.waiting import wait_until
 
@@ -25,7 +25,7 @@ def compile_ahead():
 """
 CALLER = """
 import time
-from crowdbot.core.support import compile_ahead
+from crowdbot.core.support.compiling import compile_ahead
 compile_ahead.available_cores = lambda: 2
 with compile_ahead.compiled_ahead("compiles_slowly"):
     time.sleep(600)

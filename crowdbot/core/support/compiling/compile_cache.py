@@ -13,7 +13,7 @@ from pathlib import Path
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
-_PACKAGE = Path(__file__).parents[2]
+_PACKAGE = Path(__file__).parents[3]
 _VARIABLE = "NUMBA_CACHE_DIR"
 #: In a planner's process, the folder in which the simulator keeps compiled functions.
 SIMULATORS = "CROWDBOT_KERNELS"
@@ -21,7 +21,7 @@ _PLAIN = "CROWDBOT_PLAIN_NUMBA"
 _LOCATORS = "NUMBA_CACHE_LOCATOR_CLASSES"
 #: Numba's cache locators in order: its own follow if the first has no file or no folder.
 _CLASSES = ",".join(
-    ("crowdbot.core.support.compile_cache_locator.CompiledStateLocator",
+    ("crowdbot.core.support.compiling.compile_cache_locator.CompiledStateLocator",
      "UserWideCacheLocator", "IPythonCacheLocator", "ZipCacheLocator")
 )  # fmt: skip
 

@@ -1,8 +1,8 @@
 """Compile in a second process what a first run needs late, in parallel to the first process.
 
 Both read and write one folder of compiled functions, and each function is compiled by one of them
-(`crowdbot.core.support.compile_parts`). If the second process fails or is missing, the first one
-compiles everything itself.
+(`compile_parts`). If the second process fails or is missing, the first one compiles everything
+itself.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 
-from crowdbot.core.support.compile_cache import is_plain_numba, nothing_compiled
+from crowdbot.core.support.compiling.compile_cache import is_plain_numba, nothing_compiled
 from crowdbot.core.support.cores import available_cores
 
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
-    "from crowdbot.core.support.compile_ahead import main; main(sys.argv[2])"
+    "from crowdbot.core.support.compiling.compile_ahead import main; main(sys.argv[2])"
 )
 #: Time for the second process to exit by itself, s.
 _GRACE = 2.0
@@ -79,7 +79,7 @@ def main(module: str) -> None:
 
 def _end_with_caller() -> None:
     os.read(0, 1)
-    from crowdbot.core.support.compile_parts import SAVING
+    from crowdbot.core.support.compiling.compile_parts import SAVING
 
     with SAVING:  # or else a partial file would remain
         os._exit(0)

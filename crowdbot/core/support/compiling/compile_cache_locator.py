@@ -9,8 +9,12 @@ from typing import Any
 
 from numba.core.caching import UserProvidedCacheLocator
 
-from crowdbot.core.support.compile_cache import SIMULATORS, is_plain_numba, is_readable_only
-from crowdbot.core.support.compiled_state import CompiledState
+from crowdbot.core.support.compiling.compile_cache import (
+    SIMULATORS,
+    is_plain_numba,
+    is_readable_only,
+)
+from crowdbot.core.support.compiling.compiled_state import CompiledState
 
 
 class CompiledStateLocator(UserProvidedCacheLocator):

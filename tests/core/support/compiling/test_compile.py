@@ -12,7 +12,8 @@ import pytest
 LOOPS = """
 import sys
 import numpy as np
-from crowdbot.core.support.compile import array_kernel, declared_kernel, inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import array_kernel, declared_kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from numba import float64
 @kernel
 def twice(values, i):
@@ -29,7 +30,8 @@ def of_all(values):
 @declared_kernel(float64(float64))
 def half(value):
     return 0.5 * value
-print(*of_all(np.arange(3.0)), half(3.0), "crowdbot.core.support.compile_parts" in sys.modules)
+parts = "crowdbot.core.support.compiling.compile_parts"
+print(*of_all(np.arange(3.0)), half(3.0), parts in sys.modules)
 """
 
 

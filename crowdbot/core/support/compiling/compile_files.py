@@ -1,6 +1,6 @@
 """Cache files of compiled functions for numba, and how they are loaded.
 
-A function stored as a part (`crowdbot.core.support.compile_parts`) is intermediate code only. A
+A function stored as a part (`compile_parts`) is intermediate code only. A
 whole function is machine code, plus intermediate code for compiling its callers. Calls never need
 the latter, and loading it takes longer than linking the machine code.
 """

@@ -15,7 +15,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-from crowdbot.core.support.compile_cache import is_plain_numba
+from crowdbot.core.support.compiling.compile_cache import is_plain_numba
 
 F = TypeVar("F", bound=Callable[..., Any])
 # `_nrt`, used below, is undocumented; numba compiles its own such functions with it.
@@ -66,7 +66,7 @@ def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
         return function
     if is_plain_numba():
         return numba.njit(cache=True, **options)(function)
-    from crowdbot.core.support.compile_parts import KernelDispatcher
+    from crowdbot.core.support.compiling.compile_parts import KernelDispatcher
 
     whole = {**options, "nopython": True, "boundscheck": None}
     return KernelDispatcher(function, targetoptions=whole)

@@ -1,0 +1,1 @@
+"""Compiles hot loops with numba, and keeps the results between processes."""
