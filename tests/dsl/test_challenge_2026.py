@@ -69,7 +69,7 @@ def test_labels_and_titles_say_the_density_that_is_realised(suite: Expansion) ->
 def test_attention(suite: Expansion, label: str, ignoring: float, late: float) -> None:
     found = [crowd.robot_response for id_, crowd in crowds(suite).items() if f"-{label}-" in id_]
     assert len(found) == 54
-    assert {(r.kind, r.ignoring, r.late) for r in found} == {("human", ignoring, late)}
+    assert {(r.kind, r.ignoring, r.late) for r in found} == {("giving_way", ignoring, late)}
 
 
 def test_people_walk_as_people_do(suite: Expansion) -> None:
