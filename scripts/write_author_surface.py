@@ -10,11 +10,11 @@ from typing import Annotated, Any, get_args, get_origin
 
 from crowdbot import plugin
 from crowdbot.dsl.spec.quantities import UNITS, Quantity
-from crowdbot.plugin import for_crowds, for_metrics, for_sensors
+from crowdbot.plugin import for_crowds, for_environments, for_metrics, for_sensors
 from crowdbot.plugin.homes import HOMES
 
 #: Tools that few components need.
-ROOMS = (for_metrics, for_sensors, for_crowds)
+ROOMS = (for_metrics, for_sensors, for_crowds, for_environments)
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
 
 _HEAD = """\
@@ -35,8 +35,8 @@ numba, and one that needs only names of the first two sections imports no numpy.
 _HEAD_OF_ROOMS = """\
 ## Tools for some components
 
-What crowdbot's own metrics, sensors and crowds use beside that. They are modules of their own, for
-the build side.
+What crowdbot's own metrics, sensors, crowds and environments use beside that. They are modules of
+their own, for the build side.
 """
 #: What has no docstring of its own.
 _SAID = {
@@ -51,6 +51,8 @@ _SAID = {
     "Answer": "An answer to a question, or None.",
     "DISTANCE_TOLERANCE": "Slack of the rule who is near, m.",
     "NO_RAYS": "An array of no rays.",
+    "DEEPEST": "Deepest nesting of a document of others.",
+    "LARGEST_TABLE": "Largest table or picture that is read, bytes.",
     "MOST_MILLIMETRES": "Farthest depth that whole millimetres in 16 bits can say, m.",
     "TLX_SCALES": "Scales of the questionnaire NASA-TLX.",
     "USE_ITEMS": "Scale -> number of items of the questionnaire USE.",

@@ -10,8 +10,8 @@ from typing import Any
 
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.core.support.text_files import input_text
 from crowdbot.plugin import InputError, Place
+from crowdbot.plugin.for_environments import input_text
 from crowdbot.plugins.environments.floor_plan_detail_build import without_details
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_grid_build import read_grid

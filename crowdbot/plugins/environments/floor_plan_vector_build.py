@@ -14,8 +14,8 @@ import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.core.support.strict_json import DEEPEST, parse_foreign_json
 from crowdbot.plugin import InputError, did_you_mean, nearest
+from crowdbot.plugin.for_environments import DEEPEST, parse_foreign_json
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_units_build import (
     UNITS,

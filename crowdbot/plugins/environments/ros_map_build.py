@@ -13,10 +13,13 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes
-from crowdbot.dsl.text.plain_document import read_document
-from crowdbot.errors import SpecError
 from crowdbot.plugin import Array, InputError, did_you_mean, nearest
+from crowdbot.plugin.for_environments import (
+    LARGEST_TABLE,
+    SpecError,
+    input_bytes,
+    read_document,
+)
 
 #: Largest image, px; anything larger is a mistake.
 MOST_PIXELS = 64_000_000

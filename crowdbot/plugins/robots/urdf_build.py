@@ -7,11 +7,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.errors import PluginError
 from crowdbot.plugin import (
     Array,
     Description,
     HolonomicDrive,
+    PluginError,
     PublishedWheel,
     RobotLimits,
     RobotModel,

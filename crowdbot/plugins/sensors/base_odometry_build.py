@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.errors import SimulationError
-from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo
+from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SimulationError
 from crowdbot.plugins.sensors.wheel_odometry import BaseOdometrySpec
 
 

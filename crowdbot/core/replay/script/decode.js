@@ -88,8 +88,8 @@ async function decodeRun(meta, blob) {
   for (const [i, drawing] of run.drawings.entries()) {
     const count = drawing.rows.reduce((sum, rows) => sum + rows, 0);
     const rows = await unpackFloats(blob(`drawing${i}`), count, 4);
-    let start = 0;
-    drawing.starts = drawing.rows.map((size) => (start += size) - size);
+    let first = 0;
+    drawing.starts = drawing.rows.map((size) => (first += size) - size);
     drawing.columns = [0, 1, 2, 3].map((c) => rows.subarray(c * count, (c + 1) * count));
   }
   for (const [i, camera] of run.cameras.entries()) {
