@@ -78,9 +78,11 @@ class Footprint:
         return first
 
     def _edges(self) -> Iterator[tuple[Array, Array]]:
-        last = len(self.corners) if len(self.corners) > 2 else 1
+        """Yield the ends of each edge; of a disc, its centre twice."""
+        corners = self.corners if len(self.corners) else np.zeros((1, 2))
+        last = len(corners) if len(corners) > 2 else 1
         for i in range(last):
-            yield self.corners[i], self.corners[(i + 1) % len(self.corners)]
+            yield corners[i], corners[(i + 1) % len(corners)]
 
 
 def footprint_of_model(robot: RobotModel) -> Footprint:
