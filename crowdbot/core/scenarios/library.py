@@ -13,7 +13,7 @@ from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry, registry_of
@@ -144,6 +144,10 @@ class _Origins:
 
     def scenario(self, index: int) -> Scenario:
         return self._given[index] if self._given else self._expanding.scenario(index)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """Return itself: a copied scenario has the same origin."""
+        return self
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Let another process open the suite again, when it needs it."""

@@ -88,6 +88,9 @@ class Memory:
         del goals
         self.states.append((t, robot, agents, jump))
 
+    def wheels(self, t: float, angles: Any) -> None:
+        pass
+
     def reading(self, name: str, reading: Reading) -> None:
         self.readings.setdefault(name, []).append(reading)
 
@@ -105,6 +108,9 @@ class Memory:
         pass
 
     def signal(self, t: float, name: str, value: float) -> None:
+        pass
+
+    def drawing(self, t: float, name: str, rows: Any) -> None:
         pass
 
     def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:

@@ -76,7 +76,12 @@ def test_arrival_is_interpolated() -> None:
 
 
 def test_a_start_inside_the_goal_arrives_at_once() -> None:
-    _, outcome = _whole(alone("robots.robot.task.start=[46, 0, 0]"), constant(0.0))
+    """The language refuses such a scenario; Python can build it."""
+    world = alone()
+    (robot,) = world.robots.values()
+    task = robot.task.model_copy(update={"start": (46.0, 0.0, 0.0)})
+    inside = {"robot": robot.model_copy(update={"task": task})}
+    _, outcome = _whole(world.model_copy(update={"robots": inside}), constant(0.0))
     assert (outcome.status, outcome.goal_time) == ("arrived", 0.0)  # type: ignore[attr-defined]
 
 

@@ -168,8 +168,13 @@ class ServerHandle:
             more = b""
             if not comes.poll(1000.0 * max(0.0, until - time.monotonic())):
                 self._process.kill()
-            with contextlib.suppress(OSError):
-                more = self._line.recv(1)
+            try:
+                more = self._line.recv(1, socket.MSG_DONTWAIT)
+            except BlockingIOError:  # killed a moment ago, or another thread was faster
+                time.sleep(0.001)
+                continue
+            except OSError:
+                pass
             if not more:
                 raise ServerGone("the process that starts planners was ended")
             raw += more
