@@ -42,7 +42,7 @@ class Visit:
         url = self.page.url
         self.page.close()
         if error[0] is None:
-            assert self.complaints == []
+            assert self.complaints == [], self.complaints
             asked = {u.partition("#")[0] for u in self.requests if not u.startswith("blob:")}
             assert asked == {url.partition("#")[0]}
 

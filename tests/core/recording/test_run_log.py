@@ -19,10 +19,14 @@ class Rows:
 
     def __init__(self) -> None:
         self.states: list[tuple[Any, ...]] = []
+        self.wheel_angles: list[tuple[Any, ...]] = []
         self.trips: list[tuple[Any, ...]] = []
         self.contacts: list[dict[str, Any]] = []
         self.commands: list[tuple[Any, ...]] = []
         self.times: list[float] = []
+
+    def wheels(self, *row: Any) -> None:
+        self.wheel_angles.append(row)
 
     def state(self, *row: Any, goals: Array | None) -> None:
         assert (goals is None) == (row[2] is None)
@@ -166,10 +170,11 @@ def test_two_contacts_in_one_tick() -> None:
 
 def test_forward_speed_is_signed() -> None:
     log, rows, *_ = _log(0)
-    zero = {"tilt": 0.0, "z": 0.0, "left_angle": 0.0, "right_angle": 0.0}
-    log.sample(0.0, RobotState(x=1, y=2, yaw=math.pi / 2, vx=0.0, vy=-0.5, w=0.1, **zero), None)
+    rest = {"tilt": 0.0, "z": 0.0, "left_angle": 0.25, "right_angle": 0.5}
+    log.sample(0.0, RobotState(x=1, y=2, yaw=math.pi / 2, vx=0.0, vy=-0.5, w=0.1, **rest), None)
     assert rows.states[0][1] == pytest.approx((1.0, 2.0, math.pi / 2, -0.5, 0.1))
     assert rows.states[0][2] is None
+    assert rows.wheel_angles == [(0.0, (0.25, 0.5))]
 
 
 def test_step_times() -> None:

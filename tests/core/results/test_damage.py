@@ -75,9 +75,9 @@ DAMAGE: tuple[tuple[Callable[[Path], object], str], ...] = (
     (lambda run: cut(run / "scores.csv"), "scores.csv has "),
     (lambda run: (run / "scenario.yaml").unlink(), "scenario.yaml is missing"),
     (lambda run: replaced(run / "run.json", b'"seed"', b'"seed": 1, "seed"'), "the key 'seed' is"),
-    (lambda run: pipe(run / "run.json"), "cannot be read: not a plain file"),
+    (lambda run: pipe(run / "run.json"), "cannot be read: is a device or pipe"),
     (lambda run: pipe(run / "scores.csv"), "scores.csv has 0 bytes"),
-    (lambda run: linked(run / "run.json", "/dev/zero"), "cannot be read: not a plain file"),
+    (lambda run: linked(run / "run.json", "/dev/zero"), "cannot be read: is a device or pipe"),
     (lambda run: linked(run / "run.json", "run.json"), "run.json is missing"),
     (lambda run: replaced(run / "scores.csv", b",dwa,", b",awd,"), "a score of another run: in-"),
     (

@@ -95,12 +95,15 @@ def test_escapes_never_escape(text: str) -> None:
     assert codes(f'a: "{text}"') in (["E002"], ["E016"])
 
 
+#: Categories of characters that documents must not have; the two joiners are allowed.
+HIDDEN: tuple[Any, ...] = ("Cc", "Cf", "Cs", "Zl", "Zp")
+JOINERS = "\u200c\u200d"
 json_values = st.recursive(
     st.none()
     | st.booleans()
     | st.integers(-(2**63), 2**63)
     | st.floats(allow_nan=False, allow_infinity=False)
-    | st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=12)
+    | st.text(st.characters(exclude_categories=HIDDEN, include_characters=JOINERS), max_size=12)
     | st.sampled_from(["no", "007", "1e3", ".nan", "0x1", "a: b", "- x", "#", "~", "'", "&a", "%"]),
     lambda inner: (
         st.lists(inner, max_size=4)
@@ -117,12 +120,16 @@ def same(a: Any, b: Any) -> bool:
 
 @pytest.mark.slow
 @given(json_values)
-@example({"x": "\u2028"})
-@example({"x": "\x85"})
-@example({"x": "\ufeff"})
+@example({"x": JOINERS})
 def test_what_is_dumped_is_read_back(value: Any) -> None:
     text = to_yaml({"root": value})
     assert same(read(text), {"root": value}), text
+
+
+@pytest.mark.parametrize("character", ["\u2028", "\x85", "\ufeff", "\u202e", "\x1b"])
+def test_hidden_characters_stay_in_their_text_and_are_refused(character: str) -> None:
+    text = to_yaml({"a": f"b{character}c", f"d{character}": "e"})
+    assert codes(text) == ["E016", "E016"], text
 
 
 @given(json_values)

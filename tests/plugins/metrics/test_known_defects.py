@@ -204,7 +204,12 @@ def test_entropy_does_not_see_the_sign() -> None:
             t=t, v_user=v, w_user=w, v_sc=v, w_sc=w, v_max=1.0, w_max=1.0
         )
 
-    left, right = (one("user_input_entropy", "corrected", None, commands=drive(m)) for m in (1, -1))
+    def drive_both(mirror: int) -> crowdbot.Score:
+        given = {"commands": drive(mirror), "commands_baseline": drive(mirror)}
+        return one("user_input_entropy", "corrected", None, **given)
+
+    left, right = drive_both(1), drive_both(-1)
+    assert left.value is not None
     assert left.value == pytest.approx(right.value)
     assert left.extras["alpha"] == pytest.approx(right.extras["alpha"])
 

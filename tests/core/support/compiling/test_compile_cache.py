@@ -107,7 +107,7 @@ def test_no_folder_but_a_temporary_one(
     use_kernel_cache()
     folder = tmp_path / f"crowdbot-{os.getuid()}" / kernel_folder(tmp_path).name
     assert os.environ["NUMBA_CACHE_DIR"] == str(folder)
-    assert folder.stat().st_mode & 0o777 == 0o700
+    assert folder.parent.stat().st_mode & 0o777 == 0o700  # numba makes the folder in it
     assert "NUMBA_CACHE_DIR: /proc/neither cannot be written" in caplog.text
     assert "NUMBA_CACHE_DIR=FOLDER names another place" in caplog.text
     _user_cache.cache_clear()
