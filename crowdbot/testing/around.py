@@ -10,6 +10,8 @@ from typing import Any
 from unittest import SkipTest
 
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
+from crowdbot.core.scenarios.library import plugin_folders
+from crowdbot.dsl.spec.assets import Asset
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import CrowdPolicySpec
 from crowdbot.dsl.spec.spec import ComponentSpec
@@ -61,10 +63,12 @@ def around(component: Component[Any], registry: Registry | None = None) -> Regis
 
 
 def specs_of(component: Component[Any], registry: Registry) -> list[ComponentSpec]:
-    """Return the component's examples, validated."""
+    """Return the component's examples, validated; files named ``NAME:path`` are found."""
     model = registry.spec_model(component.category, component.kind)
     return [
-        _with_record(model.model_validate({"kind": component.kind, **example}))
+        _with_files(
+            _with_record(model.model_validate({"kind": component.kind, **example})), registry
+        )
         for example in component.examples
     ]
 
@@ -104,6 +108,22 @@ def _with_record(spec: ComponentSpec) -> ComponentSpec:
         return spec
     (name,) = (n for n in type(spec).model_fields if getattr(spec, n) == record)
     return spec.model_copy(update={name: type(record)(path=str(_record()))})
+
+
+def _with_files(spec: ComponentSpec, registry: Registry) -> ComponentSpec:
+    """Return the spec with the location of each file in a plugin's folder as its path."""
+    named = {n: a.path for n, a in vars(spec).items() if isinstance(a, Asset) and ":" in a.path}
+    if not named:
+        return spec
+    roots = plugin_folders(registry)
+    found: dict[str, Asset] = {}
+    for name, text in named.items():
+        plugin, _, path = text.rpartition(":")
+        places = [folder / path for folder in roots.get(plugin, ())]
+        at = next((place for place in places if place.is_file()), None)
+        if at is not None:
+            found[name] = Asset(path=str(at))
+    return spec.model_copy(update=found)
 
 
 @cache

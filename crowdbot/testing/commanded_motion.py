@@ -10,13 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import MODES, build_model
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.robot import RobotModel, RobotState
 from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import RobotSpec
+from crowdbot.testing.around import around, specs_of
 
 #: Seconds to reach the speed, and seconds of measurement.
 _SETTLE, _MEASURE = 1.0, 1.0
@@ -30,9 +32,9 @@ def check_commanded_motion(component: Component[Any], registry: Registry | None 
     If this fails, wheels are in the wrong place, turn backwards, do not touch the floor, or another
     part rubs on it; compare joints, radius, track and base_height with the description.
     """
-    known = discover() if registry is None else registry
-    for example in component.examples:
-        spec = component.spec.model_validate({"kind": component.kind, **example})
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        assert isinstance(spec, RobotSpec)
         model = build_model(known, spec)
         for mode in MODES[type(model.drive)]:
             for command in commands_for(model):

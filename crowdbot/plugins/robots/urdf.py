@@ -111,7 +111,7 @@ class UrdfSpec(UrdfFields):
     """
 
     kind: Literal["urdf"] = "urdf"
-    drive: DrivenWheels
+    drive: DrivenWheels = Field(description="The two driven wheels of a differential drive.")
 
 
 class OmniWheels(Spec):
@@ -135,18 +135,47 @@ class HolonomicUrdfSpec(UrdfFields):
 
     controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")
     kind: Literal["urdf_holonomic"] = "urdf_holonomic"
-    drive: OmniWheels
+    drive: OmniWheels = Field(
+        description="The wheels of a holonomic drive, which slide; a force moves the base."
+    )
 
+
+#: Fields of both examples, a cart that is part of crowdbot.
+_CART = {
+    "file": "builtin:robots/cart.urdf",
+    "disc": {"radius": 0.25, "height": 0.5},
+    "casters": {"front": {"x": 0.18, "radius": 0.03}, "rear": {"x": -0.18, "radius": 0.03}},
+    "max_speed": 0.8,
+    "max_yaw_rate": 2.0,
+    "max_acceleration": 1.0,
+    "max_yaw_acceleration": 3.0,
+}
+_JOINTS = ("left_wheel_joint", "right_wheel_joint")
 
 URDF = Component(
     spec=UrdfSpec,
     build="crowdbot.plugins.robots.urdf_build:build",
     summary="any robot on two driven wheels, from its URDF",
-    examples=(),
+    examples=(
+        {
+            **_CART,
+            "drive": {"left": _JOINTS[0], "right": _JOINTS[1], "radius": 0.08, "effort": 4.0},
+        },
+    ),
 )
 URDF_HOLONOMIC = Component(
     spec=HolonomicUrdfSpec,
     build="crowdbot.plugins.robots.urdf_build:build_holonomic",
     summary="any robot that also goes sideways, from its URDF",
-    examples=(),
+    examples=(
+        {
+            **_CART,
+            "drive": {
+                "joints": list(_JOINTS),
+                "radius": 0.08,
+                "max_force": 40.0,
+                "max_torque": 8.0,
+            },
+        },
+    ),
 )
