@@ -166,7 +166,8 @@ class ServerHandle:
         comes.register(self._line, select.POLLIN)
         while not raw.endswith(b"\n"):
             more = b""
-            if not comes.poll(1000.0 * max(0.0, until - time.monotonic())):
+            left = max(0.0, until - time.monotonic())
+            if not comes.poll(1000.0 * left) or not left:
                 self._process.kill()
             try:
                 more = self._line.recv(1, socket.MSG_DONTWAIT)
