@@ -15,12 +15,10 @@ from tests.core.planning.process.process_cases import planner_text
 
 pytestmark = pytest.mark.slow
 SOURCE = SuiteSource(spec="challenge-2020", allowed=())
-#: Dies by a signal while it is loaded, as often as the file beside it says.
+#: Dies by a signal while it is loaded, as long as there is a file beside it.
 DYING = """
 from pathlib import Path
-LEFT = Path(__file__).with_name("left")
-if int(LEFT.read_text()):
-    LEFT.write_text(str(int(LEFT.read_text()) - 1))
+if Path(__file__).with_name("deadly").exists():
     os.kill(os.getpid(), signal.{signal})
 """
 
@@ -34,12 +32,13 @@ def chosen(file: Path) -> PlannerChoice:
 def test_a_planner_that_died_is_loaded_again_for_the_next_run(tmp_path: Path, signal: str) -> None:
     file = tmp_path / "mine.py"
     file.write_text(planner_text(top=DYING.format(signal=signal)), encoding="utf-8")
-    (tmp_path / "left").write_text("2", encoding="utf-8")
+    (tmp_path / "deadly").touch()
     for _ in range(2):  # the runs whose planner was killed
         killed = chosen(file)
         assert signal in killed.died
         with pytest.raises(PlannerError, match=f"did not load: .*{signal}"):
             killed.build()
+    (tmp_path / "deadly").unlink()
     alive = chosen(file)
     assert (alive.died, alive.spec_dump) == ("", killed.spec_dump)
     alive.build().close()  # type: ignore[attr-defined]

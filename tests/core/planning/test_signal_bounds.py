@@ -11,8 +11,7 @@ from crowdbot.errors import PlannerError
 
 def test_names_and_values_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(planner, "_MOST_SIGNALS", 3)
-    monkeypatch.setattr(planner, "_MOST_VALUES", 5)
-    bounds = SignalBounds()
+    bounds = SignalBounds(most=5)
     for name in ("a", "b", "c", "a", "b"):
         bounds.check(name)
     with pytest.raises(PlannerError, match="more than 5 values"):
