@@ -8,6 +8,8 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -80,33 +82,55 @@ def test_inside_is_told_where_others_see_it(shell: Shell, tmp_path: Path) -> Non
     assert "inside the simulator, where nothing contains it" in page.read_text()
 
 
-ENDLESS = "open({file!r}, 'a').write(f'{{os.getpid()}}\\n')\n        return (0.2, 0.0)"
+ENDLESS = """open(os.path.expanduser('~/{name}'), 'a').write(f'{{os.getpid()}}\\n')
+        return (0.2, 0.0)"""
 
 
-def _pids(file: Path) -> list[int]:
-    return [int(line) for line in file.read_text().splitlines()] if file.exists() else []
+def _endless(folder: Path) -> str:
+    """A planner that writes the number of its process into its home at each step."""
+    return planner_file(folder, ENDLESS.format(name=_name(folder)))
+
+
+def _name(folder: Path) -> str:
+    return str(folder).replace("/", "-")
+
+
+def _driving(
+    running: subprocess.Popen[str], folder: Path, steps: int = 1, other_than: int = 0
+) -> int:
+    """The process of that planner, once it has made some steps."""
+    written: list[int] = []
+
+    def grown() -> bool:
+        written.clear()
+        for file in Path(tempfile.gettempdir()).glob(f"crowdbot-planner-*/*/{_name(folder)}"):
+            with suppress(OSError):  # its home is deleted when it ends
+                written.extend(map(int, file.read_text().split()))
+        written[:] = [pid for pid in written if pid != other_than]
+        return len(written) >= steps
+
+    wait_until(lambda: grown() or running.poll() is not None)
+    assert written, f"no step: {running.communicate()}"
+    return written[-1]
 
 
 def test_the_planner_is_killed(tmp_path: Path) -> None:
-    file, out = tmp_path / "pids", tmp_path / "runs"
-    planner = planner_file(tmp_path, ENDLESS.format(file=str(file)))
-    running = process(out, "--planner", planner, *QUIET, seconds=170.0)
-    wait_until(lambda: running.poll() is not None or bool(_pids(file)))
-    os.kill(_pids(file)[-1], signal.SIGKILL)
+    running = process(tmp_path / "runs", "--planner", _endless(tmp_path), *QUIET, seconds=170.0)
+    victim = _driving(running, tmp_path)
+    os.kill(victim, signal.SIGKILL)
     answer = finished(running)
     assert answer.code == 3
     assert "signal 9 (SIGKILL)" in answer.json["reason"]
     assert {p.name for p in Path(answer.json["directory"]).iterdir()} == FILES
-    assert not any(map(is_alive, _pids(file)))
+    assert not is_alive(victim)
 
 
 def test_the_simulator_is_killed(tmp_path: Path) -> None:
-    file, out = tmp_path / "pids", tmp_path / "runs"
-    planner = planner_file(tmp_path, ENDLESS.format(file=str(file)))
-    running = process(out, "--planner", planner, *QUIET, seconds=170.0)
-    wait_until(lambda: running.poll() is not None or len(_pids(file)) > 16)
+    out = tmp_path / "runs"
+    running = process(out, "--planner", _endless(tmp_path), *QUIET, seconds=170.0)
+    driving = _driving(running, tmp_path, steps=17)
     everything = below(running.pid)
-    assert _pids(file)[-1] in everything
+    assert driving in everything
     os.kill(running.pid, signal.SIGKILL)
     running.communicate(timeout=AT_MOST)
     wait_until(lambda: not any(map(is_alive, everything)))
@@ -117,19 +141,17 @@ def test_the_simulator_is_killed(tmp_path: Path) -> None:
 
 def test_a_worker_is_killed(tmp_path: Path) -> None:
     """Its planner ends with it, another one makes the run, and nothing is lost."""
-    file, out = tmp_path / "pids", tmp_path / "runs"
-    planner = planner_file(tmp_path, ENDLESS.format(file=str(file)))
     only = ["--only", "in-d0125-slow-c01-r02", "--set", "robots.robot.task.time_limit=6 s"]
-    running = start(out, *only, "--planner", planner, "--json")
-    wait_until(lambda: running.poll() is not None or bool(_pids(file)))
-    victim = _pids(file)[-1]
+    running = start(tmp_path / "runs", *only, "--planner", _endless(tmp_path), "--json")
+    victim = _driving(running, tmp_path)
     (worker,) = (w for w in below(running.pid) if _parent(w) == running.pid and victim in below(w))
     os.kill(worker, signal.SIGKILL)
     wait_until(lambda: not is_alive(victim))
+    other = _driving(running, tmp_path, other_than=victim)
     said, err = running.communicate(timeout=AT_MOST)
     assert running.returncode == 0, err
     assert json.loads(said)["statuses"] == {"timeout": 1}
-    assert not any(map(is_alive, _pids(file)))
+    assert not is_alive(other)
 
 
 def _parent(pid: int) -> int:

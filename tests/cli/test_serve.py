@@ -323,7 +323,7 @@ def _call(client: ClientConnection, service: str, args: dict[str, Any]) -> None:
         (["--rate", "1", "--clock", "external"], 2, "exclude each other"),
         (["--name", "a/b"], 1, "cannot be the name"),
         (["--set", "robots={}"], 1, "has no robot"),
-        (["--host", "203.0.113.1", "--port", "0"], 1, "cannot listen there"),
+        (["--host", "203.0.113.1"], 1, "cannot listen there"),
     ],
 )
 def test_what_is_wrong_is_told(

@@ -13,6 +13,7 @@ from rosbags.highlevel import AnyReader
 from crowdbot import cli
 from crowdbot.core.recording.recording import Recording
 from tests.cli.simulate_cases import FILES, ID, Shell, finished, limit, process
+from tests.paths import ROOT
 
 pytestmark = pytest.mark.slow
 
@@ -33,14 +34,14 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
         )
         == 0
     )
-    (record,) = out.glob("challenge-2020/**/run.json")
+    (record,) = out.glob("challenge-2020+*/**/run.json")
     return record.parent
 
 
 def test_the_run_directory_is_whole(whole: Path) -> None:
     assert {p.name for p in whole.iterdir()} == FILES
     parts = whole.parts[-4:]
-    assert parts[0] == "challenge-2020"
+    assert parts[0] == "challenge-2020+time_limit=3_s"
     assert parts[1].startswith(f"{ID}+")
     assert parts[2:] == ("dwa", "seed-0")
     record = json.loads((whole / "run.json").read_text())
@@ -202,8 +203,13 @@ def test_what_is_recorded_changes_nothing_else(shell: Shell) -> None:
         assert (answer.json["reused"], answer.json["recorded"]) == (True, "all")
 
 
-def test_used_is_what_simulate_records(shell: Shell) -> None:
-    answer = shell("--planner", "goal_seek", "--json")
+def test_the_document_says_what_simulate_records(shell: Shell) -> None:
+    """Where it does not, that is what the planner used; the option comes first."""
+    brief = ("--planner", "goal_seek", "--no-references", "--json")
+    assert shell(*brief).json["recorded"] == "all"
+    assert shell(*brief, "--force", "--record", "none").json["recorded"] == "none"
+    silent = ROOT / "scenario_specs" / "examples" / "bidirectional_corridor.yaml"
+    answer = shell.run([str(silent), "half", *limit(1.0), "--out", str(shell.out), *brief])
     assert answer.json["recorded"] == "used"
 
 
@@ -230,7 +236,7 @@ def test_runs_at_once_are_the_same_run(tmp_path: Path) -> None:
     assert [a.code for a in answers] == [0, 0, 0]
     assert len({a.json["hashes"]["trajectory"] for a in answers}) == 1
     for folder in folders[1:]:
-        (record,) = folder.glob("challenge-2020/**/run.json")
+        (record,) = folder.glob("challenge-2020+*/**/run.json")
         assert {p.name for p in record.parent.iterdir()} == FILES
         Recording(record.parent / "run.mcap").trajectories()
         assert len(list((folder / "references").iterdir())) == 2

@@ -32,7 +32,7 @@ WRONG = {
     "no key": (["challenge-2020", ID, "--set", "=3"], 2, "=3"),
     "no value": (["challenge-2020", ID, "--set", "crowd"], 2, "crowd"),
     "unknown zone": (["challenge-2020", ID, "--set", "robots.robot.task.goal.zone=x"], 1, "x"),
-    "no robot": (["challenge-2020", ID, "--set", "robots={}"], 1, "has no robot"),
+    "no robot": (["challenge-2020", ID, "--set", "robots={}", "--planner", "dwa"], 2, "no robot"),
     "too many people": (["challenge-2020", ID, "--set", "crowd.flow.density=5"], 1, "people fit"),
     "planner key": (["challenge-2020", ID, "--planner-set", "horizn=2"], 1, "horizn"),
     "negative seed": (["challenge-2020", ID, "--seed", "-1"], 2, "seed"),
@@ -231,7 +231,7 @@ def _wait_for(out: Path, size: int, running: subprocess.Popen[str]) -> Path:
     found: list[Path] = []
 
     def grown() -> bool:
-        files = out.glob("challenge-2020/**/run.mcap")
+        files = out.glob("challenge-2020+*/**/run.mcap")
         found.extend(file for file in files if file.stat().st_size > size)
         return bool(found)
 
