@@ -128,7 +128,8 @@ def test_questions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def ask(*argv: str) -> Any:
-        assert cli.main(["results", *argv]) == 0
+        altered = () if argv[0] == "failures" else ("--altered",)
+        assert cli.main(["results", *argv, *altered]) == 0
         return capsys.readouterr().out
 
     shown = json.loads(

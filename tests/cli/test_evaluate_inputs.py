@@ -312,7 +312,9 @@ def test_tables_of_commands_and_answers(tmp_path: Path, capsys: Captured) -> Non
     (found,) = scores(capsys, "--questionnaires", answers, "--metrics", "use")
     assert [s["value"] for s in found["scores"]] == [None, None, None, 7.0]
     assert "are needed" in refused(capsys, "--commands", table)
-    assert "name the two topics" in refused(capsys, "--commands", tmp_path / "x.mcap")
+    assert "no such file" in refused(capsys, "--commands", tmp_path / "x.mcap")
+    other = record(tmp_path / "no_joystick.mcap", CROWDED)
+    assert "name its two topics" in refused(capsys, "--commands", other)
     assert "belong to one run" in refused(capsys, "a", "b", "--commands", table, code=2)
     assert "name one" in refused(capsys, "--user-topic", "/u", "--questionnaires", "q", code=2)
     assert "nothing to score" in refused(capsys, code=2)

@@ -19,7 +19,7 @@ import pytest
 import typer
 
 from crowdbot.cli import main
-from crowdbot.cli.app.command_names import command_names
+from crowdbot.cli.app.command_names import command_groups
 from tests.paths import DATA
 
 SHORT, TABLE = str(DATA / "short_way.yaml"), str(DATA / "recordings" / "format_3.mcap")
@@ -104,9 +104,9 @@ PATIENCE = 30
 
 
 def _parameters() -> Iterator[tuple[str, str, Any]]:
-    for name in command_names():
+    for name, group in command_groups().items():
         module = name.replace("-", "_")
-        found = getattr(importlib.import_module(f"crowdbot.cli.commands.{module}"), module)
+        found = getattr(importlib.import_module(f"crowdbot.cli.commands.{group}.{module}"), module)
         functions = [(name, found)]
         if isinstance(found, typer.Typer):
             named = ((c.name, c.callback) for c in found.registered_commands)

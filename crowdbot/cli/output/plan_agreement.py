@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-import typer
+from crowdbot.cli.output.say import say
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
@@ -28,9 +28,9 @@ def check_against_images(specs: Sequence[str], registry: Registry, *, as_json: b
     found = [(spec, *one) for spec in specs for one in _agreements(spec, registry)]
     if as_json:
         listed = [{"spec": spec, "scenario": name, **one._asdict()} for spec, name, one in found]
-        typer.echo(json.dumps(listed, indent=2))
+        say(json.dumps(listed, indent=2))
     else:
-        typer.echo("\n".join(_line(*row) for row in found) or "no occupancy grid in it")
+        say("\n".join(_line(*row) for row in found) or "no occupancy grid in it")
     return 1 if any(one.wrong for *_, one in found) else 0
 
 

@@ -65,7 +65,7 @@ AllowOrigin = Annotated[
     list[str] | None,
     typer.Option(
         metavar="ORIGIN",
-        help="Admit pages of this website, such as https://app.foxglove.dev; repeatable.",
+        help="Admit pages of this website, SCHEME://HOST; repeatable.",
     ),
 ]
 Rate = Annotated[

@@ -28,7 +28,7 @@ def judge(
         typer.Argument(metavar="SUBMISSIONS", help="Folder of sealed planners (*.cbs)."),
     ],
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder of the log, the runs and the bundles.")
+        Path, typer.Option(metavar="DIR", help="Folder to write: log, runs and bundles.")
     ] = Path("judged"),
     jobs: Annotated[int, typer.Option(min=0, metavar="N", help="Processes; 0: one per core.")] = 0,
     cluster: Annotated[

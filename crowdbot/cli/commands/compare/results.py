@@ -188,7 +188,7 @@ def tracking(
     lines = list(tracking_lines(found, out, within or [3.0, 6.0]))
     print_lines(lines, as_csv=as_csv, as_json=as_json)
     if not (lines or as_csv or as_json):
-        typer.echo("no run has tracks of people: its planner draws none, or it was not recorded")
+        say("no run has tracks of people: its planner draws none, or it was not recorded")
 
 
 @results.command()

@@ -31,7 +31,7 @@ def why(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.html", help="File to write: with pictures from above."),
+        typer.Option(metavar="FILE", help="File to write, .html: with pictures from above."),
     ] = None,
     altered: Altered = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,

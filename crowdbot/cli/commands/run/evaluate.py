@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
@@ -228,9 +227,7 @@ def _tell(results: list[Rescored], out: Path | None, as_json: bool) -> None:
     failed = sum(bool(r.error) for r in results)
     if len(results) > 1:
         written = f", written to {out}" if out is not None else ""
-        print(
-            f"scored {len(results) - failed} of {len(results)} runs, {failed} failed{written}",
-            file=sys.stderr,
-        )
+        scored = len(results) - failed
+        say(f"scored {scored} of {len(results)} runs, {failed} failed{written}", err=True)
     if failed:
         raise typer.Exit(max(r.exit_code for r in results))
