@@ -15,12 +15,18 @@ from playwright.sync_api import Browser, sync_playwright
 
 from crowdbot import cli
 from crowdbot.core.realism.measure import measure_tracks
+from crowdbot.core.realism.near_robots import page as near_robots_page
+from crowdbot.core.realism.near_robots.encounters import encounters_of
+from crowdbot.core.realism.near_robots.measure import measure_encounters
+from crowdbot.core.realism.near_robots.reference import reference_of
 from crowdbot.core.realism.page import render
 from crowdbot.core.realism.reference import shipped
 from crowdbot.core.replay import write_replay
 from crowdbot.core.report import write_report
 from tests.browser import PROGRAM, axe_findings, needs_axe, needs_browser
+from tests.cli.test_why import SCENARIO
 from tests.core.bundle.made_up_runs import make_bundle
+from tests.core.realism.near_robots.walks import various
 from tests.core.realism.test_compare import people
 from tests.core.replay.replay_cases import passing
 from tests.core.report.report_cases import contents
@@ -58,13 +64,29 @@ def scenario(path: Path) -> None:
     assert cli.main(words) == 0
 
 
+def near_robots(path: Path) -> None:
+    met = encounters_of(various(12))
+    found = measure_encounters("people", met, reference_of(met, ["made up"]))
+    path.write_text(near_robots_page.render("near robots", [found]))
+
+
+def why(path: Path) -> None:
+    (path.parent / "crossing.yaml").write_text(SCENARIO)
+    words = ["simulate", str(path.parent / "crossing.yaml"), "--planner", "goal_seek", "--quiet"]
+    runs = path.parent / "runs"
+    assert cli.main([*words, "--no-references", "--out", str(runs)]) == 0
+    assert cli.main(["why", str(runs), "--out", str(path)]) == 0
+
+
 #: All kinds of pages: the package that holds the parts -> who makes one.
 PAGES: dict[str, tuple[Callable[[Path], None], ...]] = {
     "core/bundle": (leaderboard,),
     "core/realism": (realism,),
+    "core/realism/near_robots": (near_robots,),
     "core/replay": (replay, comparison),
     "core/report": (report,),
     "core/view": (scenario,),
+    "core/why": (why,),
 }
 MAKERS = [maker for makers in PAGES.values() for maker in makers]
 

@@ -148,8 +148,8 @@ def test_questions(
     ask("atlas", "--out", str(whole), "--md", str(tmp_path / "atlas.md"))
     assert (tmp_path / "atlas.md").read_text(encoding="utf-8").startswith("# Atlas of scores")
     entries = json.loads(ask("atlas", "--out", str(whole), "--json"))
-    assert [e["metric"] for e in entries[:4]] == [
-        "safe_efficiency", "contacts_per_km", "push_work", "intrusion",
+    assert [e["metric"] for e in entries[:5]] == [
+        "safe_efficiency", "acceptance", "contacts_per_km", "push_work", "intrusion",
     ]  # fmt: skip
     powers = json.loads(ask("power", "--out", str(whole), "--size", "0.1", "--json"))
     assert {"planners", "condition", "deviation", "information", "runs_for_0.1"} <= powers[0].keys()

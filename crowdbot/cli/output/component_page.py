@@ -67,7 +67,8 @@ def reference(component: Component[Any], owner: Plugin) -> str:
     """Return where a component is documented: page, card, address or file."""
     name = component.kind
     if owner.name == BUILTIN:
-        pages = {"metric": f"metrics/{name}.md", "planner": f"planners.md#{name}"}
+        told = "adversaries" if getattr(component.spec, "role", "") == "adversary" else name
+        pages = {"metric": f"metrics/{name}.md", "planner": f"planners.md#{told}"}
         return f"docs/reference/{pages.get(component.category, f'scenario.md#{name}')}"
     if component.category == "metric" and component.card_place:
         return component.card_place

@@ -10,6 +10,9 @@ from importlib.machinery import all_suffixes
 from pathlib import Path
 from typing import NamedTuple
 
+#: Endings of names: further folders to search, and the metadata that name plugins.
+_WRITTEN_BY_PIP = (".pth", ".dist-info", ".egg-info")
+
 
 class Readable(NamedTuple):
     """Paths that a planner may read.
@@ -76,7 +79,7 @@ def _interpreter(roots: list[Path]) -> Iterator[Path]:
 
 
 def _importable(folder: Path) -> Iterator[Path]:
-    """Yield modules and packages in a folder."""
+    """Yield modules and packages in a folder, and what pip wrote about them."""
     suffixes = tuple(all_suffixes())
     try:
         found = sorted(folder.iterdir())
@@ -84,7 +87,7 @@ def _importable(folder: Path) -> Iterator[Path]:
         return
     for one in found:
         is_module = one.name.endswith(suffixes)
-        if is_module or one.suffix == ".pth" or (one / "__init__.py").is_file():
+        if is_module or one.suffix in _WRITTEN_BY_PIP or (one / "__init__.py").is_file():
             yield one
 
 
