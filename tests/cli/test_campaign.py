@@ -9,6 +9,7 @@ import signal
 import sqlite3
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -151,7 +152,12 @@ def test_questions(
     assert [e["metric"] for e in entries[:5]] == [
         "safe_efficiency", "acceptance", "contacts_per_km", "push_work", "intrusion",
     ]  # fmt: skip
-    powers = json.loads(ask("power", "--out", str(whole), "--size", "0.1", "--json"))
+    assert cli.main(["results", "power", "--out", str(whole), "--altered"]) == 1
+    assert "no two planners were run in the same scenario" in capsys.readouterr().err
+    with monkeypatch.context() as patched:
+        place = "crowdbot.cli.commands.compare.results.open_results"
+        patched.setattr(place, lambda *_: _twice(Results.open(whole)))
+        powers = json.loads(ask("power", "--out", str(whole), "--size", "0.1", "--json"))
     assert {"planners", "condition", "deviation", "information", "runs_for_0.1"} <= powers[0].keys()
     assert powers[0]["condition"] == "all conditions"
     file = tmp_path / "runs.parquet"
@@ -164,6 +170,13 @@ def test_questions(
     assert len(rows) == 6
     assert all(isinstance(r[1], float) and isinstance(r[2], int) for r in rows)
     assert ask("failures", "--out", str(whole)) == "no failures\n"
+
+
+def _twice(found: Results) -> Results:
+    """The same runs by a second planner, too."""
+    runs = {run.run_id: replace(run, entry="other") for run in found.runs}
+    scores = (replace(s, run_id=runs[s.run_id].run_id) for s in found.scores)
+    return replace(found, runs=(*found.runs, *runs.values()), scores=(*found.scores, *scores))
 
 
 def test_failures_are_on_record_and_stop_nobody(tmp_path: Path) -> None:

@@ -67,12 +67,18 @@ def reference(component: Component[Any], owner: Plugin) -> str:
     """Return where a component is documented: page, card, address or file."""
     name = component.kind
     if owner.name == BUILTIN:
-        told = "adversaries" if getattr(component.spec, "role", "") == "adversary" else name
-        pages = {"metric": f"metrics/{name}.md", "planner": f"planners.md#{told}"}
+        pages = {"metric": f"metrics/{name}.md", "planner": _page_of_planner(component)}
         return f"docs/reference/{pages.get(component.category, f'scenario.md#{name}')}"
     if component.category == "metric" and component.card_place:
         return component.card_place
     return _documentation(owner) or component.spec.__module__
+
+
+def _page_of_planner(component: Component[Any]) -> str:
+    """Return the page of one of our planners; adversaries share a table, candidates have pages."""
+    role = getattr(component.spec, "role", "")
+    pages = {"adversary": "planners.md#adversaries", "candidate": f"planners/{component.kind}.md"}
+    return pages.get(role, f"planners.md#{component.kind}")
 
 
 def _documentation(owner: Plugin) -> str:
