@@ -85,7 +85,7 @@ function shownPlanners() {
   if (state.sort !== "value" || !report.series.length) return shown;
   const bad = new Map(shown.map((p) => {
     const about = describeSelected(state.series, p);
-    return [p, about.ok ? badness(state.series, { status: "ok", value: about.centre }) : Infinity];
+    return [p, Number.isFinite(about.centre) ? badness(state.series, { status: "ok", value: about.centre }) : Infinity];
   }));
   return shown.sort((a, b) => (bad.get(a) === bad.get(b) ? a - b : bad.get(a) - bad.get(b)));
 }

@@ -80,14 +80,14 @@ function trend(planner, cells, place, y) {
   const kind = `p${planner % SHAPES.length}`;
   const group = svg("g", { class: kind });
   const inside = (v) => round(Math.min(y.place(y.low), Math.max(y.place(y.high), y.place(v))));
-  const points = cells.map(({ about }, l) => (about.ok ? [round(place(l)), inside(about.centre)] : null));
+  const points = cells.map(({ about }, l) => (Number.isFinite(about.centre) ? [round(place(l)), inside(about.centre)] : null));
   const path = points.map((p, l) => (p ? `${points[l - 1] ? "L" : "M"}${p[0]} ${p[1]}` : "")).join("");
   group.append(svg("path", { class: `trend ${kind}`, d: path || "M0 0" }));
   cells.forEach(({ about }, l) => {
     if (Number.isFinite(about.low)) {
       group.append(svg("line", { class: "whisker", x1: round(place(l)), x2: round(place(l)), y1: inside(about.low), y2: inside(about.high) }));
     }
-    if (about.ok) group.append(marker(planner, place(l), inside(about.centre), 4.5, "ringed"));
+    if (Number.isFinite(about.centre)) group.append(marker(planner, place(l), inside(about.centre), 4.5, "ringed"));
   });
   return group;
 }

@@ -96,7 +96,7 @@ function spreadPicture(row, planners) {
     if (!share) {
       picture.append(svg("line", { class: `middle p${planners[i] % SHAPES.length}`, x1: round(x.place(about.q1)), x2: round(x.place(about.q3)), y1: y, y2: y }));
     }
-    picture.append(marker(planners[i], x.place(about.centre), y, 4, "ringed"));
+    if (Number.isFinite(about.centre)) picture.append(marker(planners[i], x.place(about.centre), y, 4, "ringed"));
   });
   return picture;
 }

@@ -59,7 +59,7 @@ function boxOf(planner, about, x, y) {
   if (Number.isFinite(about.low)) {
     group.append(svg("line", { class: "whisker", x1: inside(about.low), x2: inside(about.high), y1: y, y2: y }));
   }
-  group.append(marker(planner, inside(about.centre), y, 5, "ringed"));
+  if (Number.isFinite(about.centre)) group.append(marker(planner, inside(about.centre), y, 5, "ringed"));
   return group;
 }
 

@@ -217,11 +217,19 @@ def test_the_script_says_it_with_the_same_letters(tmp_path: Path) -> None:
     groups = by_group(scaled, "*", ["half", "part", "planner"])
     low = [s for s in groups if (s.group["half"], s.group["part"]) == ("low", "first")]
     places = {s.name: i for i, s in enumerate(report.series)}
+    runs = {r.run_id: r for r in results.runs if r.axes == {"half": "low", "part": "first"}}
+    largest: dict[tuple[str, str, str], float] = {}  # of the values that are averaged
+    for s in (s for s in results.scores if s.run_id in runs):
+        one_mean = s.metric, s.variant, runs[s.run_id].planner
+        largest[one_mean] = max(largest.get(one_mean, 0.0), abs(s.value or 0.0))
     for one in low:
         place = places[one.metric, one.variant]
-        found = chosen[place][report.planners.index(one.group["planner"])]
-        expected = math.nan if one.mean.value is None else one.mean.value
-        assert found == pytest.approx(expected, rel=1e-4, nan_ok=True)
+        planner = one.group["planner"]
+        p = report.planners.index(planner)
+        found, expected = chosen[place][p], math.nan if one.mean.value is None else one.mean.value
+        # The page has five digits of each value: where values cancel, fewer of their mean.
+        least = 1e-5 * largest.get((one.metric, one.variant, planner), 0.0)
+        assert found == pytest.approx(expected, rel=1e-4, abs=least, nan_ok=True), one.metric
 
 
 @pytest.mark.parametrize("value", [2.75, 0.0, -1.5e-8, 3e7])
