@@ -170,6 +170,7 @@ def test_no_plain_text_is_an_error(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "400")  # wrapped lines would split names of files
     ending, *words = TAKEN[place]
     file = tmp_path / f"given{ending}"
     make(file)
