@@ -19,7 +19,7 @@ import numpy as np
 
 from crowdbot.core.realism.bins import DT
 from crowdbot.core.realism.reference import SHIPPED, floors_of, reference_of
-from crowdbot.core.realism.tracks import Tracks, tracks_of
+from crowdbot.core.realism.tracks import CorridorTracks, tracks_of
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.trajectories.trajectories import Trajectories
 
@@ -35,7 +35,7 @@ SOURCES = (
 _WIDE = ("240", "300")
 
 
-def runs(path: Path) -> Iterator[Tracks]:
+def runs(path: Path) -> Iterator[CorridorTracks]:
     """Tracks of the runs that are compared, x along the corridor."""
     data = np.load(path)
     for name in sorted(data.files):

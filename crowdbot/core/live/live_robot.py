@@ -9,7 +9,7 @@ from crowdbot.core.types.motion import Command
 
 
 @dataclass
-class Asked:
+class PendingStep:
     """The step that waits for its command."""
 
     ns: int
@@ -32,6 +32,6 @@ class LiveRobot:
     pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
     twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
     driver: Hashable | None = None
-    asked: Asked | None = None
+    asked: PendingStep | None = None
     latest: Command | None = None
     fresh: bool = False

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from crowdbot.core.live.counts import LiveCounts
-from crowdbot.core.live.live_robot import Asked, LiveRobot
+from crowdbot.core.live.live_robot import LiveRobot, PendingStep
 from crowdbot.core.live.robot_topics import command_topics, namespaces
 from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.motion import Command
@@ -90,7 +90,7 @@ class LiveSession:
         with self._changed:
             self._listeners = False
             for robot in robots:
-                self.robots[robot].asked = Asked(ns)
+                self.robots[robot].asked = PendingStep(ns)
 
     def answer(
         self, budget: float, listened: Callable[[], None], robot: str = ""

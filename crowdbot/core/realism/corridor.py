@@ -13,7 +13,7 @@ from crowdbot.core.crowd.engine import CrowdEngine
 from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.realism.bins import CELLS, FLOWS, RATE, WINDOW
 from crowdbot.core.realism.model import CrowdModel
-from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 
@@ -66,7 +66,7 @@ def corridors(seed: int, *, warm_up: float = WARM_UP, duration: float = DURATION
     ]
 
 
-def simulate(model: CrowdModel, corridor: Corridor) -> Tracks:
+def simulate(model: CrowdModel, corridor: Corridor) -> CorridorTracks:
     """Simulate a crowd walking through a corridor.
 
     Raises:
@@ -135,14 +135,14 @@ def _mean_speed(rows: Array) -> float:
     return float(np.hypot(rows[:, s.VX], rows[:, s.VY]).mean())
 
 
-def _tracks(way: Array, corridor: Corridor, radius: float) -> Tracks:
+def _tracks(way: Array, corridor: Corridor, radius: float) -> CorridorTracks:
     """Return tracks as means over quarters of a second."""
     per = round(_FINE / RATE)
     mean = way.reshape(-1, per, *way.shape[1:]).mean(axis=1)
     at = mean.copy()
     at[..., 0] %= corridor.length
     windows = [(WINDOW * k, WINDOW * (k + 1)) for k in range(int(corridor.length // WINDOW))]
-    return Tracks(
+    return CorridorTracks(
         position=at,
         way=mean,
         width=WIDTH[corridor.flow],

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from crowdbot.core.realism.bins import DENSITY_EDGES, DISC, DT, NEVER, REACH
-from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
@@ -44,7 +44,7 @@ def motion(way: Array) -> tuple[Array, Array]:
     return velocity, acceleration
 
 
-def features(tracks: Tracks) -> tuple[Array, Array]:
+def features(tracks: CorridorTracks) -> tuple[Array, Array]:
     """Return people's rows (R, `PERSON_COLUMNS`) and windows' rows (F, `WINDOW_COLUMNS`)."""
     velocity, acceleration = motion(tracks.way)
     first, last = max(tracks.first, _ENDS), min(tracks.last, len(tracks.way) - _ENDS)

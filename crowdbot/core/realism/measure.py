@@ -14,7 +14,7 @@ from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel
 from crowdbot.core.realism.reference import RealismReference
 from crowdbot.core.realism.statistics import Statistics, statistics_of
-from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.errors import InputError
 
 #: Seeds of the corridors: the index varies by 0.022 for one, by 0.006 for the mean of sixteen.
@@ -120,7 +120,7 @@ def measure(
     model: CrowdModel,
     reference: RealismReference,
     seeds: Sequence[int] = SEEDS,
-    walk: Callable[[CrowdModel, Sequence[int]], Sequence[Sequence[Tracks]]] | None = None,
+    walk: Callable[[CrowdModel, Sequence[int]], Sequence[Sequence[CorridorTracks]]] | None = None,
 ) -> Realism:
     """Simulate a crowd under the recorded conditions, and compare.
 
@@ -138,13 +138,13 @@ def measure(
     return measure_tracks(name, found, reference)
 
 
-def walk_here(model: CrowdModel, seeds: Sequence[int]) -> list[list[Tracks]]:
+def walk_here(model: CrowdModel, seeds: Sequence[int]) -> list[list[CorridorTracks]]:
     """Simulate all corridors of each seed in this process."""
     return [[simulate(model, c) for c in corridors(seed)] for seed in seeds]
 
 
 def measure_tracks(
-    name: str, draws: Sequence[Sequence[Tracks]], reference: RealismReference
+    name: str, draws: Sequence[Sequence[CorridorTracks]], reference: RealismReference
 ) -> Realism:
     """Compare tracks with the reference, draw by draw."""
     each = [reference.score(statistics_of(tracks), k) for k, tracks in enumerate(draws)]
@@ -169,7 +169,7 @@ def measure_tracks(
 
 
 def measure_met(
-    name: str, draws: Sequence[Sequence[Tracks]], reference: RealismReference
+    name: str, draws: Sequence[Sequence[CorridorTracks]], reference: RealismReference
 ) -> Realism:
     """Compare tracks of people who were not put into the recorded conditions, such as of runs.
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from crowdbot.core.realism.bins import CELLS, DENSITY_EDGES, PAIR_EDGES
-from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 
@@ -20,7 +20,7 @@ from crowdbot.core.types.arrays import Array
 _SHIFTS = (0.31, 0.5, 0.69)
 
 
-def pair_correlation(tracks: Sequence[Tracks]) -> Array:
+def pair_correlation(tracks: Sequence[CorridorTracks]) -> Array:
     """Return (cells, B) by `PAIR_EDGES` per density; NaN without chance pairs."""
     now = np.zeros((len(CELLS), len(PAIR_EDGES) - 1))
     chance = np.zeros_like(now)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from crowdbot.core.realism.tracks import NothingToCompareError, Tracks, tracks_of
+from crowdbot.core.realism.tracks import CorridorTracks, NothingToCompareError, tracks_of
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.bag.tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -24,7 +24,7 @@ _FORMATS = (
 )
 
 
-def read_tracks(path: Path) -> Tracks:
+def read_tracks(path: Path) -> CorridorTracks:
     """Read tracks from a recording, a table of people, a ROS bag, or a data set's file.
 
     Args:
@@ -49,13 +49,13 @@ def read_tracks(path: Path) -> Tracks:
     return tracks_of(reader(path), str(path))
 
 
-def read_runs(files: Sequence[Path]) -> tuple[list[Tracks], list[str]]:
+def read_runs(files: Sequence[Path]) -> tuple[list[CorridorTracks], list[str]]:
     """Return tracks of finished runs, and why others are left out: no people, or too short.
 
     Raises:
         InputError: a recording cannot be read, or all are left out.
     """
-    found: list[Tracks] = []
+    found: list[CorridorTracks] = []
     without: list[str] = []
     for file in files:
         try:

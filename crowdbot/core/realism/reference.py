@@ -15,7 +15,7 @@ from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel, avoid_nobody, ghosts
 from crowdbot.core.realism.recordings import read_tracks
 from crowdbot.core.realism.statistics import Cell, Statistics, statistics_of
-from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.errors import InputError
 
 SHIPPED = "recorded_corridors.json"
@@ -106,7 +106,7 @@ def shipped() -> RealismReference:
 
 
 def reference_of(
-    tracks: Sequence[Tracks],
+    tracks: Sequence[CorridorTracks],
     sources: Sequence[str],
     floors: Mapping[str, Statistics] | None = None,
 ) -> RealismReference:
@@ -150,10 +150,12 @@ def floors_of(seeds: Sequence[int]) -> dict[str, Statistics]:
     }
 
 
-def _alternate(tracks: Sequence[Tracks]) -> tuple[Sequence[Tracks], Sequence[Tracks]]:
+def _alternate(
+    tracks: Sequence[CorridorTracks],
+) -> tuple[Sequence[CorridorTracks], Sequence[CorridorTracks]]:
     """Return alternating tracks in two halves, flow by flow."""
-    first: list[Tracks] = []
-    second: list[Tracks] = []
+    first: list[CorridorTracks] = []
+    second: list[CorridorTracks] = []
     for flow in ("uni", "counter"):
         some = [t for t in tracks if t.flow == flow]
         first += some[::2]
@@ -161,7 +163,7 @@ def _alternate(tracks: Sequence[Tracks]) -> tuple[Sequence[Tracks], Sequence[Tra
     return first, second
 
 
-def _halved(tracks: Tracks) -> tuple[Sequence[Tracks], Sequence[Tracks]]:
+def _halved(tracks: CorridorTracks) -> tuple[Sequence[CorridorTracks], Sequence[CorridorTracks]]:
     middle = (tracks.first + tracks.last) // 2
     return [replace(tracks, last=middle)], [replace(tracks, first=middle)]
 

@@ -27,7 +27,7 @@ from crowdbot.core.realism.features import (
     features,
 )
 from crowdbot.core.realism.pairs import pair_correlation
-from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.core.types.arrays import Array
 
 #: Name of a cell: flow and density.
@@ -123,7 +123,7 @@ class Statistics:
         )
 
 
-def statistics_of(tracks: Sequence[Tracks]) -> Statistics:
+def statistics_of(tracks: Sequence[CorridorTracks]) -> Statistics:
     """Return the statistics of all people in some tracks, flow by flow."""
     by_flow = {flow: [t for t in tracks if t.flow == flow] for flow in FLOWS}
     histograms: dict[Cell, dict[str, Array]] = {}

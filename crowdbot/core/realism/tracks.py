@@ -29,7 +29,7 @@ class NothingToCompareError(InputError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Tracks:
+class CorridorTracks:
     """People in a corridor along x, at 4 Hz.
 
     Attributes:
@@ -68,7 +68,7 @@ class Tracks:
 
 def tracks_of(
     run: Trajectories, name: str, *, width: float | None = None, centre: bool = False
-) -> Tracks:
+) -> CorridorTracks:
     """Convert trajectories of any direction and rate to tracks.
 
     The corridor lies along the axis on which people walk. By default its width is that of their
@@ -94,7 +94,7 @@ def tracks_of(
             f"{name}: {frames / RATE:.1f} s are too short; 3 s and more can be compared"
         )
     windows = np.array([[-WINDOW / 2, WINDOW / 2]]) if centre else _windows(at[..., 0])
-    return Tracks(
+    return CorridorTracks(
         position=at,
         way=at,
         width=float(width or _width(at, windows)),

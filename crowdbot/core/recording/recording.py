@@ -12,7 +12,7 @@ from typing import Self
 
 from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.recording.header import RecordingHeader
-from crowdbot.core.recording.reading.one_robot import Drawing, RobotRecords
+from crowdbot.core.recording.reading.one_robot import PlannerDrawing, RobotRecords
 from crowdbot.core.recording.reading.people_of_fleet import among
 from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.topics import Topic
@@ -193,7 +193,7 @@ class Recording:
         self._drain()
         return self._chosen(robot)[0].scans(sensor)
 
-    def drawings(self, robot: str | None = None) -> dict[str, list[Drawing]]:
+    def drawings(self, robot: str | None = None) -> dict[str, list[PlannerDrawing]]:
         """Return the drawings of the planner by name, such as its ``tracks`` of people.
 
         Args:

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.planning.planner import TRACKS
-from crowdbot.core.recording.reading.one_robot import Drawing
+from crowdbot.core.recording.reading.one_robot import PlannerDrawing
 from crowdbot.core.replay.pack import pack_words
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 
 
 def encode_drawings(
-    run: Trajectories, drawings: Mapping[str, Sequence[Drawing]]
+    run: Trajectories, drawings: Mapping[str, Sequence[PlannerDrawing]]
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Return names, times and numbers of rows; and x, y of all rows (2, K), float32.
 
@@ -41,7 +41,7 @@ def encode_drawings(
     return {"drawings": about}, blobs
 
 
-def _in_world(run: Trajectories, drawing: Drawing, *, tracks: bool) -> Array:
+def _in_world(run: Trajectories, drawing: PlannerDrawing, *, tracks: bool) -> Array:
     """Return x and y (2, K) of rows, with the velocities of tracks (4, K)."""
     assert run.robot is not None
     at = int(np.argmin(np.abs(run.t - drawing.t)))

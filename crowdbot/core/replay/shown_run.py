@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.recording.reading.images import ReplayImages
-from crowdbot.core.recording.reading.one_robot import Drawing
+from crowdbot.core.recording.reading.one_robot import PlannerDrawing
 from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.replay.other_track import OtherTrack, Seen
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -64,7 +64,7 @@ class ShownRun:
     facts: Mapping[str, str] = field(default_factory=dict)
     scans: Sequence[ReplayScan] = ()
     images: Sequence[ReplayImages] = ()
-    drawings: Mapping[str, Sequence[Drawing]] = field(default_factory=dict)
+    drawings: Mapping[str, Sequence[PlannerDrawing]] = field(default_factory=dict)
     scores: Sequence[Score] = ()
     look: Sequence[Seen] = ()
     robot: str = "robot"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.reading.images import ImageCollector
-from crowdbot.core.recording.reading.one_robot import Drawing
+from crowdbot.core.recording.reading.one_robot import PlannerDrawing
 from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.registry.registry import Registry
@@ -30,7 +30,7 @@ class SeenRun:
 
     run: Trajectories
     scans: Sequence[ReplayScan]
-    drawings: Mapping[str, Sequence[Drawing]] = field(default_factory=dict)
+    drawings: Mapping[str, Sequence[PlannerDrawing]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,7 +17,7 @@ from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_grid_build import read_grid
 from crowdbot.plugins.environments.floor_plan_solids_build import around_floor, as_solid
 from crowdbot.plugins.environments.floor_plan_units_build import check_place
-from crowdbot.plugins.environments.floor_plan_vector_build import Plan, read_vector
+from crowdbot.plugins.environments.floor_plan_vector_build import ImportedPlan, read_vector
 
 _LOG = logging.getLogger(__name__)
 #: Largest file of a vector plan, bytes.
@@ -85,17 +85,17 @@ def _place_of(
 
 def _read(
     spec: FloorPlanFields, file: Path | None, image: Path | None, name: str, told_unit: bool
-) -> Plan:
+) -> ImportedPlan:
     if spec.read_as == "ros_map":
         assert file is not None  # the document's validation checked this
-        return Plan(walkable=read_grid(spec, file, image))
+        return ImportedPlan(walkable=read_grid(spec, file, image))
     text = spec.wkt or "" if file is None else input_text(file, _LARGEST, name)
     return read_vector(spec, text.removeprefix("\ufeff"), name, told_unit)
 
 
 # --------------------------------------------------------------------------------- checks
 def _check(
-    plan: Plan, floor: list[Any], solids: list[Any], spec: FloorPlanFields, name: str
+    plan: ImportedPlan, floor: list[Any], solids: list[Any], spec: FloorPlanFields, name: str
 ) -> None:
     """Refuse a plan without parts, and one with too many or too large ones."""
     count = sum(shapely.get_num_coordinates(p) for p in (*floor, *solids))
@@ -110,7 +110,7 @@ def _check(
     check_place([*floor, *solids], spec, name)
 
 
-def _too_small(plan: Plan) -> str:
+def _too_small(plan: ImportedPlan) -> str:
     """Describe a plan that is smaller than the smallest kept detail; usually the unit is wrong."""
     shapes = [*plan.walkable, *(shape for shape, _ in plan.solids)]
     if not shapes:

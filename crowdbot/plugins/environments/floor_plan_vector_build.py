@@ -41,7 +41,7 @@ _SRID = re.compile(r"\s*SRID\s*=\s*\d+\s*;", re.IGNORECASE)
 
 
 @dataclass
-class Plan:
+class ImportedPlan:
     """The parsed plan: the walkable floor, and solids with their heights."""
 
     walkable: list[Any] = field(default_factory=list)
@@ -51,7 +51,7 @@ class Plan:
 _Found = tuple[Any, dict[str, Any]]
 
 
-def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) -> Plan:
+def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) -> ImportedPlan:
     """Return the plan in a text of WKT or GeoJSON.
 
     Args:
@@ -77,7 +77,7 @@ def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) ->
         _LOG.warning("%s: left out: %s", name, listed)
     found = _on_one_storey([one for one in found if not one[0].is_empty], spec, name)
     check_numbers([shape for shape, _ in found], spec, name, crs, told_unit)
-    plan = Plan()
+    plan = ImportedPlan()
     for shape, properties in found:
         _sort_in(in_metres(shape, spec, name), properties, spec, plan, name)
     _check_cover(plan.walkable, name)
@@ -255,7 +255,7 @@ def _check_cover(walkable: Iterable[Any], name: str) -> None:
 
 # ------------------------------------------------------------------------ floor and solids
 def _sort_in(
-    shape: Any, properties: dict[str, Any], spec: FloorPlanFields, plan: Plan, name: str
+    shape: Any, properties: dict[str, Any], spec: FloorPlanFields, plan: ImportedPlan, name: str
 ) -> None:
     """Add a geometry to the floor or the solids."""
     kind = kind_of(properties)

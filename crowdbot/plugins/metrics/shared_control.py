@@ -26,6 +26,7 @@ AGREEMENT = declare(
     minimum=0.0,
     maximum=1.0,
     variants=("literal", "corrected"),
+    build="crowdbot.plugins.metrics.shared_control_build:AgreementMetric",
 )
 
 

@@ -29,7 +29,7 @@ REGULAR = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Agreement:
+class AgreementMetric:
     """Scores ``agreement``. Needs commands.
 
     Each counts for as long as it holds; standstill has no direction.

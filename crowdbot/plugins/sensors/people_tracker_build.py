@@ -30,7 +30,7 @@ _AIM_HEIGHT = 0.75  # share of a person's height
 _AIM_ASIDE = (0.0, -0.8, 0.8)  # share of the trunk's radius
 
 
-class PeopleTracker:
+class PeopleTrackerSensor:
     """Reading: (max_people, 5) id, x, y, vx, vy in the axes of base_link."""
 
     def __init__(self, spec: PeopleTrackerSpec) -> None:
@@ -116,7 +116,7 @@ def _in_base(people: Array, pose: Pose) -> Array:
     return np.hstack([(people[:, :2] - (pose.x, pose.y)) @ turn, people[:, 2:] @ turn])
 
 
-def build(spec: PeopleTrackerSpec, context: SensorContext) -> PeopleTracker:
+def build(spec: PeopleTrackerSpec, context: SensorContext) -> PeopleTrackerSensor:
     """Return a tracker from its spec."""
     del context
-    return PeopleTracker(spec)
+    return PeopleTrackerSensor(spec)

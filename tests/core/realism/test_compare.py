@@ -15,7 +15,7 @@ from crowdbot.core.realism.features import NEAREST, SPEED, features
 from crowdbot.core.realism.reference import RealismReference, shipped
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.realism.tables import real_beside
-from crowdbot.core.realism.tracks import Tracks, tracks_of
+from crowdbot.core.realism.tracks import CorridorTracks, tracks_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
@@ -43,7 +43,7 @@ def test_similarity_by_hand() -> None:
     )
 
 
-def people(velocities: Array, places: Array, frames: int = 60) -> Tracks:
+def people(velocities: Array, places: Array, frames: int = 60) -> CorridorTracks:
     t = np.arange(frames) * 0.25
     at = places[np.newaxis] + t[:, np.newaxis, np.newaxis] * velocities[np.newaxis]
     run = Trajectories.from_arrays(

@@ -14,7 +14,7 @@ from crowdbot.core.realism.corridor import Corridor, simulate
 from crowdbot.core.realism.measure import DIAGRAM, LANES, Realism, measure_met, measure_tracks
 from crowdbot.core.realism.model import CrowdModel, ghosts, model_of
 from crowdbot.core.realism.reference import shipped
-from crowdbot.core.realism.tracks import Tracks
+from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.errors import InputError
@@ -27,7 +27,7 @@ PLACES = [
 ]
 
 
-def measured(tracks: Sequence[Tracks]) -> Realism:
+def measured(tracks: Sequence[CorridorTracks]) -> Realism:
     return measure_tracks("made up", [tracks], shipped())
 
 
@@ -38,7 +38,7 @@ def model() -> CrowdModel:
 
 
 @cache
-def usual() -> tuple[list[Tracks], Realism]:
+def usual() -> tuple[list[CorridorTracks], Realism]:
     tracks = [simulate(model(), place) for place in PLACES]
     return tracks, measured(tracks)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.realism.calibrate import HELD_OUT_DRAWS, digest, registry_of
-from crowdbot.core.realism.near_robots.encounters import Encounter, encounters_of
+from crowdbot.core.realism.near_robots.encounters import RobotEncounter, encounters_of
 from crowdbot.core.realism.near_robots.measure import measure
 from crowdbot.core.realism.near_robots.recordings import read_clips
 from crowdbot.core.realism.near_robots.reference import (
@@ -90,7 +90,7 @@ def _halves(files: tuple[str, ...]) -> tuple[RobotReference, RobotReference]:
     if not files:
         return shipped(), shipped()
     clips = [clip for file in files for clip in read_clips(Path(file))]
-    halves: tuple[list[Encounter], list[Encounter]] = ([], [])
+    halves: tuple[list[RobotEncounter], list[RobotEncounter]] = ([], [])
     seen: dict[tuple[str, str], int] = {}
     for e in encounters_of(clips):
         number = seen[cell_of(e)] = seen.get(cell_of(e), -1) + 1

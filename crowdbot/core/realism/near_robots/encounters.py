@@ -31,7 +31,7 @@ _ALONG = math.radians(45.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Encounter:
+class RobotEncounter:
     """A person and a robot that would meet; SI units.
 
     Attributes:
@@ -69,7 +69,7 @@ class Encounter:
         return gap_at(self.pose, self.footprint, person[:, 0], person[:, 1]) - BODY
 
 
-def encounters_of(clips: Sequence[Clip]) -> list[Encounter]:
+def encounters_of(clips: Sequence[Clip]) -> list[RobotEncounter]:
     """Return all encounters in clips, person by person."""
     found = []
     for clip in clips:
@@ -80,7 +80,7 @@ def encounters_of(clips: Sequence[Clip]) -> list[Encounter]:
     return found
 
 
-def _encounter(clip: Clip, k: int) -> Encounter | None:
+def _encounter(clip: Clip, k: int) -> RobotEncounter | None:
     person = clip.people[:, k]
     known = np.isfinite(person[:, 0])
     if np.count_nonzero(known) < 2.0 / clip.dt:
@@ -107,7 +107,7 @@ def encounter(
     person: Array,
     closest: int,
     footprint: Footprint,
-) -> Encounter | None:
+) -> RobotEncounter | None:
     """Return the encounter of a stretch, or None if person and robot would not meet."""
     dt = float(t[1] - t[0])
     first = round(_FIRST / dt)
@@ -117,7 +117,7 @@ def encounter(
     way = before[-1, :2] - before[0, :2]
     if speed < DRIVES or math.hypot(*velocity) < WALKS or math.hypot(*way) < 0.1:
         return None
-    found = Encounter(
+    found = RobotEncounter(
         name=name, site=site, t=t, pose=pose, person=person, velocity=velocity, closest=closest,
         footprint=footprint, robot_speed=speed, kind=_kind(velocity, way),
         predicted_gap=math.inf,

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from crowdbot.core.realism.near_robots.clip import gap_at
-from crowdbot.core.realism.near_robots.encounters import BODY, Encounter
+from crowdbot.core.realism.near_robots.encounters import BODY, RobotEncounter
 from crowdbot.core.types.arrays import Array
 
 #: Names and units of the features. Onsets are NaN where the person never evades, and
@@ -30,7 +30,7 @@ SHARES = ("evades", "passes_first")
 _RISE, _QUARTER = 0.1, 0.25
 
 
-def features_of(encounters: Sequence[Encounter], people: Sequence[Array]) -> Array:
+def features_of(encounters: Sequence[RobotEncounter], people: Sequence[Array]) -> Array:
     """Return (E, F) features of people in encounters, NaN where undefined.
 
     Args:
@@ -41,7 +41,7 @@ def features_of(encounters: Sequence[Encounter], people: Sequence[Array]) -> Arr
     return np.array(rows).reshape(-1, len(FEATURES))
 
 
-def _row(e: Encounter, person: Array) -> list[float]:
+def _row(e: RobotEncounter, person: Array) -> list[float]:
     dt = float(e.t[1] - e.t[0])
     gap = e.gap(person)
     closest = int(np.argmin(gap))
@@ -66,13 +66,13 @@ def _row(e: Encounter, person: Array) -> list[float]:
     ]
 
 
-def _time_to_meet(e: Encounter) -> float:
+def _time_to_meet(e: RobotEncounter) -> float:
     """Return when the person, walking straight on, would first come as near as it would, s."""
     gap = e.gap(e.straight)
     return float(e.t[np.argmax(gap <= max(0.0, float(gap.min()) + 1e-9))])
 
 
-def _onset(e: Encounter, person: Array, velocity: Array, closest: int) -> int | None:
+def _onset(e: RobotEncounter, person: Array, velocity: Array, closest: int) -> int | None:
     """Return the row at which a quarter of the rise of the predicted gap is done, if it rises."""
     if closest < 2:
         return None
@@ -88,14 +88,14 @@ def _onset(e: Encounter, person: Array, velocity: Array, closest: int) -> int | 
     return int(np.argmax(predicted >= predicted[0] + _QUARTER * rise))
 
 
-def _deviation(e: Encounter, person: Array, until: slice) -> float:
+def _deviation(e: RobotEncounter, person: Array, until: slice) -> float:
     """Return the largest distance from the straight line, m."""
     dx, dy = (person[until] - person[0]).T
     size = math.hypot(*e.velocity)
     return float(np.abs(e.velocity[0] * dy - e.velocity[1] * dx).max() / size)
 
 
-def _passes_first(e: Encounter, person: Array) -> float:
+def _passes_first(e: RobotEncounter, person: Array) -> float:
     """Return 1 if the person crosses in front of the robot, 0 if behind it, else NaN."""
     if e.kind != "cross":
         return math.nan

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.realism.near_robots.compare import Similarity, similarity
-from crowdbot.core.realism.near_robots.encounters import Encounter
+from crowdbot.core.realism.near_robots.encounters import RobotEncounter
 from crowdbot.core.realism.near_robots.features import features_of
 from crowdbot.core.realism.near_robots.reference import RobotReference
 from crowdbot.core.realism.near_robots.replay import Response, walk_all
@@ -94,7 +94,7 @@ def measure(
 
 
 def measure_encounters(
-    name: str, encounters: Sequence[Encounter], reference: RobotReference
+    name: str, encounters: Sequence[RobotEncounter], reference: RobotReference
 ) -> RobotRealism:
     """Compare the people of finished runs with recorded people; the floor is straight walking.
 
@@ -131,7 +131,7 @@ def compare(
     )
 
 
-def _straight(encounters: Sequence[Encounter]) -> dict[Cell, CellStatistics]:
+def _straight(encounters: Sequence[RobotEncounter]) -> dict[Cell, CellStatistics]:
     """Return the distributions of people who ignore the robot and walk straight on."""
     return statistics_of(encounters, features_of(encounters, [e.straight for e in encounters]))
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.realism.near_robots.compare import compared, similarity
-from crowdbot.core.realism.near_robots.encounters import Encounter, encounters_of
+from crowdbot.core.realism.near_robots.encounters import RobotEncounter, encounters_of
 from crowdbot.core.realism.near_robots.features import features_of
 from crowdbot.core.realism.near_robots.recordings import read_clips
 from crowdbot.core.realism.near_robots.scenes import SceneTable, scenes_of, table_of
@@ -47,7 +47,7 @@ class RobotReference:
     whole: Mapping[Cell, CellStatistics]
     ceilings: Mapping[Cell, float]
     tables: Mapping[Cell, SceneTable]
-    encounters: Sequence[Encounter]
+    encounters: Sequence[RobotEncounter]
     sources: tuple[str, ...]
 
     @property
@@ -55,7 +55,7 @@ class RobotReference:
         """Return cell -> number of recorded encounters."""
         return {cell: found.count for cell, found in self.whole.items()}
 
-    def drawn(self, seed: int) -> list[Encounter]:
+    def drawn(self, seed: int) -> list[RobotEncounter]:
         """Return the encounters that people are simulated in: recorded, or scenes of a draw."""
         if self.encounters:
             return list(self.encounters)
@@ -98,7 +98,7 @@ def shipped() -> RobotReference:
 
 
 def reference_of(
-    encounters: Sequence[Encounter],
+    encounters: Sequence[RobotEncounter],
     sources: Sequence[str],
     *,
     scenes: bool = False,
@@ -142,7 +142,7 @@ def read_reference(files: Sequence[Path]) -> RobotReference:
 
 
 def _ceilings(
-    encounters: Sequence[Encounter], features: Array, cells: Sequence[Cell]
+    encounters: Sequence[RobotEncounter], features: Array, cells: Sequence[Cell]
 ) -> dict[Cell, float]:
     """Return the mean similarity of random halves of the recordings, by cell."""
     rng = np.random.default_rng(0)

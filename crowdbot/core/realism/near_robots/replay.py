@@ -15,7 +15,7 @@ from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.realism.model import CrowdModel
 from crowdbot.core.realism.near_robots.clip import smoothed
-from crowdbot.core.realism.near_robots.encounters import BODY, Encounter
+from crowdbot.core.realism.near_robots.encounters import BODY, RobotEncounter
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 
@@ -43,7 +43,9 @@ class Response:
     visible: bool = True
 
 
-def walk_all(response: Response, encounters: Sequence[Encounter], seed: int = 0) -> list[Array]:
+def walk_all(
+    response: Response, encounters: Sequence[RobotEncounter], seed: int = 0
+) -> list[Array]:
     """Return (K, 2) smoothed positions of a simulated person in each encounter, m.
 
     Attention is cut into slices, and each encounter gets a number from another slice.
@@ -56,7 +58,7 @@ def walk_all(response: Response, encounters: Sequence[Encounter], seed: int = 0)
     ]
 
 
-def _walk(response: Response, e: Encounter, attention: float, key: int) -> Array:
+def _walk(response: Response, e: RobotEncounter, attention: float, key: int) -> Array:
     engine = _engine(response, e, attention, key)
     flat = engine.initial_state()
     _, rows = s.view(flat)
@@ -72,7 +74,7 @@ def _walk(response: Response, e: Encounter, attention: float, key: int) -> Array
     return smoothed(found, float(e.t[1] - e.t[0]))
 
 
-def _engine(response: Response, e: Encounter, attention: float, key: int) -> CrowdEngine:
+def _engine(response: Response, e: RobotEncounter, attention: float, key: int) -> CrowdEngine:
     model, speed = response.crowd, math.hypot(*e.velocity)
     far = e.person[0] + _FAR * e.velocity / speed
     ignores = attention < response.ignoring
@@ -98,7 +100,7 @@ def remaining(attention: float, ignoring: float) -> float:
     return max(0.0, attention - ignoring) / max(1.0 - ignoring, 1e-9)
 
 
-def _robots(e: Encounter, per: int, margin: float) -> Array:
+def _robots(e: RobotEncounter, per: int, margin: float) -> Array:
     """Return (K * per, 8) the robot at each tick, as `CrowdEngine.advance` takes it."""
     t = np.arange((len(e.t) - 1) * per + 1) * TICK
     pose = np.column_stack([np.interp(t, e.t, e.pose[:, k]) for k in range(3)])

@@ -15,7 +15,7 @@ import numpy as np
 
 from crowdbot.core.geometry.footprint import Footprint
 from crowdbot.core.realism.near_robots.clip import RATE
-from crowdbot.core.realism.near_robots.encounters import AFTER, BODY, Encounter, encounter
+from crowdbot.core.realism.near_robots.encounters import AFTER, BODY, RobotEncounter, encounter
 from crowdbot.core.realism.near_robots.features import FEATURES, features_of
 from crowdbot.core.realism.near_robots.statistics import LEVELS
 from crowdbot.core.types.arrays import Array
@@ -68,7 +68,7 @@ class SceneTable:
         )
 
 
-def table_of(encounters: Sequence[Encounter]) -> SceneTable:
+def table_of(encounters: Sequence[RobotEncounter]) -> SceneTable:
     """Return the distributions of some encounters, all of one cell."""
     straight = features_of(encounters, [e.straight for e in encounters])[:, _FIRST]
     robots: dict[tuple[Any, ...], tuple[Footprint, int]] = {}
@@ -88,7 +88,7 @@ def table_of(encounters: Sequence[Encounter]) -> SceneTable:
     )
 
 
-def _drawn(e: Encounter) -> list[float]:
+def _drawn(e: RobotEncounter) -> list[float]:
     way = e.pose[e.closest, :2] - e.pose[0, :2]
     angle = math.atan2(
         way[0] * e.velocity[1] - way[1] * e.velocity[0], float(np.dot(way, e.velocity))
@@ -103,7 +103,7 @@ def _drawn(e: Encounter) -> list[float]:
     ]
 
 
-def scenes_of(table: SceneTable, seed: int, count: int = COUNT) -> list[Encounter]:
+def scenes_of(table: SceneTable, seed: int, count: int = COUNT) -> list[RobotEncounter]:
     """Draw scenes: each quantity is cut into slices, which are combined at random."""
     rng = np.random.default_rng([seed, 0x5CE])
     draws = {name: np.interp(_slices(rng, count), LEVELS, q) for name, q in table.quantiles.items()}
@@ -122,7 +122,9 @@ def _slices(rng: np.random.Generator, count: int) -> Array:
     return (rng.permutation(count) + rng.uniform(0.0, 1.0, count)) / count
 
 
-def _scene(draw: Mapping[str, float], robot: Footprint, first: bool, k: int) -> Encounter | None:
+def _scene(
+    draw: Mapping[str, float], robot: Footprint, first: bool, k: int
+) -> RobotEncounter | None:
     """Return an encounter with a robot that drives along x and is at the origin at ``time``."""
     speed, time = draw["robot_speed"], max(1.0, draw["time"])
     t = np.arange(0.0, time + AFTER, 1.0 / RATE)

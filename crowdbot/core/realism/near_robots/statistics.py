@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.realism.near_robots.encounters import VEHICLE, Encounter
+from crowdbot.core.realism.near_robots.encounters import VEHICLE, RobotEncounter
 from crowdbot.core.realism.near_robots.features import FEATURES, SHARES
 from crowdbot.core.types.arrays import Array
 
@@ -57,12 +57,14 @@ class CellStatistics:
         )
 
 
-def cell_of(e: Encounter) -> Cell:
+def cell_of(e: RobotEncounter) -> Cell:
     """Return kind of encounter and class of the robot's speed."""
     return e.kind, next(name for name, top in SPEEDS if e.robot_speed < top)
 
 
-def statistics_of(encounters: Sequence[Encounter], features: Array) -> dict[Cell, CellStatistics]:
+def statistics_of(
+    encounters: Sequence[RobotEncounter], features: Array
+) -> dict[Cell, CellStatistics]:
     """Return the distributions of (E, F) features by cell, in a fixed order."""
     cells = [cell_of(e) for e in encounters]
     found = {}

@@ -27,7 +27,7 @@ _ROBOT = ("x", "y", "theta", "v", "w", "vx", "vy")
 _CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bearing")
 
 
-class Drawing(NamedTuple):
+class PlannerDrawing(NamedTuple):
     """A planner's drawing: time (s) and rows (K, C) in the robot's base frame."""
 
     t: float
@@ -149,13 +149,13 @@ class RobotRecords:
         """
         return self._scans.scans(self.header, sensor)
 
-    def drawings(self) -> dict[str, list[Drawing]]:
+    def drawings(self) -> dict[str, list[PlannerDrawing]]:
         """Return the drawings of the planner by name, in the order of time.
 
         Raises:
             InputError: a drawing is damaged.
         """
-        found: dict[str, list[Drawing]] = {}
+        found: dict[str, list[PlannerDrawing]] = {}
         for topic in (Topic.TRACKS, Topic.THOUGHTS):
             records = self._records[topic]
             for record, message in zip(records, self._messages(topic), strict=True):
@@ -163,7 +163,7 @@ class RobotRecords:
                 if columns < 1 or len(message.data) % columns:
                     raise InputError(f"{self._path}: damaged: a drawing '{message.name:.40}'")
                 rows = np.asarray(message.data, np.float64).reshape(-1, columns)
-                found.setdefault(message.name, []).append(Drawing(record.ns / 1e9, rows))
+                found.setdefault(message.name, []).append(PlannerDrawing(record.ns / 1e9, rows))
         return found
 
     @cached_property

@@ -16,7 +16,7 @@ _YAWS = ("theta", "yaw", "heading")
 _DEPTH = 5
 
 
-class Place(NamedTuple):
+class BagPose(NamedTuple):
     """A position, m, and a heading, rad; NaN if the message has none."""
 
     xyz: tuple[float, float, float]
@@ -33,20 +33,20 @@ def header_of(message: Any) -> tuple[int, str]:
     return 10**9 * int(stamp.sec) + int(stamp.nanosec), frame
 
 
-def place_of(item: Any, depth: int = _DEPTH) -> Place | None:
+def place_of(item: Any, depth: int = _DEPTH) -> BagPose | None:
     """Return where a message, or a part of one, says that something is; None if it does not."""
     if item is None or depth == 0:
         return None
     if _is_point(item):
         theta = next((float(getattr(item, n)) for n in _YAWS if hasattr(item, n)), math.nan)
-        return Place((float(item.x), float(item.y), float(getattr(item, "z", 0.0))), theta)
+        return BagPose((float(item.x), float(item.y), float(getattr(item, "z", 0.0))), theta)
     if isinstance(item, np.ndarray) and item.shape == (3,):
-        return Place((float(item[0]), float(item[1]), float(item[2])), math.nan)
+        return BagPose((float(item[0]), float(item[1]), float(item[2])), math.nan)
     for name in _PLACES:
         found = place_of(getattr(item, name, None), depth - 1)
         if found is not None:
             turn = getattr(item, "orientation", getattr(item, "rotation", None))
-            return found if turn is None else Place(found.xyz, yaw_of(turn))
+            return found if turn is None else BagPose(found.xyz, yaw_of(turn))
     return None
 
 

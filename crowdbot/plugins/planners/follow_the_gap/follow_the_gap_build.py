@@ -17,7 +17,7 @@ import numpy as np
 from crowdbot.plugin import Array, Observation
 from crowdbot.plugins.planners.follow_the_gap.follow_the_gap import FollowTheGapSpec
 from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner
-from crowdbot.plugins.planners.shared.surroundings_build import Scene
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene
 
 #: The robot drives at full speed where nothing is nearer than this ahead, m.
 _SLOWS = 1.0
@@ -35,7 +35,7 @@ class FollowTheGap(VelocityPlanner):
     def forget(self) -> None:
         """Do nothing: there is nothing to forget."""
 
-    def velocity(self, obs: Observation, scene: Scene, wish: Array) -> tuple[float, float]:
+    def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity towards the gap and the goal, m/s; zero without a gap."""
         spec = self._spec
         goal = math.atan2(wish[1], wish[0])
@@ -54,7 +54,7 @@ class FollowTheGap(VelocityPlanner):
         speed = float(np.hypot(*wish)) * min(1.0, max(0.0, room) / _SLOWS)
         return speed * math.cos(goal + aside), speed * math.sin(goal + aside)
 
-    def _shadows(self, scene: Scene, goal: float) -> tuple[Array, Array, Array]:
+    def _shadows(self, scene: PlannerScene, goal: float) -> tuple[Array, Array, Array]:
         """Return the bearings from the goal's direction, half widths (rad) and gaps (m)."""
         spec = self._spec
         discs = np.concatenate(

@@ -19,7 +19,7 @@ from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.driven_path_build import driven
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
-from crowdbot.plugins.planners.shared.surroundings_build import Surroundings, people_near
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerSurroundings, people_near
 from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED, _BESIDE = 0.1, 0.12
@@ -32,7 +32,7 @@ class Mppi:
 
     def __init__(self, spec: MppiSpec) -> None:
         self._spec = spec
-        self._surroundings = Surroundings(spec)
+        self._surroundings = PlannerSurroundings(spec)
         self._field = DistanceField()
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)

@@ -11,7 +11,7 @@ from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
-class OrcaSpec(RungSpec):
+class OrcaPlannerSpec(RungSpec):
     """People are expected to take their share of each evasion, walls none."""
 
     kind: Literal["orca"] = "orca"
@@ -34,7 +34,7 @@ class OrcaSpec(RungSpec):
 
 
 ORCA = Component(
-    spec=OrcaSpec,
+    spec=OrcaPlannerSpec,
     build="crowdbot.plugins.planners.orca.orca_build:build",
     summary="optimal reciprocal collision avoidance, non-holonomic (Alonso-Mora et al. 2013)",
 )

@@ -13,10 +13,10 @@ import math
 import numpy as np
 
 from crowdbot.plugin import Array, Observation, kernel
-from crowdbot.plugins.planners.orca.orca import OrcaSpec
+from crowdbot.plugins.planners.orca.orca import OrcaPlannerSpec
 from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner, velocity_of
 from crowdbot.plugins.planners.shared.half_planes_build import avoid, best_velocity
-from crowdbot.plugins.planners.shared.surroundings_build import Scene
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene
 
 #: Time in which touching discs part, and in which the robot takes on a heading, s.
 _STEP, _TURN_TIME = 0.25, 0.5
@@ -28,7 +28,7 @@ _MOST = 400
 class Orca(VelocityPlanner):
     """Chooses in each step from what it sees; remembers nothing else."""
 
-    def __init__(self, spec: OrcaSpec) -> None:
+    def __init__(self, spec: OrcaPlannerSpec) -> None:
         super().__init__(spec)
         self._spec = spec
         self._lines, self._scratch = np.zeros((_MOST, 4)), np.zeros((_MOST, 4))
@@ -41,7 +41,7 @@ class Orca(VelocityPlanner):
         )
         best_velocity(self._lines, 1, 0, 1.0, (1.0, 0.0), self._scratch)
 
-    def velocity(self, obs: Observation, scene: Scene, wish: Array) -> tuple[float, float]:
+    def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the allowed velocity nearest to the wish, m/s."""
         assert self.limits is not None
         sideways = self.limits.vy_max > 0.0
@@ -60,11 +60,11 @@ class Orca(VelocityPlanner):
         return u, v
 
 
-def _times(spec: OrcaSpec) -> tuple[float, float, float]:
+def _times(spec: OrcaPlannerSpec) -> tuple[float, float, float]:
     return spec.time_horizon, spec.obstacle_horizon, spec.share
 
 
-def _nearest(scene: Scene, most: int) -> Array:
+def _nearest(scene: PlannerScene, most: int) -> Array:
     people = scene.people
     away = np.hypot(people[:, 0] - scene.pose.x, people[:, 1] - scene.pose.y)
     return np.ascontiguousarray(people[np.argsort(away, kind="stable")[:most]])
@@ -135,6 +135,6 @@ def half_planes(
     return walls, count
 
 
-def build(spec: OrcaSpec) -> Orca:
+def build(spec: OrcaPlannerSpec) -> Orca:
     """Build a planner from its spec."""
     return Orca(spec)

@@ -14,7 +14,11 @@ from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
-from crowdbot.plugins.planners.shared.surroundings_build import Surroundings, in_base, people_near
+from crowdbot.plugins.planners.shared.surroundings_build import (
+    PlannerSurroundings,
+    in_base,
+    people_near,
+)
 from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED = 0.1
@@ -25,11 +29,11 @@ _BESIDE = 0.12
 
 
 class PeopleMpc:
-    """Remembers its last plan; `Surroundings` remembers people and `Way` what stands."""
+    """Remembers its last plan; `PlannerSurroundings` remembers people and `Way` what stands."""
 
     def __init__(self, spec: PeopleMpcSpec) -> None:
         self._spec = spec
-        self._surroundings = Surroundings(spec)
+        self._surroundings = PlannerSurroundings(spec)
         self._field = DistanceField()
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
@@ -50,7 +54,7 @@ class PeopleMpc:
         self._p = _parameters(spec, limits)
         self._last, self._aside = (0.0, 0.0, 0.0), 0.0
         self._firsts((0.0, 0.0, 0.0), 1.0, 0.0)
-        world = plans.World(
+        world = plans.PlanWorld(
             np.ones((1, 5)), self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
         )
         state = (0.0,) * 6
@@ -74,7 +78,7 @@ class PeopleMpc:
         firsts = self._firsts(scene.twist, top, error)
         self._field.fill(scene.points, pose.x, pose.y)
         people = people_near(scene, self._p[plans.V_MAX], self._spec.horizon, _PEOPLE)
-        world = plans.World(people, self._field.values, self._field.corner, self._robot, aim)
+        world = plans.PlanWorld(people, self._field.values, self._field.corner, self._robot, aim)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
         at, aside, pace, cost = plans.best_plan(
             world, self._p, state, firsts, self._last, self._aside

@@ -29,7 +29,7 @@ PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, SIDEWAYS, ASIDE_COST, HEADING = range(9
 PARAMETERS = 16
 
 
-class World(NamedTuple):
+class PlanWorld(NamedTuple):
     """The surroundings that plans are tested against.
 
     Attributes:
@@ -47,7 +47,7 @@ class World(NamedTuple):
     goal: tuple[float, float]
 
 
-class Outcome(NamedTuple):
+class PlanOutcome(NamedTuple):
     """The end of a rollout.
 
     Attributes:
@@ -66,7 +66,7 @@ class Outcome(NamedTuple):
 
 
 @kernel
-def gaps(world: World, x: float, y: float, yaw: float, t: float) -> tuple[float, float]:
+def gaps(world: PlanWorld, x: float, y: float, yaw: float, t: float) -> tuple[float, float]:
     """Return the gap from the robot to the nearest person in ``t`` seconds, and to walls, m."""
     person, wall = math.inf, math.inf
     c, s = math.cos(yaw), math.sin(yaw)
@@ -93,14 +93,14 @@ def _slewed(value: float, target: float, change: float) -> float:
 
 @kernel
 def roll(
-    world: World,
+    world: PlanWorld,
     p: Array,
     state: tuple[float, float, float, float, float, float],
     first: tuple[float, float, float],
     aside: float,
     pace: float,
     budget: float,
-) -> Outcome:
+) -> PlanOutcome:
     """Roll a plan out: a first velocity, then a direction beside the goal's.
 
     It ends where it can no longer cost less than the budget, with an infinite mean.
@@ -160,7 +160,7 @@ def roll(
         if gap < need:
             speed = math.sqrt(v * v + vy * vy)
             mean = (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON]
-            return Outcome(mean, t, speed, 1.0, beside)
+            return PlanOutcome(mean, t, speed, 1.0, beside)
         total += away * STEP
         need = min(p[MARGIN], max(need, gap))
         doubted = min(person - p[GROWTH] * t, wall + 0.5 * p[COMFORT])
@@ -169,9 +169,9 @@ def roll(
         least = total + max(0.0, left * (away - 0.5 * p[V_MAX] * left))
         made = (start - least / p[HORIZON]) * scale
         if p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * close > budget:
-            return Outcome(math.inf, t, 0.0, close, beside)
+            return PlanOutcome(math.inf, t, 0.0, close, beside)
     speed = math.sqrt(v * v + vy * vy)
-    return Outcome(total / p[HORIZON], p[HORIZON], speed, min(1.0, close), beside)
+    return PlanOutcome(total / p[HORIZON], p[HORIZON], speed, min(1.0, close), beside)
 
 
 @kernel
@@ -181,7 +181,7 @@ def _wrapped(angle: float) -> float:
 
 @kernel
 def best_plan(
-    world: World,
+    world: PlanWorld,
     p: Array,
     state: tuple[float, float, float, float, float, float],
     firsts: Array,

@@ -25,7 +25,7 @@ from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.rpp.rpp import RppSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
-from crowdbot.plugins.planners.shared.surroundings_build import Scene, Surroundings
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, PlannerSurroundings
 from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED, _BESIDE = 0.1, 0.12
@@ -38,7 +38,7 @@ class Rpp:
 
     def __init__(self, spec: RppSpec) -> None:
         self._spec = spec
-        self._surroundings = Surroundings(spec)
+        self._surroundings = PlannerSurroundings(spec)
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
         self._way = Way(1.0)
@@ -74,7 +74,7 @@ class Rpp:
         obs.log("rpp/speed", v)
         return self._checked(scene, v, _clamped(v * curvature, limits.w_max))
 
-    def _regulated(self, curvature: float, scene: Scene) -> float:
+    def _regulated(self, curvature: float, scene: PlannerScene) -> float:
         """Return the speed for a bend (1/m) and the nearest obstacle, m/s."""
         spec, limits = self._spec, self._limits
         assert limits is not None
@@ -88,7 +88,7 @@ class Rpp:
             close = top * spec.proximity_gain * max(near, 0.0) / spec.proximity
         return max(min(bend, close), min(spec.min_speed, top))
 
-    def _checked(self, scene: Scene, v: float, w: float) -> Command:
+    def _checked(self, scene: PlannerScene, v: float, w: float) -> Command:
         """Return the command.
 
         Raises:
@@ -101,7 +101,7 @@ class Rpp:
         return Command(v, w)
 
 
-def _discs(scene: Scene) -> Array:
+def _discs(scene: PlannerScene) -> Array:
     """Return what is around, (N, 3) x, y, radius in the robot's frame, m."""
     points = np.column_stack([scene.points, np.zeros(len(scene.points))])
     discs = np.concatenate([scene.people[:, [0, 1, 4]], points])

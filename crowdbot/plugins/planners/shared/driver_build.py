@@ -13,7 +13,11 @@ from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.shared.follow_velocity_build import follow
 from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius, swept_half_width
 from crowdbot.plugins.planners.shared.rungs import RungSpec
-from crowdbot.plugins.planners.shared.surroundings_build import Scene, Surroundings, in_base
+from crowdbot.plugins.planners.shared.surroundings_build import (
+    PlannerScene,
+    PlannerSurroundings,
+    in_base,
+)
 from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED = 0.1
@@ -31,7 +35,7 @@ class VelocityPlanner(ABC):
 
     def __init__(self, spec: RungSpec) -> None:
         self._rungs = spec
-        self._surroundings = Surroundings(spec)
+        self._surroundings = PlannerSurroundings(spec)
         self._way = Way(1.0)
         self.limits: RobotLimits | None = None
         self.radius = disc_radius(spec.robot_radius, None)
@@ -69,7 +73,7 @@ class VelocityPlanner(ABC):
         """Forget everything of the last run, and compile what is not compiled yet."""
 
     @abstractmethod
-    def velocity(self, obs: Observation, scene: Scene, wish: Array) -> tuple[float, float]:
+    def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity to take on, m/s, in the frame of the scene.
 
         Args:
@@ -79,7 +83,7 @@ class VelocityPlanner(ABC):
         """
 
 
-def velocity_of(scene: Scene) -> tuple[float, float]:
+def velocity_of(scene: PlannerScene) -> tuple[float, float]:
     """Return the robot's velocity in the frame of the scene, m/s."""
     v, _, vy = scene.twist
     c, s = math.cos(scene.pose.yaw), math.sin(scene.pose.yaw)

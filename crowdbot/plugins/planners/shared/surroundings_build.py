@@ -35,7 +35,7 @@ X, Y, VX, VY, RADIUS = range(5)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scene:
+class PlannerScene:
     """The surroundings in one step; a frame at rest, which is that of odometry at the start.
 
     Attributes:
@@ -55,8 +55,8 @@ class Scene:
     tracks: Array
 
 
-class Surroundings:
-    """Makes a `Scene` of each observation; made and reset together with a planner."""
+class PlannerSurroundings:
+    """Makes a `PlannerScene` of each observation; made and reset together with a planner."""
 
     def __init__(self, spec: RungSpec) -> None:
         self._spec = spec
@@ -80,7 +80,7 @@ class Surroundings:
             self._motion.velocities(t, Pose(0.0, 0.0, 0.0), np.ones((1, 2)))
         self._motion = PeopleMotion(_LOOK_BACK)
 
-    def see(self, obs: Observation) -> Scene:
+    def see(self, obs: Observation) -> PlannerScene:
         """Return the surroundings at the time of an observation."""
         points = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
         pose = self._pose(obs, points)
@@ -92,7 +92,7 @@ class Surroundings:
         people = np.column_stack([tracks[:, 1:], self._radii(obs, len(tracks))])
         seen = others(points @ to_world + here, people, _OWN)
         near = nearest_per_sector((seen - here) @ to_world.T, SECTORS, REACH)
-        return Scene(
+        return PlannerScene(
             pose=pose, twist=(*obs.twist, obs.vy), people=people, seen=seen,
             points=near @ to_world + here, tracks=tracks,
         )  # fmt: skip
@@ -135,7 +135,7 @@ def in_base(pose: Pose, places: Array) -> Array:
     return np.asarray((places - (pose.x, pose.y)) @ np.array([[c, -s], [s, c]]))
 
 
-def people_near(scene: Scene, speed: float, horizon: float, most: int) -> Array:
+def people_near(scene: PlannerScene, speed: float, horizon: float, most: int) -> Array:
     """Return the people (N, 5) who can come near in time; of more than ``most`` the nearest.
 
     Args:

@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.plugin import Array, Observation, kernel
 from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner, velocity_of
-from crowdbot.plugins.planners.shared.surroundings_build import Scene
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene
 from crowdbot.plugins.planners.social_force.social_force import SocialForceSpec
 
 #: Time over which accelerations act, s; of the largest sum, m/s^2.
@@ -29,7 +29,7 @@ class SocialForce(VelocityPlanner):
         """Compile what is not compiled yet."""
         self._push(np.ones((1, 5)), np.ones((1, 2)), (0.0, 0.0), (1.0, 0.0))
 
-    def velocity(self, obs: Observation, scene: Scene, wish: Array) -> tuple[float, float]:
+    def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity after one step of acceleration, m/s."""
         own = velocity_of(scene)
         long = max(float(np.hypot(*wish)), 1e-9)

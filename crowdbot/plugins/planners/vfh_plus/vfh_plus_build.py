@@ -14,7 +14,7 @@ import numpy as np
 
 from crowdbot.plugin import Array, Mask, Observation, kernel
 from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner
-from crowdbot.plugins.planners.shared.surroundings_build import Scene
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene
 from crowdbot.plugins.planners.vfh_plus.vfh_plus import VfhPlusSpec
 
 #: Turning circles of a robot that turns on the spot at low speed have this radius at full speed, m.
@@ -39,7 +39,7 @@ class VfhPlus(VelocityPlanner):
         masked(np.ones((1, 3)), (0.0, 0.0, 0.0), 0.3, 0.25, self._open)
         self._open[:] = True
 
-    def velocity(self, obs: Observation, scene: Scene, wish: Array) -> tuple[float, float]:
+    def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity in the cheapest open direction, m/s; zero if all are closed."""
         spec, pose = self._spec, scene.pose
         discs = np.concatenate(
