@@ -40,7 +40,10 @@ class CheckedCacheFile(IndexDataCacheFile):
             data = _checked(self._index_path)
         except FileNotFoundError:
             return {}
-        version, stamp, overloads = pickle.loads(data)  # noqa: S301 - our own, see above
+        try:
+            version, stamp, overloads = pickle.loads(data)  # noqa: S301 - our own, see above
+        except (AttributeError, ImportError):  # it names a class that the source had before
+            return {}
         same = version == self._version and stamp == self._source_stamp
         return overloads if same else {}
 

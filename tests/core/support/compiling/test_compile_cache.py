@@ -45,6 +45,31 @@ def test_a_changed_callee_in_another_file_is_compiled_again(tmp_path: Path) -> N
     assert answers == [1, 22]
 
 
+RENAMED = (
+    "import crowdbot.core\n"
+    "from typing import NamedTuple\n"
+    "import kept\n"
+    "class {name}(NamedTuple):\n    x: float\n"
+    "kept.{name} = {name}; {name}.__module__ = 'kept'\n"
+    "print(kept.outer({name}({value}.0)))\n"
+)
+KEPT = "from numba import njit\n@njit(cache=True)\ndef outer(world):\n    return world.x\n"
+
+
+def test_a_class_that_was_renamed_is_compiled_again(tmp_path: Path) -> None:
+    """The index of compiled functions names classes of arguments, which may be gone."""
+    (tmp_path / "kept.py").write_text(KEPT)
+    answers = []
+    for name, value in (("World", 1), ("Other", 22)):
+        (tmp_path / "caller.py").write_text(RENAMED.format(name=name, value=value))
+        done = subprocess.run(
+            [sys.executable, "caller.py"], cwd=tmp_path, capture_output=True, text=True,
+            check=True, env=_environment(tmp_path / "kernels"),
+        )  # fmt: skip
+        answers.append(float(done.stdout))
+    assert answers == [1.0, 22.0]
+
+
 def _environment(kernels: Path) -> dict[str, str]:
     others = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_LOCATOR_CLASSES"}
     return {**others, "NUMBA_CACHE_DIR": str(kernels)}
