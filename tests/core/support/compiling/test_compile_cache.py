@@ -53,7 +53,10 @@ RENAMED = (
     "kept.{name} = {name}; {name}.__module__ = 'kept'\n"
     "print(kept.outer({name}({value}.0)))\n"
 )
-KEPT = "from numba import njit\n@njit(cache=True)\ndef outer(world):\n    return world.x\n"
+KEPT = (
+    "from crowdbot.core.support.compiling.compile import kernel\n"
+    "@kernel\ndef outer(world):\n    return world.x\n"
+)
 
 
 def test_a_class_that_was_renamed_is_compiled_again(tmp_path: Path) -> None:
