@@ -131,7 +131,10 @@ def _simulate(exchange: Exchange, setup: RunSetup, builts: Mapping[str, BuiltRun
 
 @contextmanager
 def own_stdout() -> Iterator[None]:
-    """Restore stdout, which the run redirects while the planner waits in its step."""
+    """Restore stdout, which the run redirects while the planner waits in its step.
+
+    It is read on entry, so the run must not go on before that.
+    """
     mine = sys.stdout
     try:
         yield

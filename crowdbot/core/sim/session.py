@@ -152,8 +152,9 @@ class Session:
             on_hang=None,
             on_begin=exchange.begin,
         )
-        self._thread = start_run(exchange, setup, builts)
-        return self._take()
+        with own_stdout():
+            self._thread = start_run(exchange, setup, builts)
+            return self._take()
 
     def reset(self, seed: int | None = None) -> Observation:
         """Begin the run of the only robot, as `reset_all`; its observation at t = 0.
@@ -184,8 +185,9 @@ class Session:
             raise InputError(f"the run has ended: {self.reason}; reset() begins another")
         checked = checked_commands(commands, self._going_on, self.robots)
         assert self._exchange is not None
-        self._exchange.answer(checked)
-        return self._take()
+        with own_stdout():
+            self._exchange.answer(checked)
+            return self._take()
 
     def step(self, command: CommandLike) -> Observation:
         """Give a command to the only robot, which is applied for one period of the planner.
@@ -369,8 +371,7 @@ class Session:
     def _take(self) -> dict[str, Observation]:
         """Return the run's next observation or end; raise its errors."""
         assert self._exchange is not None
-        with own_stdout():
-            answer = self._exchange.next()
+        answer = self._exchange.next()
         if isinstance(answer, BaseException):
             self._exchange = self._thread = None
             self._seen = {}

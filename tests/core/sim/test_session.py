@@ -17,7 +17,9 @@ import crowdbot
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.runs.provenance import trajectory_hash
+from crowdbot.core.sim.run_thread import Exchange
 from crowdbot.core.types.sensor import Pinhole
+from tests.waiting import wait_until
 
 
 @functools.cache
@@ -124,6 +126,24 @@ print(session.step((0.1, 0.0)).t)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "begun\n0.0625\n", "")
+
+
+def test_stdout_is_the_callers_however_fast_the_run_goes_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The run redirects stdout while its planner waits, which may be before the session waits."""
+    answer = Exchange.answer
+
+    def slowly(self: Exchange, commands: Any) -> None:
+        answer(self, commands)
+        wait_until(lambda: sys.stdout is sys.stderr)
+
+    monkeypatch.setattr(Exchange, "answer", slowly)
+    mine = sys.stdout
+    with crowdbot.Session(scenario(), sensors=[]) as session:
+        session.reset()
+        session.step((0.1, 0.0))
+        assert sys.stdout is mine
 
 
 class FakeRenderer:
