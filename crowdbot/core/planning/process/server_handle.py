@@ -77,7 +77,7 @@ class ServerHandle:
         self._owner = os.getpid()
         self._imported: set[str] = set()
         self._unanswered = 0
-        self._folder = ""
+        self._folder, self._planner = "", 0
 
     def has_imported(self, modules: Sequence[str]) -> None:
         """Make sure that modules are imported before the next planner is forked."""
@@ -97,8 +97,8 @@ class ServerHandle:
         answer = self._answer(_IMPORTS)
         if "error" in answer:
             raise PlannerError(answer["error"])
-        self._folder = str(answer["folder"])
-        return int(answer["pid"])
+        self._folder, self._planner = str(answer["folder"]), int(answer["pid"])
+        return self._planner
 
     def end(self, *, grace: float, ask: bool = False) -> dict[str, Any]:
         """End the planner and everything it left; return how its process ended.
@@ -113,7 +113,9 @@ class ServerHandle:
         self._send({"do": "end", "grace": grace, "ask": ask})
         with contextlib.suppress(OSError):
             os.killpg(self._process.pid, signal.SIGCONT)  # a planner may have stopped them
-        return self._answer(grace + _GOES)
+        answer = self._answer(grace + _GOES)
+        self._planner = 0  # the server has waited for it: the number may be another's
+        return answer
 
     def sweep(self) -> None:
         """Kill what a server and its guard left that were both killed."""
@@ -130,7 +132,7 @@ class ServerHandle:
             try:
                 self._process.wait(_GOES)
             except subprocess.TimeoutExpired:
-                self._process.kill()
+                self._kill()
                 self._process.wait()
 
     @property
@@ -142,6 +144,17 @@ class ServerHandle:
     def is_alive(self) -> bool:
         """Return True if it runs and was started by this process."""
         return os.getpid() == self._owner and self._process.poll() is None
+
+    def _kill(self) -> None:
+        """Kill the planner, then guard and server, which a planner may have stopped.
+
+        The planner goes first: its parent would be this process, which it could stop as well. A
+        server that outlives its guard keeps the connection open.
+        """
+        for group in (self._planner, self._process.pid):
+            if group:
+                with contextlib.suppress(OSError):
+                    os.killpg(group, signal.SIGKILL)
 
     def _send(self, request: Mapping[str, Any], descriptors: Sequence[int] = ()) -> None:
         raw = pickle.dumps(dict(request))
@@ -166,16 +179,11 @@ class ServerHandle:
         comes.register(self._line, select.POLLIN)
         while not raw.endswith(b"\n"):
             more = b""
-            left = max(0.0, until - time.monotonic())
-            if not comes.poll(1000.0 * left) or not left:
-                self._process.kill()
-            try:
-                more = self._line.recv(1, socket.MSG_DONTWAIT)
-            except BlockingIOError:  # killed a moment ago, or another thread was faster
-                time.sleep(0.001)
-                continue
-            except OSError:
-                pass
+            if comes.poll(1000.0 * max(0.0, until - time.monotonic())):
+                with contextlib.suppress(OSError):
+                    more = self._line.recv(1)
+            else:
+                self._kill()
             if not more:
                 raise ServerGone("the process that starts planners was ended")
             raw += more
