@@ -24,7 +24,7 @@ import sys
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 PLANNER = """
@@ -113,9 +113,8 @@ def kill_parents(
 def _stamps(out: Path) -> dict[str, tuple[int, int]]:
     """Complete run -> its record's inode and time of writing: who makes it again changes them."""
     found = {}
-    for name in outcome(out):
-        (record,) = out.glob(f"challenge-2020*/{name}/run.json")
-        state = record.stat()
+    for name, file in _complete(out):
+        state = file.stat()
         found[name] = state.st_ino, state.st_mtime_ns
     return found
 
@@ -152,7 +151,7 @@ def kill_parts(
 
 def _told(out: Path, planners: bool, code: int) -> list[str]:
     """What a campaign with kills does not say as it should."""
-    records = [json.loads(f.read_text()) for f in out.glob("challenge-2020*/*/*/*/run.json")]
+    records = [json.loads(f.read_text()) for f in out.glob("challenge-2020/*/*/*/run.json")]
     failed = [r for r in records if r["status"] == "planner_failed"]
     mute = [r["reason"] for r in failed if "SIGKILL" not in r["reason"]]
     wrong = [f"reason of a killed planner: {reason}" for reason in mute]
@@ -240,14 +239,19 @@ def _start(
 def outcome(out: Path) -> Runs:
     """Run -> trajectory hash and scores."""
     found = {}
-    for file in sorted(out.glob("challenge-2020*/*/*/*/run.json")):
-        if file.parent.name.endswith(".partial"):
-            continue
+    for name, file in _complete(out):
         lines = (file.parent / "scores.csv").read_text().splitlines()
         scores = "\n".join(line for line in lines if "planner_time" not in line)
-        name = "/".join(file.parent.relative_to(out).parts[1:])  # --set changes the first folder
         found[name] = (json.loads(file.read_text())["hashes"]["trajectory"], scores)
     return found
+
+
+def _complete(out: Path) -> Iterator[tuple[str, Path]]:
+    """Yield name and record of each complete run; a folder may be named otherwise by versions."""
+    for file in sorted(out.glob("challenge-2020/*/*/*/run.json")):
+        if not file.parent.name.endswith(".partial"):
+            scenario = json.loads(file.read_text())["scenario"]
+            yield "/".join((scenario, *file.parent.parts[-2:])), file
 
 
 if __name__ == "__main__":

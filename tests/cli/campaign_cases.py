@@ -36,7 +36,7 @@ def run(out: Path, *more: str, timeout: float = AT_MOST) -> tuple[int, dict[str,
 def outcome(out: Path) -> dict[str, tuple[str, str]]:
     """Run -> trajectory hash, and the scores but for those of wall time."""
     found = {}
-    for record in sorted(out.glob("challenge-2020*/*/*/*/run.json")):
+    for record in sorted(out.glob("challenge-2020/*/*/*/run.json")):
         lines = (record.parent / "scores.csv").read_text().splitlines()
         scores = "\n".join(line for line in lines if "planner_time" not in line)
         document = json.loads(record.read_text())

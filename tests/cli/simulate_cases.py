@@ -51,7 +51,7 @@ class Shell:
         return Answer(code, shown.out, shown.err)
 
     def runs(self) -> list[Path]:
-        return sorted(p.parent for p in self.out.glob("challenge-2020*/**/run.json"))
+        return sorted(p.parent for p in self.out.glob("challenge-2020/**/run.json"))
 
     def leftovers(self) -> list[str]:
         """Everything that is not under a final name."""

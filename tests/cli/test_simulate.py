@@ -34,20 +34,20 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
         )
         == 0
     )
-    (record,) = out.glob("challenge-2020+*/**/run.json")
+    (record,) = out.glob("challenge-2020/*+*/**/run.json")
     return record.parent
 
 
 def test_the_run_directory_is_whole(whole: Path) -> None:
     assert {p.name for p in whole.iterdir()} == FILES
     parts = whole.parts[-4:]
-    assert parts[0] == "challenge-2020+time_limit=3_s"
-    assert parts[1].startswith(f"{ID}+")
+    assert parts[0] == "challenge-2020"
+    assert parts[1].startswith(f"{ID}+time_limit=3_s-")
     assert parts[2:] == ("dwa", "seed-0")
     record = json.loads((whole / "run.json").read_text())
     assert record["status"] == "timeout"
     assert record["sim_time"] == 3.0
-    assert record["scenario"] == parts[1]
+    assert record["scenario"] == f"{ID}+{parts[1].rpartition('-')[2]}"
     assert record["planner"]["kind"] == "dwa"
     assert record["planner"]["horizon" if "horizon" in record["planner"] else "name"]
     assert record["seed"] == 0
@@ -236,7 +236,7 @@ def test_runs_at_once_are_the_same_run(tmp_path: Path) -> None:
     assert [a.code for a in answers] == [0, 0, 0]
     assert len({a.json["hashes"]["trajectory"] for a in answers}) == 1
     for folder in folders[1:]:
-        (record,) = folder.glob("challenge-2020+*/**/run.json")
+        (record,) = folder.glob("challenge-2020/*+*/**/run.json")
         assert {p.name for p in record.parent.iterdir()} == FILES
         Recording(record.parent / "run.mcap").trajectories()
         assert len(list((folder / "references").iterdir())) == 2

@@ -231,7 +231,7 @@ def _wait_for(out: Path, size: int, running: subprocess.Popen[str]) -> Path:
     found: list[Path] = []
 
     def grown() -> bool:
-        files = out.glob("challenge-2020+*/**/run.mcap")
+        files = out.glob("challenge-2020/*+*/**/run.mcap")
         found.extend(file for file in files if file.stat().st_size > size)
         return bool(found)
 

@@ -110,7 +110,7 @@ def pack(
 # ------------------------------------------------------------------------ finding
 def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
     """Return complete runs of the planner, in the suite's order."""
-    base = submission.root / expansion.folder
+    base = submission.root / expansion.suite
     labels = {p.parent.name for p in base.glob("*/*/seed-*") if p.is_dir()}
     if submission.planner not in labels:
         if not labels:
@@ -144,7 +144,7 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
 
 def other_seeds(submission: Submission, expansion: Expansion) -> list[int]:
     """Return seeds of existing runs that the edition does not include."""
-    base = submission.root / expansion.folder
+    base = submission.root / expansion.suite
     names = {p.name for p in base.glob(f"*/{submission.planner}/seed-*") if p.is_dir()}
     numbers = {n.removeprefix("seed-") for n in names}
     return sorted({int(n) for n in numbers if n.isdecimal()} - set(expansion.run_seeds))

@@ -63,7 +63,7 @@ class SelectedSuite:
     @property
     def name(self) -> str:
         """Return the folder of its runs."""
-        return self.expansion.folder
+        return self.expansion.suite
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

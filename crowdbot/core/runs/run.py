@@ -185,11 +185,11 @@ class Request:
         Raises:
             InputError: a name leads out of the root, or is reserved by crowdbot.
         """
-        suite = self.entry.folder
-        for name in (suite, self.scenario.id, self.choice.label):
+        scenario = self.entry.folder(self.scenario.id)
+        for name in (self.entry.suite, scenario, self.choice.label):
             if why := path_problem(name):
                 raise InputError(f"no folder can be called '{name[:80]}': it {why}")
-        return self.out / suite / self.scenario.id / self.choice.label / f"seed-{self.seed}"
+        return self.out / scenario / self.choice.label / f"seed-{self.seed}"
 
 
 def read_references(paths: Mapping[str, Path]) -> References:

@@ -86,11 +86,6 @@ class Expansion:
         """Return the suite's name in records; all documents with a single scenario share one."""
         return NO_SUITE if self.single else self.suite_id
 
-    @property
-    def folder(self) -> str:
-        """Return the folder of its runs."""
-        return SuiteEntry(suite=self.suite, altered=self.altered).folder
-
     def entry(self, scenario: Scenario) -> SuiteEntry:
         """Return a scenario's place in this suite."""
         return SuiteEntry(

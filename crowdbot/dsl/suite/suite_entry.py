@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from crowdbot.dsl.suite.axis_words import AxisWords
 
-#: Longest readable part of a folder's suffix; what is longer ends with a hash.
+#: Longest readable part of a folder's suffix, bytes.
 _LONGEST = 60
 #: Suite of all documents with a single scenario.
 NO_SUITE = "scenarios"
@@ -35,10 +35,15 @@ class SuiteEntry:
     position: int = 0
     altered: Sequence[str] = ()
 
-    @property
-    def folder(self) -> str:
-        """First folder below the root of runs; altered scenarios have one of their own."""
-        return self.suite + altered_suffix(self.altered)
+    def folder(self, scenario: str) -> str:
+        """Return the folder of a scenario's runs below the root; its name says what was altered.
+
+        Args:
+            scenario: its id, with the digest of what was altered.
+        """
+        digest = altered_digest(scenario) if self.altered else ""
+        name = scenario.replace(digest, altered_suffix(self.altered), 1) if digest else scenario
+        return f"{self.suite}/{name}"
 
 
 #: The entry of a scenario that comes from no suite.
@@ -46,18 +51,16 @@ IN_NO_SUITE = SuiteEntry()
 
 
 def altered_suffix(overrides: Sequence[str]) -> str:
-    """Return ``+`` and the changes in words for a folder's name; empty without changes.
+    """Return ``+``, the changes in words, and their digest; empty without changes.
 
-    Only the last part of each key is shown: ``+time_limit=2``.
+    Only the last part of each key is shown: ``+time_limit=2-1f3a``.
     """
     if not overrides:
         return ""
     shown = [text.partition("=") for text in overrides]
     words = [f"{key.strip().rpartition('.')[2]}={value.strip()}" for key, _, value in shown]
     name = "+" + "+".join(_UNSAFE.sub("_", word) for word in words)
-    if len(name.encode()) <= _LONGEST:
-        return name
-    kept = name.encode()[: _LONGEST - 5].decode(errors="ignore")
+    kept = name.encode()[:_LONGEST].decode(errors="ignore")
     return f"{kept}-{digest_of(overrides)}"
 
 

@@ -83,11 +83,11 @@ def make_runs(
     people = {s.id: locked[s.id].realisation if locked else "none" for s in expansion.scenarios}
     for number, scenario in enumerate(expansion.scenarios):
         for seed in seeds:
-            folder = root / expansion.folder / scenario.id / choice.label / f"seed-{seed}"
+            folder = root / expansion.suite / scenario.id / choice.label / f"seed-{seed}"
             folder.mkdir(parents=True)
             spec = spec_of(scenario, registry())
             identity: dict[str, Any] = {
-                "scenario": scenario.id, "suite": expansion.folder,
+                "scenario": scenario.id, "suite": expansion.suite,
                 "planner": {**choice.spec_dump, "name": choice.name, "label": choice.label},
                 "seed": seed,
                 "hashes": {"spec": spec,
