@@ -17,8 +17,9 @@ TINY = ["challenge-2020", *_ALL, "--set",
 
 
 def start(out: Path, *more: str) -> subprocess.Popen[str]:
-    """The command in a process group of its own; scenarios of ``--only`` replace ours."""
-    tiny = [word for word in TINY if word not in _ALL] if "--only" in more else TINY
+    """The command in a process group of its own; ``--only`` and ``--floors`` replace ours."""
+    replaced = [*_ALL] * ("--only" in more) + ["--no-floors"] * ("--floors" in more)
+    tiny = [word for word in TINY if word not in replaced]
     return subprocess.Popen(
         [sys.executable, "-m", "crowdbot", "campaign", *tiny, "--out", str(out), *more],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,

@@ -194,8 +194,8 @@ def test_the_next_scenario_begins(tmp_path: Path) -> None:
     first, second = dict.fromkeys(seen)
     assert first.startswith(ID.split("+")[0])
     assert record["scenario"] == second
-    partial = list(tmp_path.glob("*/*/live/*.partial"))
-    assert [p.parent.parent.name for p in partial] == [first]
+    (partial,) = tmp_path.glob("*/*/live/*.partial")
+    assert partial.parent.parent.name == first.replace("+", "+time_limit=0.5_s-")
 
 
 def test_who_disturbs_changes_nothing(served: Served) -> None:
