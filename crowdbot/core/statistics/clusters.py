@@ -11,31 +11,22 @@ Otherwise conditions and people cannot be separated, and both count as random.
 
 from __future__ import annotations
 
-import hashlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.statistics.estimate import Estimate
-from crowdbot.dsl.scenario.seeds import stream_seed
 
 Floats = NDArray[np.float64]
-#: A statistic for many weighted samples at once: weights (B, n) -> values (B,).
-Statistic = Callable[[Floats], Floats]
-
 #: Smallest and largest possible value.
 Bounds = tuple[float, float]
 UNBOUNDED: Bounds = (-math.inf, math.inf)
 
-#: Number of bootstrap resamples.
-RESAMPLES = 2000
 _ROUNDING = 1e-12
-_AT_ONCE = 2_000_000  # number of weights kept in memory at a time
 
 ONE_DRAW = "one crowd draw: its chance cannot be told from a difference"
 NO_RUNS = "no run has a value"
@@ -228,95 +219,3 @@ def quantile_t(p: float, freedom: float) -> float:
     from scipy.special import stdtrit
 
     return float(stdtrit(freedom, p))
-
-
-# --------------------------------------------------------------------- bootstrap
-def bootstrap(
-    statistic: Statistic, clusters: Clusters, level: float = 0.95, *, studentised: bool = True
-) -> Estimate:
-    """Return the BCa interval of a statistic, resampling whole draws within each stratum.
-
-    Bias and acceleration as in Efron (1987), the acceleration from a jackknife over draws.
-    ``studentised`` takes quantiles of t with the degrees of freedom of the draws, stretched by
-    sqrt(draws / degrees of freedom), instead of normal quantiles (Hesterberg 2015, "expanded"):
-    with few draws the plain interval is too narrow.
-
-    Args:
-        statistic: a function of weighted samples; a weight is how often a run is in the sample.
-        clusters: clusters of the n runs.
-        level: confidence level of the interval.
-        studentised: True to correct for few draws.
-    """
-    value = float(statistic(np.ones((1, len(clusters.index))))[0])
-    if clusters.count < 2:
-        return Estimate(value=value, reason=ONE_DRAW)
-    found = _resampled(statistic, clusters)
-    left_out = statistic(_without_one(clusters)[:, clusters.index])
-    found, left_out = found[np.isfinite(found)], left_out[np.isfinite(left_out)]
-    if not len(found) or np.ptp(found) <= 1e-12 * float(np.abs(found).max()):
-        return Estimate(value=value, low=value, high=value, reason=NO_SPREAD)
-    tails = [_bca_tail(p, value, found, left_out, clusters, studentised)
-             for p in (0.5 - level / 2, 0.5 + level / 2)]  # fmt: skip
-    low, high = np.quantile(found, tails)
-    return Estimate(value=value, low=float(low), high=float(high))
-
-
-def _resampled(statistic: Statistic, clusters: Clusters) -> Floats:
-    times = _times(clusters.names, tuple(clusters.stratum.tolist()))
-    rows = max(1, _AT_ONCE // max(1, len(clusters.index)))
-    parts = [times[i : i + rows] for i in range(0, len(times), rows)]
-    return np.concatenate([statistic(part[:, clusters.index]) for part in parts])
-
-
-@lru_cache(maxsize=64)
-def _times(names: tuple[str, ...], stratum: tuple[int, ...]) -> Floats:
-    """Return how often each draw is in each resample, (RESAMPLES, count).
-
-    The random stream depends only on the draws' names, not on the order of runs or other scores.
-    """
-    key = hashlib.sha256("\0".join(names).encode()).hexdigest()
-    rng = np.random.Generator(np.random.PCG64(stream_seed(0, key, "statistics.bootstrap")))
-    times = np.empty((RESAMPLES, len(names)))
-    for one in dict.fromkeys(stratum):  # in the order of the draws' names
-        there = np.flatnonzero(np.asarray(stratum) == one)
-        share = np.full(len(there), 1 / len(there))
-        times[:, there] = rng.multinomial(len(there), share, size=RESAMPLES)
-    return times
-
-
-def _without_one(clusters: Clusters) -> Floats:
-    """Return (count, count) weights with one draw left out. Others of its stratum replace it."""
-    same = clusters.stratum[:, np.newaxis] == clusters.stratum
-    if clusters.strata == 1:
-        return 1.0 - np.eye(clusters.count)
-    weights = np.where(same, (clusters.alike / (clusters.alike - 1.0))[:, np.newaxis], 1.0)
-    np.fill_diagonal(weights, 0.0)
-    return weights
-
-
-def _bca_tail(
-    p: float, value: float, found: Floats, left_out: Floats, draws: Clusters, studentised: bool
-) -> float:
-    from scipy.special import ndtr, ndtri
-
-    below = (np.count_nonzero(found < value) + np.count_nonzero(found <= value)) / 2
-    bias = float(ndtri(np.clip(below / len(found), 1 / len(found), 1 - 1 / len(found))))
-    centred = left_out.mean() - left_out
-    centred = centred / (float(np.abs(centred).max()) or 1.0)  # cubes of large numbers overflow
-    spread = float((centred**2).sum()) ** 1.5
-    bend = float((centred**3).sum()) / (6 * spread) if spread > 0 else 0.0
-    z = float(ndtri(p))
-    if studentised:
-        z = quantile_t(p, draws.freedom) * math.sqrt(draws.count / draws.freedom)
-    return float(ndtr(bias + (bias + z) / max(1 - bend * (bias + z), 0.1)))
-
-
-def weighted(function: Callable[..., Any], *arrays: Floats) -> Statistic:
-    """Build a statistic that depends only on weighted sums of some arrays."""
-    stacked = np.column_stack([*arrays, np.ones(len(arrays[0]))])
-
-    def statistic(weights: Floats) -> Floats:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(function(*(weights @ stacked).T), dtype=float)
-
-    return statistic

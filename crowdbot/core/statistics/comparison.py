@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import crowdbot.core.statistics.clusters as c
 from crowdbot.core.statistics.clusters import Bounds, Clusters, Floats
+from crowdbot.core.statistics.effect_size import effect_size
 from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
 from crowdbot.core.statistics.judged import Judged, judge, utility
 from crowdbot.core.statistics.sign_flip import least_p
@@ -220,7 +221,7 @@ def _differences(
         head,
         difference=c.mean(sign * gains, some, level, bounds),
         bounds=open_ends,
-        standardised=_standardised(gains, some, level),
+        standardised=effect_size(gains, some, level),
         detectable=None if not error else error * reach(some.freedom, level),
     )
 
@@ -232,26 +233,6 @@ def _finite(number: float) -> float | None:
 def reach(freedom: int, level: float) -> float:
     """Return the standard errors that a difference needs for the power `_POWER`."""
     return c.quantile_t(0.5 + level / 2, freedom) + c.quantile_t(_POWER, freedom)
-
-
-def _standardised(gains: Floats, groups: Clusters, level: float) -> Estimate:
-    if len(gains) < 2:
-        return Estimate(reason="one pair: no spread")
-    if np.ptp(gains) <= 1e-12 * float(np.abs(gains).max()):
-        return Estimate(reason="all differences are equal")
-    gains = gains / float(np.abs(gains).max())  # squares of large numbers overflow
-    centre, scale = float(gains.mean()), float(gains.std())
-    scaled = (gains - centre) / scale  # squares of large numbers would cancel
-
-    def effect(first: Floats, second: Floats, count: Floats) -> Floats:
-        spread = np.sqrt(second / count - (first / count) ** 2)
-        return np.asarray((first / count + centre / scale) / spread)
-
-    unbiased = math.sqrt((len(gains) - 1) / len(gains))
-    found = c.bootstrap(c.weighted(effect, scaled, scaled**2), groups, level)
-    ends = (None if x is None else x * unbiased for x in (found.value, found.low, found.high))
-    value, low, high = ends
-    return Estimate(value=value, low=low, high=high, reason=found.reason)
 
 
 def _ranked(found: Comparison, pair: _Pair, groups: Clusters, level: float) -> Comparison:

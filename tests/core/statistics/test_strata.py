@@ -82,19 +82,6 @@ def test_intervals_cover_what_other_people_would_give(shared: bool, draws: int) 
     assert 0.93 <= covered / times <= 0.97
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("shared", [False, True])
-def test_resampled_intervals_cover_as_well(shared: bool) -> None:
-    groups = crossed(9) if shared else nested(5)
-    rng, truth, times = np.random.default_rng(4), EFFECTS.mean(), 400
-    covered = 0
-    for _ in range(times):
-        sample = values(rng, shared=shared, draws=9 if shared else 5)
-        statistic = c.weighted(lambda total, n: total / n, sample)
-        covered += covers(c.bootstrap(statistic, groups), truth)
-    assert 0.92 <= covered / times <= 0.98  # a standard error is 1.1 %
-
-
 def covers(found: Estimate, truth: float) -> bool:
     assert found.low is not None
     assert found.high is not None

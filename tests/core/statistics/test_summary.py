@@ -10,6 +10,7 @@ import pytest
 from crowdbot.core.results.results import Results
 from crowdbot.core.statistics import Table, clusters, headline_names, summarise
 from crowdbot.core.statistics.clusters import Clusters
+from crowdbot.core.statistics.effect_size import effect_size
 from crowdbot.core.statistics.sign_flip import holm, p_value
 from tests.core.statistics.made_up_results import (
     AXES,
@@ -76,7 +77,7 @@ def test_intervals_cover_with_shared_draws(spread: tuple[float, float]) -> None:
         values = spread[0] * rng.normal(size=18)[groups.index] + spread[1] * rng.normal(size=162)
         for i, found in enumerate((
             clusters.mean(values, groups),
-            clusters.bootstrap(clusters.weighted(lambda a, n: a / n, values), groups),
+            effect_size(values, groups),
             clusters.mean(0.5 + np.sign(values) / 2, groups),
         )):  # fmt: skip
             truth = 0.5 if i == 2 else 0.0
