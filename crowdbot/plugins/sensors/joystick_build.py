@@ -44,7 +44,7 @@ class Joystick:
             rate=spec.rate,
             shape=(2,),
             ros_type="geometry_msgs/msg/TwistStamped",
-            message=SensorMessage(fields=_twist, topic="cmd_vel"),
+            message=SensorMessage(fields=twist, topic="cmd_vel"),
             memory=4,
             random=spec.noise > 0.0 and not self._recorded,
             sees=False,
@@ -92,7 +92,7 @@ class Joystick:
         memory[STARTED], memory[TIME] = 1.0, t
 
 
-def _twist(values: Array) -> dict[str, Any]:
+def twist(values: Array) -> dict[str, Any]:
     """Return the fields of a TwistStamped of a reading."""
     v, w = values.tolist()
     return {

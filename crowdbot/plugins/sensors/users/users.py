@@ -1,0 +1,173 @@
+"""Synthetic users: each steers for the goal and past people, and has a fault of its own."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from annotated_types import Ge, Gt, Le
+from pydantic import Field
+
+from crowdbot.plugin import (
+    Angle,
+    Component,
+    Length,
+    NonNegativeDuration,
+    NonNegativeLength,
+    PositiveAngle,
+    PositiveAngularSpeed,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveSpeed,
+    SensorSpec,
+)
+
+#: A position x, y, m.
+Goal = Annotated[tuple[Length, Length], Field(strict=False)]
+Share = Annotated[float, Ge(0), Le(1)]
+#: A user's longest delay; what the stick did meanwhile is remembered.
+Delay = Annotated[NonNegativeDuration, Le(3.0)]
+
+_BUILD = "crowdbot.plugins.sensors.users.users_build:build"
+
+
+class UserSpec(SensorSpec):
+    """Reading: v (m/s), w (rad/s), the velocity that a synthetic user asks for.
+
+    Direction by the steering dynamics of Fajen and Warren, speed by the gap ahead (Moussaïd).
+    """
+
+    rate: PositiveFrequency = Field(default=16.0, le=128, description="Readings per second, Hz.")
+    goal: Goal | None = Field(
+        default=None, description="Where the user wants to go, m; unset: the task's goal."
+    )
+    max_speed: PositiveSpeed | None = Field(
+        default=None, description="Speed of the stick fully ahead, m/s; unset: the robot's."
+    )
+    max_yaw_rate: PositiveAngularSpeed | None = Field(
+        default=None, description="Yaw rate of the stick fully aside, rad/s; unset: the robot's."
+    )
+    sight: NonNegativeLength = Field(
+        default=4.0, description="People and walls nearer than this count, m; 0: it sees none."
+    )
+    gap_time: PositiveDuration = Field(
+        default=0.5, description="It drives no faster than the gap ahead in this time, s."
+    )
+    slow_distance: PositiveLength = Field(
+        default=1.5, description="Nearer to the goal it slows down, m."
+    )
+    noise: Share = Field(
+        default=0.0, description="Standard deviation of the hand, a fraction of full deflection."
+    )
+    proportional_noise: Share = Field(
+        default=0.0, description="The same, as a fraction of the deflection."
+    )
+    noise_time: PositiveDuration = Field(
+        default=0.3, description="Correlation time of the hand's error, s."
+    )
+    delay: Delay = Field(default=0.0, description="From seeing to the stick's deflection, s.")
+    bias: Angle = Field(
+        default=0.0, description="All directions seem turned this far to the left, rad."
+    )
+
+
+class GoalDirectedUserSpec(UserSpec):
+    """A user without faults, the yardstick for the others."""
+
+    kind: Literal["goal_directed_user"] = "goal_directed_user"
+
+
+class NoisyUserSpec(UserSpec):
+    """A user with a shaky hand."""
+
+    kind: Literal["noisy_user"] = "noisy_user"
+    noise: Share = Field(
+        default=0.2, description="Standard deviation of the hand, a fraction of full deflection."
+    )
+    proportional_noise: Share = Field(
+        default=0.2, description="The same, as a fraction of the deflection."
+    )
+
+
+class DelayedUserSpec(UserSpec):
+    """A user who reacts late, or drives over a slow line."""
+
+    kind: Literal["delayed_user"] = "delayed_user"
+    delay: Delay = Field(default=0.6, description="From seeing to the stick's deflection, s.")
+
+
+class BiasedUserSpec(UserSpec):
+    """A user whose straight ahead is not the robot's, as in spatial neglect."""
+
+    kind: Literal["biased_user"] = "biased_user"
+    bias: Angle = Field(
+        default=0.2618, description="All directions seem turned this far to the left, rad."
+    )
+
+
+class OneSwitchUserSpec(UserSpec):
+    """A user with one switch: marks go round, a press takes the marked one, the next stops.
+
+    The marks are ahead, left, right; while the robot stands they follow each other every
+    `scan_period`. It turns for the goal, and waits for people.
+    """
+
+    kind: Literal["one_switch_user"] = "one_switch_user"
+    scan_period: PositiveDuration = Field(
+        default=1.0, description="Each mark is lit for this long, s."
+    )
+    reaction: PositiveDuration = Field(
+        default=0.65, description="From the reason for a press to the press, mean, s."
+    )
+    reaction_spread: Share = Field(
+        default=0.2, description="Standard deviation of the reaction, a fraction of its mean."
+    )
+    tolerance: PositiveAngle = Field(
+        default=0.2618, description="The goal may be this far off the heading, rad."
+    )
+    deflection: Annotated[float, Gt(0), Le(1)] = Field(
+        default=0.5, description="Deflection of a stick that each mark stands for."
+    )
+
+
+class FatiguedUserSpec(UserSpec):
+    """A user who has driven for long: shakier, later, and absent now and then.
+
+    Tiredness rises as 1 - exp(-time / `tiring_time`); its effects are those at full tiredness.
+    """
+
+    kind: Literal["fatigued_user"] = "fatigued_user"
+    time_on_task: NonNegativeDuration = Field(
+        default=1800.0, description="Time for which it has driven when the run begins, s."
+    )
+    tiring_time: PositiveDuration = Field(
+        default=900.0, description="After this time it has reached 63 % of its tiredness, s."
+    )
+    noise: Share = Field(
+        default=0.08, description="Standard deviation of a rested hand, a fraction of full."
+    )
+    tired_noise: Annotated[float, Ge(1), Le(10)] = Field(
+        default=2.0, description="Times as much noise when tired."
+    )
+    delay: Delay = Field(default=0.25, description="Delay of the rested user, s.")
+    tired_delay: Annotated[NonNegativeDuration, Le(3.0)] = Field(
+        default=0.25, description="Additional delay when tired, s."
+    )
+    lapses: Annotated[float, Ge(0), Le(1)] = Field(
+        default=0.05, description="Lapses per second when tired, 1/s: the stick stays as it is."
+    )
+    lapse_time: PositiveDuration = Field(default=1.0, description="Length of a lapse, s.")
+
+
+def _user(spec: type[UserSpec], summary: str, *more: dict[str, Any]) -> Component[Any]:
+    return Component(spec=spec, build=_BUILD, summary=summary, examples=({}, *more))
+
+
+GOAL_DIRECTED_USER = _user(
+    GoalDirectedUserSpec, "synthetic user: to the goal, past people", {"sight": 0.0}
+)
+NOISY_USER = _user(NoisyUserSpec, "synthetic user with a shaky hand")
+DELAYED_USER = _user(DelayedUserSpec, "synthetic user who reacts late", {"delay": 1.0})
+BIASED_USER = _user(BiasedUserSpec, "synthetic user whose straight ahead is aside")
+ONE_SWITCH_USER = _user(OneSwitchUserSpec, "synthetic user with a single switch")
+FATIGUED_USER = _user(FatiguedUserSpec, "synthetic user who tires: shaky, late, absent")
