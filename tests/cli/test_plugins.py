@@ -46,7 +46,7 @@ def test_show(capsys: Captured) -> None:
     assert "crowdbot.plugins.sensors.lidar2d_build:build" in shown
     assert "kind: lidar2d" in shown
     rows = {line.split()[0]: line.split() for line in shown.splitlines() if line.strip()}
-    assert rows["rate"][:4] == ["rate", "number", "Hz", "16"]
+    assert " ".join(rows["rate"][:9]) == "rate number > 0 and ≤ 128 Hz 16"
     assert rows["mount.yaw"][2] == "rad"
 
 

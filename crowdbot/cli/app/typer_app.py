@@ -13,6 +13,7 @@ from typer.main import get_command
 
 from crowdbot.cli.app.command_names import command_groups, command_names
 from crowdbot.cli.app.complete import offer
+from crowdbot.cli.app.folded_help import fold_common
 from crowdbot.cli.app.given_once import refuse_repetition
 from crowdbot.errors import did_you_mean, nearest
 
@@ -72,6 +73,7 @@ def load(name: str) -> Any:
         taken = {text for param in one.params for text in param.opts}
         one.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
         refuse_repetition(one)
+        fold_common(one)
         for param in one.params:
             if completes := offer(param.name):
                 param._custom_shell_complete = completes

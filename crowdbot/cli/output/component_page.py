@@ -8,6 +8,7 @@ from importlib import metadata
 from typing import Any
 
 from crowdbot.cli.output.plugin_table import table
+from crowdbot.cli.output.type_words import default_words, type_words
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.spec.component import Component
@@ -57,7 +58,7 @@ def as_text(component: Component[Any], registry: Registry) -> str:
     if label := about.get("label"):
         lines += [f"{label['symbol']} in {label['unit'] or '1'}, better: {label['better']}"]
         lines += [f"variants: {' '.join(label['variants'])}"]
-    rows = list(_fields(component.spec))
+    rows = list(_fields(component.spec, words=True))
     lines += ["", table([_FIELDS, *rows]) if rows else "no fields"]
     example = to_yaml(about["example"]).splitlines()
     return "\n".join([*lines, "", "example:", *(f"  {line}" for line in example)])
@@ -104,8 +105,14 @@ def _label(metric: MetricComponent[Any]) -> dict[str, Any]:
     }
 
 
-def _fields(model: Any, prefix: str = "") -> Iterator[list[str]]:
-    """Yield rows of name, type, unit, default and description; maps of fields are followed."""
+def _fields(model: Any, prefix: str = "", *, words: bool = False) -> Iterator[list[str]]:
+    """Yield rows of name, type, unit, default and description; maps of fields are followed.
+
+    Args:
+        model: the spec.
+        prefix: of all names.
+        words: True for types and defaults in words, with limits.
+    """
     from crowdbot.dsl.checks.pydantic_errors import nested_model
     from crowdbot.dsl.spec.quantities import Quantity
 
@@ -115,10 +122,13 @@ def _fields(model: Any, prefix: str = "") -> Iterator[list[str]]:
         unit = next((m.si_unit for m in info.metadata if isinstance(m, Quantity)), "")
         inner = nested_model(info.annotation)
         if inner is not None:
-            yield from _fields(inner, f"{prefix}{name}.")
+            yield from _fields(inner, f"{prefix}{name}.", words=words)
             continue
-        default = "required" if info.is_required() else _short(info.default)
+        shown = default_words if words else _short
+        default = "required" if info.is_required() else shown(info.default)
         kind = "number" if info.annotation is float else _type_name(info.annotation)
+        if words:
+            kind = type_words(info.annotation, tuple(info.metadata))
         yield [f"{prefix}{name}", kind, unit, default, info.description or ""]
 
 

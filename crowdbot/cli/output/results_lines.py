@@ -18,7 +18,7 @@ _WIDTH = 240
 #: Width of name columns in terminals narrower than the second number.
 _NAME_WIDTH, _WHOLE_NAMES = 10, 80
 #: Counts of runs without a value.
-_WITHOUT = ("undefined", "censored", "failed")
+WITHOUT = ("undefined", "censored", "failed")
 
 
 def line_of(summary: GroupSummary) -> dict[str, Any]:
@@ -110,11 +110,11 @@ def with_interval(line: dict[str, Any]) -> dict[str, Any]:
 
 def _narrow(line: dict[str, Any]) -> dict[str, Any]:
     """Return a line of `line_of` with fewer columns, for narrow terminals."""
-    told = {"metric", "variant", "unit", "n", "median", "mean [95 %]", "mean of all", *_WITHOUT}
+    told = {"metric", "variant", "unit", "n", "median", "mean [95 %]", "mean of all", *WITHOUT}
     variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
     unit = "" if line["unit"] == "1" else f", {line['unit']}"
     cells = with_interval(line)
-    missing = [f"{line[name]} {name}" for name in _WITHOUT if line[name]]
+    missing = [f"{line[name]} {name}" for name in WITHOUT if line[name]]
     if cells["mean of all"]:
         missing.append(f"mean of all {cells['mean of all']}")
     return {

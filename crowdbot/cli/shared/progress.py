@@ -108,7 +108,19 @@ def _bars() -> Iterator[Callable[[Report], None]]:
 def _state(report: Report) -> str:
     distance = "" if report.distance is None else f"  {report.distance:5.1f} m to go"
     factor = f"{report.real_time_factor:5.1f} × real time"
-    return f"{report.t:6.1f} / {report.limit:.0f} s  {factor}{distance}"
+    left = f"  at most {clock(_left(report))} left" if report.real_time_factor > 0.0 else ""
+    return f"{report.t:6.1f} / {report.limit:.0f} s  {factor}{distance}{left}"
+
+
+def _left(report: Report) -> float:
+    """Return the wall time until the run's limit, s."""
+    return max(0.0, report.limit - report.t) / report.real_time_factor
+
+
+def clock(seconds: float) -> str:
+    """Return a time in minutes and seconds, such as 2:05."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d}"
 
 
 def _silent(report: Report) -> None:

@@ -29,6 +29,9 @@ RunSeed = Annotated[int, typer.Option(min=0, help="Run seed: sensor noise and pl
 OutRoot = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
 Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
 AsJson = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+AllScores = Annotated[
+    bool, typer.Option("--all", help="Print all scores, instead of the four that matter.")
+]
 MeshcatPort = Annotated[
     int | None,
     typer.Option(

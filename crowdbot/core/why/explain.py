@@ -14,7 +14,7 @@ from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.why.causes import Cause
 from crowdbot.core.why.decisive_moment import DecisiveMoment, decisive_moment
-from crowdbot.core.why.sentences import sentences
+from crowdbot.core.why.sentences import what_happened, what_was_seen
 from crowdbot.errors import InputError, UnknownNameError
 
 
@@ -72,12 +72,13 @@ class Explanation:
         }
 
 
-def explain(directory: Path, robot: str | None = None) -> Explanation:
+def explain(directory: Path, robot: str | None = None, *, sensors: bool = True) -> Explanation:
     """Explain one run.
 
     Args:
         directory: of a complete run.
         robot: which of several robots.
+        sensors: False to leave out what sensors saw and what the planner logged, which is quicker.
 
     Raises:
         InputError: there is no complete run, it has no robot, or several and none is named.
@@ -90,7 +91,9 @@ def explain(directory: Path, robot: str | None = None) -> Explanation:
         if run.robot is None:
             raise InputError(f"{directory}: there is no robot in this run")
         moment = decisive_moment(run, ended)
-        said = sentences(run, moment, recording.scans(robot=robot))
+        said = what_happened(run, moment)
+        if sensors:
+            said += what_was_seen(run, moment, recording.scans(robot=robot))
     return Explanation(
         directory=directory, record=record, robot=robot or "", ended=ended, run=run, moment=moment,
         sentences=said,

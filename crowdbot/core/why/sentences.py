@@ -31,17 +31,18 @@ _HAPPENED = {
 }
 
 
-def sentences(run: Trajectories, moment: DecisiveMoment, scans: Iterable[ReplayScan]) -> list[str]:
-    """Return what happened, the person, the robot, what sensors saw and what the planner logged."""
+def what_happened(run: Trajectories, moment: DecisiveMoment) -> list[str]:
+    """Return what happened, and what the person and the robot did."""
     sample = max(0, int(np.searchsorted(run.t, moment.t, side="right")) - 1)
     happened = _HAPPENED[moment.cause].format(stood=moment.stood)
-    return [
-        f"{moment.t:.1f} s: {happened}",
-        *_person(run, moment, sample),
-        _robot(run, sample),
-        *_seen(scans, moment.t),
-        *_logged(run, moment.t),
-    ]
+    return [f"{moment.t:.1f} s: {happened}", *_person(run, moment, sample), _robot(run, sample)]
+
+
+def what_was_seen(
+    run: Trajectories, moment: DecisiveMoment, scans: Iterable[ReplayScan]
+) -> list[str]:
+    """Return what each sensor saw at that moment, and what the planner logged."""
+    return [*_seen(scans, moment.t), *_logged(run, moment.t)]
 
 
 def _person(run: Trajectories, moment: DecisiveMoment, sample: int) -> Iterator[str]:
@@ -67,7 +68,10 @@ def _robot(run: Trajectories, sample: int) -> str:
         distance = math.hypot(x - float(robot.x[sample]), y - float(robot.y[sample]))
         left = f", {max(0.0, distance - robot.goal_radius):.1f} m from its goal"
     speed, rate = float(robot.v[sample]), math.degrees(float(robot.w[sample]))
-    return f"the robot drove at {speed:.2f} m/s and turned at {rate:.0f} °/s{left}"
+    place = f"({float(robot.x[sample]):.1f}, {float(robot.y[sample]):.1f})"
+    if abs(speed) < 0.005 and abs(rate) < 0.5:
+        return f"the robot stood at {place}{left}"
+    return f"the robot at {place} drove at {speed:.2f} m/s and turned at {rate:.0f} °/s{left}"
 
 
 def _seen(scans: Iterable[ReplayScan], t: float) -> Iterator[str]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 from typer.core import TyperGroup
 
+from crowdbot.cli.output.results_by_planner import print_by_planner
 from crowdbot.cli.output.results_lines import line_of, print_lines
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, open_results
@@ -74,11 +75,14 @@ def show(
     worst: Annotated[
         int, typer.Option(min=0, metavar="N", help="The N worst runs by --metric instead.")
     ] = 0,
+    details: Annotated[
+        bool, typer.Option("--details", help="A line for each planner, with medians and counts.")
+    ] = False,
     altered: Altered = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
-    """Show the scores of planners, by metric and group.
+    """Show the scores of planners side by side, by metric and group.
 
     Example: crowdbot results --runs runs --metric 'collision*' --by planner,density
     """
@@ -101,7 +105,11 @@ def show(
     summaries = [s for m in wanted for s in by_group(found, m, groups, variant)]
     lines = [line_of(s) for s in summaries]
     once = {tuple(sorted(line.items(), key=lambda cell: cell[0])): line for line in lines}
-    print_lines([*once.values()], as_csv=as_csv, as_json=as_json)  # patterns may overlap
+    shown = [*once.values()]  # patterns may overlap
+    if shown and "planner" in groups and not (details or as_csv or as_json):
+        print_by_planner(shown)
+    else:
+        print_lines(shown, as_csv=as_csv, as_json=as_json)
     if not (as_csv or as_json):
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
         runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")

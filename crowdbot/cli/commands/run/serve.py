@@ -37,6 +37,7 @@ from crowdbot.cli.serving.serve_arguments import (
 )
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.cli.shared.run_arguments import (
+    AllScores,
     AsJson,
     MeshcatPort,
     OutRoot,
@@ -91,6 +92,7 @@ def serve(
     references: References = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
+    everything: AllScores = False,
     as_json: AsJson = False,
 ) -> None:
     """Serve one scenario as a rosbridge server: external programs drive its robots.
@@ -116,7 +118,7 @@ def serve(
             meshcat=meshcat,
         )  # fmt: skip
         run = _serve(what, how, manner, listen)
-    print_run(run, as_json=as_json)
+    print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
 

@@ -18,6 +18,7 @@ from crowdbot.cli.shared.options import (
     planner_place,
 )
 from crowdbot.cli.shared.run_arguments import (
+    AllScores,
     AsJson,
     MeshcatPort,
     OutRoot,
@@ -69,6 +70,7 @@ def simulate(
     meshcat: MeshcatPort = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
+    everything: AllScores = False,
     as_json: AsJson = False,
 ) -> None:
     """Simulate one scenario with one planner, or its people alone; record, score and replay it.
@@ -121,7 +123,7 @@ def simulate(
                 on_hang=end_hung_process,
                 watchers=watchers,
             )
-    print_run(run, as_json=as_json)
+    print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
 

@@ -18,18 +18,19 @@ def doctor(
         Path, typer.Option(metavar="DIR", help="Where runs would go; its disk is checked.")
     ] = Path("runs"),
     self_test: Annotated[
-        bool, typer.Option(help="Simulate for a moment; takes about 10 s, more the first time.")
-    ] = True,
+        bool,
+        typer.Option(help="Simulate for a moment, too: about 10 s, more the first time."),
+    ] = False,
     licences: Annotated[
         bool, typer.Option("--licences", help="List all packages that crowdbot needs, and end.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
-    """Check versions, graphics, compiled kernels, cores and disk, and simulate for a moment.
+    """Check versions, graphics, compiled kernels, cores and disk; simulate for a moment if asked.
 
     Exit code 1 if something is missing that runs need.
 
-    Example: crowdbot doctor --no-self-test
+    Example: crowdbot doctor --self-test
     """
     from crowdbot.cli.output import doctor as _doctor
 
@@ -48,6 +49,8 @@ def doctor(
         for found in findings:
             if not quiet or found.verdict != "ok":
                 say(f"{found.verdict:<8} {found.what:<12} {found.found}")
+        if not (self_test or quiet):
+            say("--self-test simulates for a moment, too")
     if any(f.verdict == "missing" for f in findings):
         raise typer.Exit(1)
 
