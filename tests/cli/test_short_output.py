@@ -136,7 +136,7 @@ def test_no_component_shows_a_python_type(capsys: pytest.CaptureFixture[str]) ->
 
 
 def test_defaults_are_words() -> None:
-    values = (None, True, 0.5, [1, 2.0], {}, {"south": 1})
+    values: tuple[Any, ...] = (None, True, 0.5, [1, 2.0], {}, {"south": 1})
     assert [default_words(v) for v in values] == ["unset", "true", "0.5", "[1, 2]", "none", "south"]
 
 
@@ -146,9 +146,12 @@ def test_the_doctor_is_quick_unless_asked(
     from crowdbot.cli.output import doctor
 
     asked: list[int] = []
-    monkeypatch.setattr(
-        doctor, "self_test", lambda: asked.append(1) or doctor.Examined("self-test", "ok", "")
-    )
+
+    def self_test() -> doctor.Examined:
+        asked.append(1)
+        return doctor.Examined("self-test", "ok", "")
+
+    monkeypatch.setattr(doctor, "self_test", self_test)
     assert cli.main(["doctor"]) == 0
     assert "--self-test" in capsys.readouterr().out
     assert not asked

@@ -53,9 +53,9 @@ def _is_sequence(origin: Any) -> bool:
 
 def _bounds(metadata: tuple[Any, ...]) -> str:
     """Return the limits of a number, such as `` > 0``."""
-    lows = [(one.ge, "≥") for one in metadata if isinstance(one, limits.Ge)]
+    lows: list[tuple[Any, str]] = [(one.ge, "≥") for one in metadata if isinstance(one, limits.Ge)]
     lows += [(one.gt, ">") for one in metadata if isinstance(one, limits.Gt)]
-    highs = [(one.le, "≤") for one in metadata if isinstance(one, limits.Le)]
+    highs: list[tuple[Any, str]] = [(one.le, "≤") for one in metadata if isinstance(one, limits.Le)]
     highs += [(one.lt, "<") for one in metadata if isinstance(one, limits.Lt)]
     low, high = max(lows, default=None), min(highs, default=None)
     if low and high and (low[1], high[1]) == ("≥", "≤"):
