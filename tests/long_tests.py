@@ -56,8 +56,8 @@ VARIANTS = (
     "tests/core/sim/test_contact_diagram.py::test_one_contact_is_that_of_the_reference[128-speeds2]",
     "tests/core/sim/test_contact_diagram.py::test_one_contact_is_that_of_the_reference[256-speeds1]",
     "tests/core/sim/test_contact_diagram.py::test_one_contact_is_that_of_the_reference[256-speeds3]",
-    "tests/core/support/compiling/test_compile_cache.py::test_a_plugins_changed_callee_is_compiled_again[lone",
-    "tests/core/support/compiling/test_compile_cache.py::test_a_plugins_changed_callee_is_compiled_again"
+    "tests/core/support/test_compile_cache.py::test_a_plugins_changed_callee_is_compiled_again[lone",
+    "tests/core/support/test_compile_cache.py::test_a_plugins_changed_callee_is_compiled_again"
     "[package.deep",
     "tests/plugins/planners/dwa/test_dwa.py::test_it_does_not_flee_from_those_who_come_towards_it[1]",
     "tests/plugins/planners/dwa/test_dwa.py::test_it_does_not_flee_from_those_who_come_towards_it[2]",

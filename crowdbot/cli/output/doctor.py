@@ -85,7 +85,7 @@ def _egl() -> Examined:
 
 
 def _kernels() -> Examined:
-    from crowdbot.core.support.compiling.compile_cache import kernel_folder, nothing_compiled
+    from crowdbot.core.support.compile_cache import kernel_folder, nothing_compiled
 
     folder = os.environ.get("NUMBA_CACHE_DIR") or str(kernel_folder())
     if nothing_compiled():

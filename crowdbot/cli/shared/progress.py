@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from crowdbot.cli.output.say import say
-from crowdbot.core.support.compiling.compile_cache import USUAL, compiled, nothing_compiled
+from crowdbot.core.support.compile_cache import USUAL, compiled, nothing_compiled
 from crowdbot.core.support.cores import available_cores
 
 if TYPE_CHECKING:

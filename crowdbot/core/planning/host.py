@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
 from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner
 from crowdbot.core.planning.watchdog import Watchdog
-from crowdbot.core.support.compiling.compile_cache import compiled
+from crowdbot.core.support.compile_cache import compiled
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo

@@ -23,7 +23,7 @@ from crowdbot.core.sim.loggers.run_logs import run_logs
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.runner import run
-from crowdbot.core.support.compiling.compile_cache import compiled
+from crowdbot.core.support.compile_cache import compiled
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError

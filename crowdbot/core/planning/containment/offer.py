@@ -11,7 +11,7 @@ from typing import Any, Final, Literal
 
 from crowdbot.core.planning.containment import landlock, system_calls
 from crowdbot.core.planning.containment.libraries import Readable, python_libraries
-from crowdbot.core.support.compiling.compile_cache import used_folder
+from crowdbot.core.support.compile_cache import used_folder
 
 Aspect = Literal["files", "network", "signals", "processes"]
 #: What a planner that is fully contained cannot reach.

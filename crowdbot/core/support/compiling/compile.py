@@ -15,7 +15,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-from crowdbot.core.support.compiling.compile_cache import is_plain_numba
+from crowdbot.core.support.compile_cache import is_plain_numba
 
 F = TypeVar("F", bound=Callable[..., Any])
 # `_nrt`, used below, is undocumented; numba compiles its own such functions with it.

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 
-from crowdbot.core.support.compiling.compile_cache import is_plain_numba, nothing_compiled
+from crowdbot.core.support.compile_cache import is_plain_numba, nothing_compiled
 from crowdbot.core.support.cores import available_cores
 
 _START = (

@@ -9,7 +9,7 @@ from typing import Any
 
 from numba.core.caching import UserProvidedCacheLocator
 
-from crowdbot.core.support.compiling.compile_cache import (
+from crowdbot.core.support.compile_cache import (
     SIMULATORS,
     is_plain_numba,
     is_readable_only,

@@ -36,7 +36,7 @@ from numba.core.sigutils import normalize_signature
 from numba.core.types import Omitted
 from numba.np import linalg
 
-from crowdbot.core.support.compiling.compile_cache import lock_of
+from crowdbot.core.support.compile_cache import lock_of
 from crowdbot.core.support.compiling.compile_cache_file import CheckedCacheFile
 from crowdbot.core.support.compiling.compile_files import PART, CacheFiles, PartLibrary, is_part
 from crowdbot.core.support.gc_throttle import seldom_collected

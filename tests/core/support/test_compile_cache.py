@@ -11,7 +11,7 @@ import pytest
 
 from crowdbot.cli.shared import progress as _progress
 from crowdbot.cli.shared.progress import show_progress
-from crowdbot.core.support.compiling.compile_cache import (
+from crowdbot.core.support.compile_cache import (
     _user_cache,
     kernel_folder,
     use_kernel_cache,

@@ -13,7 +13,7 @@ from pathlib import Path
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
-_PACKAGE = Path(__file__).parents[3]
+_PACKAGE = Path(__file__).parents[2]
 _VARIABLE = "NUMBA_CACHE_DIR"
 #: In a planner's process, the folder in which the simulator keeps compiled functions.
 SIMULATORS = "CROWDBOT_KERNELS"
