@@ -56,7 +56,8 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
         "title": table.entries[0].manifest.edition.title,
         "class": table.classed,
         "by": table.by,
-        "ordered": bool(table.summary.ranks(table.by)),
+        "ordered": bool(table.ranks(table.by)),
+        "orders": table.orders,
         "entries": [
             {**_entry(table, e, here), "mains": _mains(table, e, main, names)}
             for e in table.entries

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.rows import results_of
 from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.results.confounds import Finding, check_comparable, confounds
+from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.scoring.score_scale import Scales
-from crowdbot.core.statistics import PlannerScore, Summary, summarise
+from crowdbot.core.statistics import PlannerScore, Summary, Table, summarise
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
+from crowdbot.core.statistics.ranking import SCORES
+from crowdbot.core.statistics.rules import RULE, Orders, orders
 from crowdbot.errors import InputError
+
+#: Metrics that the ranking rule weighs up.
+RULE_METRICS = frozenset(metric for names in SCORES.values() for metric, _ in names[:1])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +32,8 @@ class Standings:
         entries: best in ``by`` first, unranked ones last.
         findings: differences other than the planner.
         summary: summary of the ranked entries.
-        by: the metric that decides the order.
+        by: the metric that decides the order, or `RULE`.
+        orders: orders by the ranking rule, and by others beside it.
         audit: audit of the suite, or None.
         suspicion: why ranks may be meaningless, from the audit.
         crowds: realism of the people, a line per different crowd.
@@ -39,20 +46,28 @@ class Standings:
     findings: tuple[Finding, ...]
     summary: Summary
     by: str
+    orders: Orders
     audit: Audit | None = None
     suspicion: str = ""
     crowds: tuple[str, ...] = ()
     by_crowd: CrowdRanks | None = None
 
-    def rank(self, metric: str, entry: LeaderboardEntry) -> int | None:
-        """Return 1 + the number of significantly better entries; None if not ranked."""
-        if not entry.ranked or metric in entry.outdated:
-            return None
-        return self.summary.ranks(metric).get(entry.name)
+    def ranks(self, by: str) -> Mapping[str, int]:
+        """Return entry -> rank in a metric or by `RULE`; empty if there is nothing to order by."""
+        if by == RULE:
+            return {} if self.orders.missing else self.orders.rule.ranks
+        return self.summary.ranks(by)
 
-    def shares_rank(self, metric: str, entry: LeaderboardEntry) -> bool:
+    def rank(self, by: str, entry: LeaderboardEntry) -> int | None:
+        """Return 1 + the number of significantly better entries; None if not ranked."""
+        needed = RULE_METRICS if by == RULE else {by}
+        if not entry.ranked or needed & set(entry.outdated):
+            return None
+        return self.ranks(by).get(entry.name)
+
+    def shares_rank(self, by: str, entry: LeaderboardEntry) -> bool:
         """Return True if another entry has the same rank."""
-        ranks = self.summary.ranks(metric)
+        ranks = self.ranks(by)
         return list(ranks.values()).count(ranks.get(entry.name, 0)) > 1
 
     def score(self, metric: str, entry: LeaderboardEntry) -> PlannerScore | None:
@@ -72,7 +87,7 @@ def standings(
 
     Args:
         entries: from `load_entries`.
-        by: metric that decides the order.
+        by: metric that decides the order, or `RULE`.
         accept: accepted confounds, which the tables show.
         audits: audits of suites; unrelated ones are ignored.
         scales: scales of the scores, from `score_scales`, which bound the intervals.
@@ -187,11 +202,13 @@ def _table(
     results = replace(rows, scales=scales)
     findings = confounds(results, accept)
     check_comparable(findings)
-    summary = summarise(results)
+    table = Table(results)
+    summary, ordered = summarise(results, table=table), orders(table)
     told = [(r.axes.get(AXIS, ""), r.record.crowd or "") for r in results.runs]
     crowds = [(name, like) for name, like in told if name or like]
-    ranks = summary.ranks(by)
-    scores = [s for s in summary.scores if s.metric == by and s.mean.value is not None]
+    metric = PRIMARY.metric if by == RULE else by  # of equal ranks, the better mean is first
+    ranks = ordered.rule.ranks if by == RULE else summary.ranks(by)
+    scores = [s for s in summary.scores if s.metric == metric and s.mean.value is not None]
     sign = {s.planner: -1.0 if s.better == "higher" else 1.0 for s in scores}
     means = {s.planner: sign[s.planner] * (s.mean.value or 0.0) for s in scores}
 
@@ -207,8 +224,9 @@ def _table(
         findings=findings,
         summary=summary,
         by=by,
+        orders=ordered,
         audit=audit,
         suspicion=suspicion(audit, results.runs),
         crowds=tuple(lines_of(crowds)),
-        by_crowd=crowd_ranks(results, by),
+        by_crowd=crowd_ranks(results, metric),
     )

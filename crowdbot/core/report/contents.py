@@ -26,6 +26,7 @@ from crowdbot.core.statistics import (
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.core.statistics.pareto import ParetoPoint, pareto
+from crowdbot.core.statistics.rules import Orders, orders
 from crowdbot.core.types.ending import ATTEMPTED
 from crowdbot.errors import InputError
 
@@ -66,6 +67,8 @@ class Contents:
         suspicion: why the results may be meaningless; empty if there is no reason.
         sample: check of the sample size for a verdict; None if nothing is compared.
         crowds: realism of the runs' people, a line per different crowd.
+        orders: orders of the planners by the ranking rule, and by others beside it; None for one
+            planner.
         ranks: dependence of the order of planners on the crowd; None for runs of one crowd.
     """
 
@@ -82,6 +85,7 @@ class Contents:
     crowds: tuple[str, ...] = ()
     sample: SampleSize | None = None
     ranks: CrowdRanks | None = None
+    orders: Orders | None = None
 
     @property
     def planners(self) -> tuple[str, ...]:
@@ -164,4 +168,5 @@ def gather(
         crowds=tuple(crowd_lines(results.runs)),
         sample=sample_size(worked_out.headline),
         ranks=crowd_ranks(results, table=table),
+        orders=orders(table, results.marks) if len(table.planners) > 1 else None,
     )

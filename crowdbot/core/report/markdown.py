@@ -11,6 +11,7 @@ from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
 from crowdbot.core.statistics import Comparison, PlannerScore, Summary
 from crowdbot.core.statistics.crowds import CrowdRanks
 from crowdbot.core.statistics.estimate_text import joined_text, range_text
+from crowdbot.core.statistics.rules import Orders
 
 
 def markdown(contents: Contents) -> str:
@@ -33,6 +34,7 @@ def markdown(contents: Contents) -> str:
     lines += [*_table(*_scores(contents)), ""]
     if contents.pareto:
         lines += ["## Safe efficiency and acceptance", "", *_table(*_pareto(contents)), ""]
+    lines += _ordered(contents.orders) if contents.orders else []
     lines += _by_crowd(contents.ranks) if contents.ranks else []
     if any(not v.reason for v in summary.variances):
         lines += ["## What varies with which", "", *_table(*_variances(summary)), ""]
@@ -50,6 +52,20 @@ def _pareto(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
         for p in contents.pareto
     ]
     return ("planner", "safe efficiency", "acceptance", "Pareto"), rows
+
+
+def _ordered(orders: Orders) -> list[str]:
+    """Return ranks by the ranking rule and by others, and the verdict."""
+    verdict = orders.verdict
+    rows = [
+        (_plain(p), *(f"{o.ranks[p]}{'=' * o.shares_rank(p)}" for o in orders.orders))
+        for p in orders.planners
+    ]
+    lines = ["## Ranks", "", f"{_plain(verdict[0].upper() + verdict[1:])}.", ""]
+    if orders.missing:
+        return lines
+    table = _table(("planner", *(order.name for order in orders.orders)), rows)
+    return [*lines, *table, "", *(f"- {o.name}: {o.text}" for o in orders.orders), ""]
 
 
 def _by_crowd(ranks: CrowdRanks) -> list[str]:

@@ -54,6 +54,11 @@ class Results:
 
         return cls(**read_rows(path_of("root", root))._asdict())
 
+    @property
+    def marks(self) -> frozenset[str]:
+        """Labels of the planners that are floors or ceilings."""
+        return frozenset(run.planner for run in self.runs if run.role in ("floor", "ceiling"))
+
     def without_altered(self) -> Results:
         """Return the results without runs and failures of scenarios that ``--set`` changed."""
         runs = tuple(run for run in self.runs if not run.changes)

@@ -143,8 +143,7 @@ def summarise(
     chosen = headline_names(table) if names is None else tuple(names)
     pairs = list(combinations(table.planners, 2))
     found = [compare(table, name, a, b, level=level) for name in chosen for a, b in pairs]
-    marks = {run.planner for run in results.runs if run.role in ("floor", "ceiling")}
-    families = list(_families([x for x, _ in found], marks))
+    families = list(_families([x for x, _ in found], results.marks))
     p_holm = {place: p for family in families for place, p in family.items()}
     everybody = [(name, planner) for name in chosen for planner in table.planners]
     return Summary(

@@ -9,6 +9,7 @@ from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.score_scale import ScoreScale
 from crowdbot.core.statistics import Table
 from crowdbot.core.statistics.ranking import rank
+from crowdbot.core.statistics.rules import orders
 from tests.core.statistics.made_up_results import run, score
 
 SCALES = {
@@ -65,3 +66,44 @@ def test_standings(a: tuple[float, float | None, float | None], standing: str) -
     (back,) = rank(table(a), [("b", "a")])
     opposite = {"ahead": "behind", "behind": "ahead"}
     assert back.standing == opposite.get(standing, standing)
+
+
+@pytest.mark.parametrize(
+    ("a", "ranks"),
+    [
+        ((0.8, 2.0, 0.1), {"the ranking rule": 1, "efficiency alone": 1, "safety first": 1}),
+        ((0.8, 9.0, 0.1), {"the ranking rule": 1, "efficiency alone": 1, "safety first": 2}),
+        ((0.3, 0.0, 0.1), {"the ranking rule": 1, "efficiency alone": 2, "safety first": 1}),
+        ((0.3, 2.0, 0.1), {"the ranking rule": 2, "acceptance alone": 1, "safety first": 2}),
+        ((0.6, 2.0, 0.03), {"efficiency alone": 1, "acceptance alone": 1, "safety first": 1}),
+    ],
+)
+def test_other_rules_order_otherwise(a: tuple[float, float, float], ranks: dict[str, int]) -> None:
+    found = orders(table(a))
+    assert {o.name: o.ranks["a"] for o in found.orders if o.name in ranks} == ranks
+    assert found.rule.name == "the ranking rule"
+
+
+def test_the_verdict_is_a_sentence() -> None:
+    assert orders(table((0.8, 2.0, 0.1))).verdict == "a is ahead of b"
+    assert orders(table((0.3, 2.0, 0.1))).verdict == "b is ahead of a"
+    traded = orders(table((0.8, 9.0, 0.1)))
+    assert traded.verdict == "no planner is ahead of another by the ranking rule"
+    assert all(traded.rule.shares_rank(planner) for planner in "ab")
+
+
+def test_no_rule_orders_without_an_aspect() -> None:
+    whole = table((0.8, 2.0, 0.1))
+    results = Results(
+        runs=tuple(whole.runs.values()),
+        scores=tuple(
+            score(made, value, metric="safe_efficiency", variant="corrected", better="higher")
+            for (planner, _), made in whole.runs.items()
+            for value in [0.9 if planner == "a" else 0.1]
+        ),
+        scales=SCALES,
+    )
+    found = orders(Table(results))
+    assert found.missing == ("safety", "acceptance")
+    assert set(found.rule.ranks.values()) == {1}
+    assert "needs scores that no run has: safety, acceptance" in found.verdict

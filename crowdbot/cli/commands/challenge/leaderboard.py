@@ -19,8 +19,11 @@ def leaderboard(
         Path("leaderboard.html")
     ),
     by: Annotated[
-        str, typer.Option(metavar="METRIC", help="Which metric decides the order.")
-    ] = "safe_efficiency",
+        str,
+        typer.Option(
+            metavar="METRIC", help="Metric that decides the order; rule: the ranking rule."
+        ),
+    ] = "rule",
     title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
     accept: Annotated[
         list[str] | None,
@@ -44,8 +47,9 @@ def leaderboard(
 ) -> None:
     """Rank the bundles of a folder, by edition and class, on one offline page.
 
-    Bundles without a significant difference share a rank. Scores of older metric versions are
-    computed again if a bundle has recordings, and otherwise left out.
+    Bundles are ordered by the ranking rule: safety is a condition, efficiency and acceptance are
+    weighed up. Bundles without a significant difference share a rank. Scores of older metric
+    versions are computed again if a bundle has recordings, and otherwise left out.
 
     Example: crowdbot leaderboard bundles --out leaderboard.html --by spl
     """
@@ -55,11 +59,12 @@ def leaderboard(
     from crowdbot.core.bundle.standings import set_apart, standings
     from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, read_audit
+    from crowdbot.core.statistics.rules import RULE
     from crowdbot.errors import UnknownNameError
 
     check_ending(out, ".html")
     registry = installed(plugin, no_plugins)
-    if by not in registry.components("metric"):
+    if by != RULE and by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
     trusted = {check_public_key(text) for text in key or ()} | {own_public_key()} - {""}
     entries, left_out = load_entries(folder, registry, trusted)
