@@ -96,6 +96,25 @@ def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[
         yield doors
 
 
+@contextmanager
+def listening_also(
+    session: LiveSession, listen: Listen, *, rosbridge: bool
+) -> Iterator[list[Door]]:
+    """The doors of programs beside a person's page, closed at the end; errors as `listening`."""
+    from crowdbot.core.live.manner import Manner
+
+    manner = Manner(rate=1.0)
+    with ExitStack() as stack:
+        doors: list[Door] = []
+        if rosbridge:
+            doors.append(_rosbridge(session, manner, listen))
+            stack.callback(doors[-1].close)
+        if listen.zenoh is not None:
+            doors.append(_zenoh(session, manner, listen.zenoh, listen))
+            stack.callback(doors[-1].close)
+        yield doors
+
+
 def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
     from crowdbot.core.live.rosbridge.client import RosbridgeClient
 

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 
 from crowdbot.core.live.door import Door
+from crowdbot.core.live.live_record import with_live_part
 from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.manner import Manner
 from crowdbot.core.live.planner import LivePlanner
@@ -19,7 +20,6 @@ from crowdbot.core.live.session import LiveSession, State
 from crowdbot.core.live.steps import LiveSteps, status
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.watcher import Watcher
-from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import prepare
 from crowdbot.core.runs.record_parts import LivePart
 from crowdbot.core.runs.run import Request, Run
@@ -201,13 +201,7 @@ def _scenes(request: Request, builts: Mapping[str, BuiltRun]) -> dict[str, LiveS
 def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:
     """Add data of the live run to run.json."""
     counts = session.counts
-    lag = {} if manner.rate is None else {"largest_lag": round(counts.most_lag, 4)}
-    live = LivePart(
-        steps=counts.steps, missed_steps=counts.missed, refused_commands=counts.refused, **lag
-    )
-    record = run.record.model_copy(update={"live": live})
-    files.attach_files(run.directory, record.document())
-    listed = {"files": files.sizes(run.directory), "digests": files.digests(run.directory)}
-    record = record.model_copy(update=listed)
-    record.write(run.directory)
-    return replace(run, record=record)
+    live = LivePart(steps=counts.steps, missed_steps=counts.missed, refused_commands=counts.refused)
+    if manner.rate is not None:
+        live = live.model_copy(update={"largest_lag": round(counts.most_lag, 4)})
+    return with_live_part(run, live)

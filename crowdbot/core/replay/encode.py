@@ -38,7 +38,7 @@ def encode(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
         "n": len(run.t),
         "zone": nested(run.goal_zone),
         "people": None,
-        **_scenery(shown),
+        **scenery_numbers(_scenery(shown)),
     }
     if run.agents is not None:
         meta["people"], blobs["people"] = _people(run.t, run.agents)
@@ -55,13 +55,17 @@ def encode(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
     return meta, blobs
 
 
-def _scenery(shown: ShownRun) -> dict[str, Any]:
+def _scenery(shown: ShownRun) -> Scenery:
+    """Return the scenery; default: the run's walls, which stop robots and people."""
+    if shown.scenery is not None:
+        return shown.scenery
+    walls = np.zeros((0, 4)) if shown.run.walls is None else shown.run.walls.reshape(-1, 4)
+    everybody = np.ones(len(walls), np.bool_)
+    return Scenery(walls=walls, stops_robot=everybody, stops_crowd=everybody)
+
+
+def scenery_numbers(scene: Scenery) -> dict[str, Any]:
     """Return walls as x0, y0, x1, y1 and what they stop: 3 all, 1 robots, 2 people, 0 nothing."""
-    scene = shown.scenery
-    if scene is None:
-        walls = np.zeros((0, 4)) if shown.run.walls is None else shown.run.walls.reshape(-1, 4)
-        everybody = np.ones(len(walls), np.bool_)
-        scene = Scenery(walls=walls, stops_robot=everybody, stops_crowd=everybody)
     whom = scene.stops_robot.astype(int) + 2 * scene.stops_crowd
     walls = np.column_stack((scene.walls, whom))
     return {

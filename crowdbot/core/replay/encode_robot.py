@@ -38,15 +38,24 @@ def _motion(other: OtherTrack, samples: int) -> Array:
 
 
 def _about(run: Trajectories, name: str, look: Sequence[Seen]) -> dict[str, Any]:
-    robot, outline, zone = run.robot, run.robot_footprint, run.goal_zone
+    robot = run.robot
     assert robot is not None
     return {
-        "name": name,
-        "radius": robot.radius,
-        "outline": [] if outline is None else np.round(outline, 4).tolist(),
+        **robot_numbers(name, robot.radius, run.robot_footprint, run.goal_zone, look),
         "goal": robot.goal,
         "goalRadius": robot.goal_radius,
         "goalTime": robot.goal_time,
+    }
+
+
+def robot_numbers(
+    name: str, radius: float, outline: Array | None, zone: Array | None, look: Sequence[Seen]
+) -> dict[str, Any]:
+    """Return what the page draws of a robot: its outline, its parts from above, its goal zone."""
+    return {
+        "name": name,
+        "radius": radius,
+        "outline": [] if outline is None else np.round(outline, 4).tolist(),
         "zone": [] if zone is None else np.round(zone, 4).tolist(),
         "look": [[colour, np.round(part, 3).tolist()] for part, colour in look],
     }

@@ -176,17 +176,17 @@ def planner_part(choice: PlannerChoice) -> PlannerPart:
 
 def references_of(request: Request, prepared: Prepared) -> tuple[Reference, ...]:
     """Return the calibration runs of a run, existing or not."""
-    if prepared.alone is None or prepared.crowd is None:
-        return ()
-    by_planner = {"planner": request.choice.spec_dump, "seed": request.seed, **_budget(request)}
-    by_people = {
-        "realisation": prepared.crowd.realisation,
-        "duration": longest(prepared.run.scenario),
-    }
-    return (
-        _reference(request, ROBOT_ALONE, prepared.alone, by_planner),
-        _reference(request, CROWD_ALONE, prepared.crowd, by_people),
-    )
+    found = []
+    if prepared.alone is not None:
+        by_planner = {"planner": request.choice.spec_dump, "seed": request.seed, **_budget(request)}
+        found.append(_reference(request, ROBOT_ALONE, prepared.alone, by_planner))
+    if prepared.crowd is not None:
+        by_people = {
+            "realisation": prepared.crowd.realisation,
+            "duration": longest(prepared.run.scenario),
+        }
+        found.append(_reference(request, CROWD_ALONE, prepared.crowd, by_people))
+    return tuple(found)
 
 
 def longest(scenario: Scenario) -> float:

@@ -127,13 +127,44 @@ class MomentPart(RecordPart):
     clearance: Annotated[float, Field(allow_inf_nan=False)] | None = None
 
 
+class StopPart(RecordPart):
+    """The moment at which a person's hand left the stick, which was centred."""
+
+    t: Seconds
+    why: Annotated[str, Field(max_length=100)]
+
+
+class WaitPart(StopPart):
+    """A stretch of real time, s, in which a run stood still until a person was back."""
+
+    seconds: Seconds
+
+
+class LatencyPart(RecordPart):
+    """From a person's key to the step that used it, as the page measured it, ms."""
+
+    count: Count
+    median: Seconds
+    p95: Seconds
+
+
 class LivePart(RecordPart):
-    """Data that only runs by ``crowdbot serve`` have; ``largest_lag`` in s."""
+    """Data that only live runs have; times in s.
+
+    Attributes:
+        largest_lag: of runs by ``crowdbot serve`` in real time.
+        stops, waits, delayed, latency: of runs with a person in a page: when the hand left the
+            stick, when the run waited, the real time lost to a slow computer, and the latency.
+    """
 
     steps: Count
     missed_steps: Count
     refused_commands: Count
     largest_lag: float | None = None
+    stops: list[StopPart] = Field(default_factory=list)
+    waits: list[WaitPart] = Field(default_factory=list)
+    delayed: Seconds = 0.0
+    latency: LatencyPart | None = None
 
 
 def _identity_of(value: Any) -> Any:

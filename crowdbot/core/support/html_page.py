@@ -1,7 +1,7 @@
 """One HTML page in one file, without network requests.
 
 A package contains ``page.html.j2``, ``page.css`` and scripts. The page's content security policy
-allows only its own style sheet and script, by hash.
+allows only its own style sheet and scripts, by hash.
 """
 
 from __future__ import annotations
@@ -24,23 +24,27 @@ def render_page(
     more_style: str = "",
     images: str = "",
     frames: bool = False,
+    connect: str = "",
+    later: Sequence[str] = (),
     **values: Any,
 ) -> str:
     """Render the page of a package; equal input gives equal text.
 
     Args:
         package: the package with the parts.
-        scripts: names of its script files, in order.
+        scripts: names of its script files, in order; ``PACKAGE:NAME`` is of another package.
         more_style: rules to add to ``page.css``.
         images: sources of generated images, such as ``blob:``.
         frames: True if the page may embed others from its own site or folder.
+        connect: addresses that it may connect to.
+        later: scripts that it may add to itself later.
         values: further variables of the template, besides ``policy``, ``style`` and ``script``.
             Text is escaped.
     """
     style = "\n".join(filter(None, [_part(package, "page.css"), more_style]))
     script = "\n".join(_part(package, name) for name in scripts)
     return _template(package).render(
-        policy=_policy(style, script, images, frames=frames),
+        policy=_policy(style, (script, *later), images, connect, frames=frames),
         style=Markup(style),
         script=Markup(script),
         **values,
@@ -55,12 +59,16 @@ def _template(package: str) -> jinja2.Template:
 
 
 @cache
-def _policy(style: str, script: str, images: str, *, frames: bool) -> str:
-    scripts = f"script-src {_hash(script)}; " if script else ""
+def _policy(
+    style: str, scripts: tuple[str, ...], images: str, connect: str, *, frames: bool
+) -> str:
+    hashes = " ".join(_hash(script) for script in scripts if script)
+    allowed = f"script-src {hashes}; " if hashes else ""
     pictures = f"img-src {images}; " if images else ""
     opened = "frame-src 'self'; " if frames else ""
+    links = f"connect-src {connect}; " if connect else ""
     return (
-        f"default-src 'none'; {scripts}style-src {_hash(style)}; {pictures}{opened}"
+        f"default-src 'none'; {allowed}style-src {_hash(style)}; {pictures}{opened}{links}"
         "base-uri 'none'; form-action 'none'"
     )
 
@@ -72,4 +80,6 @@ def _hash(text: str) -> str:
 
 @cache
 def _part(package: str, name: str) -> str:
-    return resources.files(package).joinpath(name).read_text(encoding="utf-8")
+    other, colon, rest = name.partition(":")
+    place, name = (other, rest) if colon else (package, name)
+    return resources.files(place).joinpath(name).read_text(encoding="utf-8")

@@ -1,0 +1,23 @@
+"""Arguments shared by commands that put a person into a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+PagePort = Annotated[
+    int, typer.Option(min=0, max=65535, help="Port of the page on 127.0.0.1; 0: a free one.")
+]
+OpenPage = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
+Rate = Annotated[
+    float,
+    typer.Option(min=0.1, max=10.0, metavar="FACTOR", help="Times real time."),
+]
+ReplayRun = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="RUN_DIR", help="No page: the commands that this run recorded, once more."
+    ),
+]

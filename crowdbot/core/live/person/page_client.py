@@ -1,0 +1,108 @@
+"""One page that is connected: what it asks for, and what waits to be sent to it."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, get_args
+
+from crowdbot.core.live.person.seat import Away, Seat
+from crowdbot.core.live.person.stick import stick_of
+from crowdbot.core.live.rosbridge.outbox import Outbox
+from crowdbot.errors import InputError
+
+#: Messages per second and at once that a page may send; more than that is no hand.
+_PER_SECOND, _BURST = 400.0, 800.0
+_MOST_LATENCIES = 100
+
+
+class PageClient:
+    """A page; used only in the server's thread."""
+
+    def __init__(self, seat: Seat) -> None:
+        """Give it the seat, if that is free."""
+        self._seat = seat
+        self.outbox = Outbox()
+        self.sending = False
+        self._budget, self._before = _BURST, time.monotonic()
+        self._ops: dict[str, Callable[[Mapping[str, Any]], None]] = {
+            "stick": self._stick,
+            "here": self._here,
+            "sit": lambda _: self.say_role(seat.sit(self)),
+            "begin": lambda _: seat.begin(self),
+            "pause": self._pause,
+            "ping": lambda said: self.say("pong", at=_finite(said, "at")),
+            "latency": self._latency,
+        }
+        self.say_role(seat.sit(self))
+
+    def take(self, frame: str | bytes) -> None:
+        """Do what a message asks for; tell the page where it is wrong."""
+        if not self._may():
+            return
+        try:
+            said = json.loads(frame)
+            op = self._ops.get(said.get("op", "")) if isinstance(said, dict) else None
+            if op is None:
+                raise InputError("unknown message")
+            op(said)
+        except InputError as error:
+            self.say("error", text=str(error))
+        except (ValueError, TypeError, RecursionError) as error:
+            self.say("error", text=f"not understood: {type(error).__name__}")
+
+    def _may(self) -> bool:
+        """Return True while the page does not flood the server."""
+        now = time.monotonic()
+        self._budget = min(_BURST, self._budget + _PER_SECOND * (now - self._before))
+        self._before = now
+        if self._budget < 1.0:
+            return False
+        self._budget -= 1.0
+        return True
+
+    def say(self, op: str, **fields: Any) -> None:
+        """Send a message."""
+        self.outbox.put(json.dumps({"op": op, **fields}))
+
+    def say_role(self, drives: bool) -> None:
+        """Tell the page whether it drives or watches."""
+        self.say("role", drives=drives, taken=drives or self._seat.taken)
+
+    def close(self) -> None:
+        """Handle a page that is gone."""
+        self._seat.leave(self)
+
+    @property
+    def waiting(self) -> bool:
+        """Return True if messages are queued."""
+        return self.sending or len(self.outbox) > 0
+
+    def _stick(self, said: Mapping[str, Any]) -> None:
+        if not self._seat.move(self, stick_of(said)):
+            self.say_role(drives=False)
+
+    def _here(self, said: Mapping[str, Any]) -> None:
+        away = said.get("away", "")
+        if away not in get_args(Away):
+            raise InputError("'away' says why no hand is on the stick")
+        self._seat.attend(self, away)
+
+    def _pause(self, said: Mapping[str, Any]) -> None:
+        if self._seat.drives(self):
+            self._seat.session.pause(said.get("on") is True)
+
+    def _latency(self, said: Mapping[str, Any]) -> None:
+        given = said.get("ms")
+        if not isinstance(given, list) or len(given) > _MOST_LATENCIES:
+            raise InputError("'ms' is a short list of numbers")
+        for ms in given:
+            self._seat.latency(self, _finite({"ms": ms}, "ms"))
+
+
+def _finite(said: Mapping[str, Any], name: str) -> float:
+    value = said.get(name)
+    if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e15:
+        raise InputError(f"'{name}' is a number")
+    return float(value)

@@ -1,0 +1,30 @@
+"""The planner of a robot that does exactly what the person at its stick asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from crowdbot.core.planning.planner import Observation
+from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
+
+
+class PassThrough:
+    """Returns the reading of the stick."""
+
+    def __init__(self, stick: str) -> None:
+        """Take the name of the sensor."""
+        self._stick = stick
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Do nothing: the stick knows the limits."""
+        del task, limits, sensors, seed
+
+    def step(self, obs: Observation) -> Command:
+        """Return what the stick asks for."""
+        v, w, *aside = obs.readings[self._stick].values.tolist()
+        return Command(v, w, aside[0] if aside else 0.0)

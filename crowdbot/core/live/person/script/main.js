@@ -1,0 +1,40 @@
+// Joins the connection, the hand and the picture.
+
+function draw(now) {
+  pollHand(now);
+  const frame = frameNow(now);
+  if (frame) {
+    drawPlan(frame);
+    writeReadout(frame);
+  }
+  writeControls();
+  requestAnimationFrame(draw);
+}
+
+function start() {
+  readColours();
+  byId("theme").onclick = () => setTheme(isDark() ? "light" : "dark");
+  wantsDark.addEventListener("change", readColours);
+  byId("begin").onclick = () => {
+    byId("pad").focus({ preventScroll: true });
+    startRun();
+  };
+  byId("sit").onclick = () => send("sit");
+  byId("pause").onclick = () => send("pause", { on: words.waits !== "paused" });
+  bindHand();
+  connect({
+    open: () => { words.connected = true; hand.last = ""; writeWords(); },
+    close: () => { words.connected = words.drives = hand.drives = false; writeWords(); },
+    role: ({ drives, taken }) => { words.drives = hand.drives = drives; words.taken = taken; hand.last = ""; beat(); writeWords(); },
+    state: ({ waits, taken }) => { words.waits = waits; words.taken = taken; writeWords(); },
+    scene: ({ scene }) => { words.end = null; takeScene(scene); writeWords(); },
+    frame: takeFrame,
+    taken: ({ n }) => noteTaken(n),
+    end: (said) => { words.end = said; link.over = Boolean(said.last); writeWords(); },
+  });
+  setInterval(writeWords, 250);
+  requestAnimationFrame(draw);
+  document.documentElement.dataset.ready = "";
+}
+
+start();

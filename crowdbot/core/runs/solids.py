@@ -1,0 +1,88 @@
+"""Pack what the view in three dimensions shows besides the plan: heights, bodies, cameras."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.robots.look import visual_parts
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import RobotModel
+from crowdbot.core.types.sensor import SensorInfo
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SolidPeople:
+    """Bodies of people.
+
+    Attributes:
+        height: (M,) m, or (1,) if all are alike.
+        look: (M,) names of appearances; empty if all are adults.
+    """
+
+    height: Array
+    look: Sequence[str] = ()
+
+
+def solids_of(
+    parts: EnvironmentParts,
+    robots: Mapping[str, tuple[RobotModel, Mapping[str, SensorInfo]]],
+    people: SolidPeople | None,
+) -> dict[str, Any]:
+    """Return the numbers for JSON.
+
+    Args:
+        parts: the environment.
+        robots: model and sensors of each, in the order of the page's robots.
+        people: their bodies; None without people.
+    """
+    lines = ~parts.sides()
+    walls = np.column_stack([parts.walls, parts.wall_heights])[lines]
+    solids = zip(parts.solids, parts.solid_heights.tolist(), strict=True)
+    return {
+        "walls": _short(walls),
+        "pillars": _short(np.column_stack([parts.pillars, parts.pillar_heights])),
+        "blocks": [[_short(outline), bottom, top] for outline, (bottom, top) in solids],
+        "robots": [_robot(model, sensors) for model, sensors in robots.values()],
+        "people": None if people is None else _people(people),
+    }
+
+
+def _robot(model: RobotModel, sensors: Mapping[str, SensorInfo]) -> dict[str, Any]:
+    return {
+        "height": model.height,
+        "base": model.base_height,
+        "parts": [[part.colour, _short(part.corners)] for part in visual_parts(model)],
+        "cameras": [_camera(name, info) for name, info in sensors.items() if info.camera],
+        "lidars": {n: info.mount[2] for n, info in sensors.items() if info.category == "lidar"},
+    }
+
+
+def _camera(name: str, info: SensorInfo) -> dict[str, Any]:
+    """Return the place of a camera, and its vertical opening angle, rad."""
+    assert info.camera is not None
+    width, height = info.camera.width, info.camera.height
+    return {
+        "name": name,
+        "mount": list(info.mount),
+        "tilt": list(info.tilt),
+        "opening": round(2.0 * math.atan(0.5 * height / info.camera.focal), 4),
+        "aspect": round(width / height, 4),
+    }
+
+
+def _people(people: SolidPeople) -> dict[str, Any]:
+    heights = np.round(people.height, 3)
+    alike = len(heights) > 0 and bool(np.all(heights == heights[0]))
+    looks = list(people.look) if any(people.look) else []
+    return {"height": heights[: 1 if alike else None].tolist(), "look": looks}
+
+
+def _short(rows: Array) -> list[Any]:
+    found: list[Any] = np.round(rows, 3).tolist()
+    return found
