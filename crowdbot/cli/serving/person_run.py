@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class PersonRun:
-    """What was asked for on the command line.
+    """The arguments of a command that puts a person into a run.
 
     Attributes:
         record: which sensors are simulated.
@@ -43,7 +43,7 @@ class PersonRun:
 
 @dataclass(frozen=True, kw_only=True)
 class PageDoors:
-    """Where the person, and programs, come in.
+    """The ports at which the person, and programs, come in.
 
     Attributes:
         port: of the page; ``open_`` shows it in the browser.

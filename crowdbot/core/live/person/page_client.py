@@ -12,7 +12,7 @@ from crowdbot.core.live.person.stick import stick_of
 from crowdbot.core.live.rosbridge.outbox import Outbox
 from crowdbot.errors import InputError
 
-#: Messages per second and at once that a page may send; more than that is no hand.
+#: Messages per second and at once that a page may send; no hand sends more.
 _PER_SECOND, _BURST = 400.0, 800.0
 _MOST_LATENCIES = 100
 

@@ -1,4 +1,4 @@
-"""What the person's page shows of a run while it goes on: the replay page's numbers, live."""
+"""The picture of a run on the person's page while it goes on: the replay page's numbers, live."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ _LOOK = 0.02  # s
 
 @dataclass
 class SeatLog:
-    """What happened at the seat in one recording.
+    """The events at the seat in one recording.
 
     Attributes:
         steps: how often the stick was read; ``centred``: how often with no hand on it.
@@ -50,7 +50,7 @@ class SeatLog:
 
 
 class Seat:
-    """Who drives, and where the stick is.
+    """The driver, and the position of the stick.
 
     Pages call `sit`, `attend`, `move`, `begin` and `leave`, in another thread than the simulation,
     which calls `pace` and `take`. The session says who else drives, such as a program by rosbridge.

@@ -1,4 +1,4 @@
-"""What a page says about the stick that a person holds, read from untrusted messages."""
+"""The position of a stick that a person holds, read from untrusted messages."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ StickMaker = Callable[[RobotLimits, SensorInfo], Sensor]
 
 @dataclass(frozen=True, kw_only=True)
 class Controls:
-    """Who drives which robot.
+    """The robots of a run, and their drivers.
 
     Attributes:
         robot: the robot with the person's stick.
