@@ -12,6 +12,7 @@ from crowdbot.cli.serving.person_run import PageDoors, PersonRun, page_of, reque
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
 from crowdbot.cli.shared.run_arguments import (
+    AllScores,
     AsJson,
     OutRoot,
     Overrides,
@@ -74,6 +75,7 @@ def teleop(
     ] = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
+    everything: AllScores = False,
     as_json: AsJson = False,
 ) -> None:
     """Drive a robot yourself: keyboard, mouse, touch or gamepad, in a page on this machine.
@@ -116,7 +118,7 @@ def teleop(
                     port=port, open_=open_, rosbridge=rosbridge, zenoh=zenoh, rate=rate
                 )
                 run = _driven(request, controls, doors, stop)
-    print_run(run, as_json=as_json)
+    print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
 
