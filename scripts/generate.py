@@ -30,6 +30,7 @@ from scripts import (  # noqa: E402
     write_metric_index,
     write_planner_pages,
     write_reference,
+    write_rosetta_stone,
     write_schemas,
 )
 from scripts.fault_cases import draw as fault_cases  # noqa: E402
@@ -61,6 +62,9 @@ GENERATED: dict[str, Callable[[], Texts]] = {
     "parameters of planners": write_planner_pages.pages,
     "metrics by category": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
     "gallery of metrics": make_metric_pictures.pages,
+    "words of other simulators": lambda: _page(
+        write_rosetta_stone.PAGE, write_rosetta_stone.page()
+    ),
     "endings": _endings,
     "cases of fault": fault_cases.files,
     "rooms": _rooms,

@@ -7,56 +7,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from functools import cache
+from typing import Any, cast
 
+from crowdbot.core.exchange.umans.policies import COSTS
+from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.dsl.spec.component_specs import CostFunctionSpec
 from crowdbot.dsl.spec.spec import Range
-from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
-from crowdbot.plugins.crowd.cost_functions.goal_reaching_force import GoalReachingForceSpec
-from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
-from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
-from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
-from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
-from crowdbot.plugins.crowd.cost_functions.pledestrians import PledestriansSpec
-from crowdbot.plugins.crowd.cost_functions.power_law import PowerLawSpec
-from crowdbot.plugins.crowd.cost_functions.random_function import RandomFunctionSpec
-from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
-from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
-from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
-from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 
-#: Cost functions: our spec, and our name of each attribute. A later attribute replaces an earlier
-#: one with the same name: U0 of the social forces overwrites V0.
-COSTS: dict[str, tuple[type[CostFunctionSpec], dict[str, str]]] = {
-    "TtcaDca": (
-        TtcaDcaSpec,
-        {
-            "sigmaTtca": "sigma_ttca",
-            "sigmaDca": "sigma_dca",
-            "sigmaAngle_goal": "sigma_angle_goal",
-            "sigmaSpeed_goal": "sigma_speed_goal",
-        },
-    ),
-    "RVO": (RvoSpec, {"w": "w"}),
-    "ORCA": (OrcaSpec, {"timeHorizon": "time_horizon"}),
-    "FOEAvoidance": (FoeAvoidanceSpec, {}),
-    "GoalReachingForce": (GoalReachingForceSpec, {}),
-    "Karamouzas": (
-        KaramouzasSpec,
-        {name: name for name in ("alpha", "beta", "gamma", "delta", "t_max")},
-    ),
-    "Moussaid": (MoussaidSpec, {"d_max": "d_max"}),
-    "Paris": (ParisSpec, {name: name for name in ("w_a", "w_b", "t_max")}),
-    "PLEdestrians": (PledestriansSpec, {name: name for name in ("w_a", "w_b", "t_min", "t_max")}),
-    "PowerLaw": (PowerLawSpec, {"k": "k", "tau0": "tau0"}),
-    "RandomFunction": (RandomFunctionSpec, {}),
-    "SocialForcesAvoidance": (
-        SocialForcesAvoidanceSpec,
-        {"dt": "dt", "V0": "v0", "sigma": "sigma", "R": "r", "U0": "v0"},
-    ),
-    "VanToll": (VanTollSpec, {"max_distance": "max_distance"}),
-}
+
+@cache
+def _registry() -> Registry:
+    return discover()
 
 
 def cost_spec(given: Mapping[str, str]) -> CostFunctionSpec:
@@ -76,7 +39,8 @@ def cost_spec(given: Mapping[str, str]) -> CostFunctionSpec:
     for theirs, ours in names.items():
         if theirs in given:
             fields[ours] = float(given[theirs])
-    return kind(**fields)
+    spec: Any = _registry().find(CostFunctionSpec.category, kind).spec(kind=kind, **fields)
+    return cast(CostFunctionSpec, spec)
 
 
 def policy_spec(given: Mapping[str, str]) -> VelocitySpaceSpec:

@@ -19,7 +19,7 @@ import pytest
 import typer
 
 from crowdbot.cli import main
-from crowdbot.cli.app.command_names import command_groups
+from crowdbot.cli.app.command_names import command_groups, module_name
 from tests.paths import DATA
 
 SHORT, TABLE = str(DATA / "short_way.yaml"), str(DATA / "recordings" / "format_3.mcap")
@@ -57,6 +57,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("export", "run"): (".mcap", "export", "{}", "--to", "csv"),
     ("export-map", "spec"): (".yaml", "export-map", "{}"),
     ("export-urdf", "spec"): (".yaml", "export-urdf", "robot", "--spec", "{}"),
+    ("import", "files"): (".xml", "import", "{}", "--out", "RUNS/imported.yaml"),
     ("info", "file"): (".mcap", "info", "{}"),
     ("leaderboard", "folder"): ("", "leaderboard", "{}", "--out", "RUNS/l.html"),
     ("leaderboard", "audit"): (".json", "leaderboard", "RUNS", "--audit", "{}"),
@@ -108,7 +109,7 @@ PATIENCE = 30
 
 def _parameters() -> Iterator[tuple[str, str, Any]]:
     for name, group in command_groups().items():
-        module = name.replace("-", "_")
+        module = module_name(name)
         found = getattr(importlib.import_module(f"crowdbot.cli.commands.{group}.{module}"), module)
         functions = [(name, found)]
         if isinstance(found, typer.Typer):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 import pkgutil
 from collections.abc import Mapping
 from functools import cache
@@ -16,7 +17,7 @@ _COMMANDS = Path(__file__).parent.parent / "commands"
 def command_groups() -> Mapping[str, str]:
     """Return name -> group of all commands: group by group, each sorted."""
     return {
-        name.replace("_", "-"): group
+        name.replace("_", "-").rstrip("-"): group
         for group in GROUPS
         for name in sorted(m.name for m in pkgutil.iter_modules([str(_COMMANDS / group)]))
         if not name.startswith("_")
@@ -26,3 +27,8 @@ def command_groups() -> Mapping[str, str]:
 def command_names() -> list[str]:
     """Return the names of all commands, sorted."""
     return sorted(command_groups())
+
+
+def module_name(command: str) -> str:
+    """Return the name of a command's module and function, distinct from the keywords of Python."""
+    return command.replace("-", "_") + "_" * keyword.iskeyword(command)

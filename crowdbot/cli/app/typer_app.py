@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
-from crowdbot.cli.app.command_names import command_groups, command_names
+from crowdbot.cli.app.command_names import command_groups, command_names, module_name
 from crowdbot.cli.app.complete import offer
 from crowdbot.cli.app.folded_help import fold_common
 from crowdbot.cli.app.given_once import refuse_repetition
@@ -56,7 +56,7 @@ class _Commands(TyperGroup):
 
 def load(name: str) -> Any:
     """Return the command of a module, with ``-v`` and ``-q`` added."""
-    module, group = name.replace("-", "_"), command_groups()[name]
+    module, group = module_name(name), command_groups()[name]
     found = getattr(importlib.import_module(f"crowdbot.cli.commands.{group}.{module}"), module)
     if not isinstance(found, typer.Typer):
         app = typer.Typer(**_SETTINGS)

@@ -69,6 +69,9 @@ CODES = {
     "E214": "draws that are not the committed ones",
     "E215": "draws revealed in part",
     "E301": "plugin collision",
+    "E401": "file of another program that cannot be read",
+    "E402": "value in a file of another program",
+    "E403": "file of no known program",
 }
 REFERENCE = "docs/reference/errors.md"
 #: Largest number of reported errors; documents with more are broken in another way.

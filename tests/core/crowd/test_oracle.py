@@ -15,9 +15,10 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd import step
 from crowdbot.core.crowd.parameters import AgentParameters
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
+from crowdbot.core.exchange.umans.policies import COSTS
 from scripts.crowd_oracle.__main__ import main
 from scripts.crowd_oracle.judge import CLOSE, agrees, judge
-from scripts.crowd_oracle.policy import COSTS, cost_spec, policy_spec
+from scripts.crowd_oracle.policy import cost_spec, policy_spec
 from scripts.crowd_oracle.step import Stepper
 from tests.core.crowd.oracle_cases import FOLDER, NAMES, load
 

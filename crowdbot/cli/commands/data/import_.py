@@ -1,0 +1,67 @@
+"""``crowdbot import``: scenes of other simulators as scenarios, with a report of what is lost."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from crowdbot.core.exchange.importing import Imported
+
+
+def import_(
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE...",
+            help="Trials of the original, UMANS XML, scenes of other programs; together.",
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="File to write, .yaml; default: NAME.yaml, here."),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,
+) -> None:
+    """Write scenes of other simulators as scenarios; report what each part became.
+
+    Example: crowdbot import Circle10.xml RVO.xml --out circle.yaml
+
+    Example: crowdbot import Wheelchair_demo_config.xml --out wheelchair.yaml
+    """
+    from crowdbot.core.exchange.checked import write
+    from crowdbot.core.exchange.importing import import_files
+
+    check_ending(out, ".yaml", ".yml")
+    target = out or Path(f"{files[0].stem}.yaml")
+    found = import_files(files, target.stem, installed(plugin, no_plugins))
+    written = write(target, found.lines, found.scenes)
+    say(json.dumps(_facts(found, written), indent=2) if as_json else _text(found, written))
+
+
+def _facts(found: Imported, written: Sequence[Path]) -> dict[str, Any]:
+    return {
+        "out": str(written[0]),
+        "files": [str(path) for path in written],
+        "formats": found.formats,
+        "scenarios": found.ids,
+        "counts": found.report.counts(),
+        "report": [entry.as_dict() for entry in found.report.entries],
+    }
+
+
+def _text(found: Imported, written: Sequence[Path]) -> str:
+    count = len(found.ids)
+    scenarios = f"{count} scenario{'s' * (count != 1)}: {', '.join(found.ids[:5])}"
+    more = ", …" if count > 5 else ""
+    return "\n".join([*found.report.lines(), f"wrote {written[0]}, {scenarios}{more}"])

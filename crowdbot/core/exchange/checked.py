@@ -1,0 +1,71 @@
+"""Documents that were made from files of others: checked, errors at the place in those files."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from crowdbot.core.exchange.scene import Scene
+from crowdbot.core.exchange.write import Line
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
+from crowdbot.errors import SpecError
+
+
+def check(
+    lines: Sequence[Line], scenes: Sequence[Scene], registry: Registry, default: Mark
+) -> list[str]:
+    """Check a document as the language does; return the ids of its scenarios.
+
+    Args:
+        lines: the document.
+        scenes: those that its lines name.
+        registry: the installed components.
+        default: position of errors that no part of the files caused.
+
+    Raises:
+        SpecError: E402, what the files say is not a valid scenario.
+    """
+    with tempfile.TemporaryDirectory(prefix="crowdbot-import-") as folder:
+        path = Path(folder) / "imported.yaml"
+        write(path, lines, scenes)
+        try:
+            return [scenario.id for scenario in open_spec(str(path), registry).scenarios]
+        except SpecError as error:
+            found = [_at_origin(d, path, lines, scenes, default) for d in error.diagnostics]
+            raise SpecError(list({d.sort_key(): d for d in found}.values())) from None
+
+
+def write(path: Path, lines: Sequence[Line], scenes: Sequence[Scene]) -> list[Path]:
+    """Write a document and the tables beside it; return the files."""
+    tables: Mapping[str, str] = {n: t for scene in scenes for n, t in scene.tables.items()}
+    files = [path.with_name(name) for name in tables]
+    for file, content in zip(files, tables.values(), strict=True):
+        atomic_write(file, content)
+    atomic_write(path, "".join(f"{line.text}\n" for line in lines))
+    return [path, *files]
+
+
+def _at_origin(
+    found: Diagnostic, path: Path, lines: Sequence[Line], scenes: Sequence[Scene], default: Mark
+) -> Diagnostic:
+    """Return an error of our document as one of the file that it came from."""
+    mark = default
+    if found.mark.source.file == path or found.mark.source.name == str(path):
+        line = lines[min(found.mark.line, len(lines) - 1)]
+        if line.scene >= 0:
+            mark = _origin(line, scenes[line.scene], default)
+    message = f"as imported: {found.message}"
+    hint = found.hint if found.hint else f"in our words {found.code}"
+    return Diagnostic("E402", message, mark, hint)
+
+
+def _origin(line: Line, scene: Scene, default: Mark) -> Mark:
+    for length in range(len(line.path), 0, -1):
+        if line.path[:length] in scene.origins:
+            return scene.origins[line.path[:length]]
+    first = next(iter(scene.origins.values()), default)
+    return scene.origins.get((), first)

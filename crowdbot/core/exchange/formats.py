@@ -1,0 +1,51 @@
+"""Formats of scenes: how their files are recognised, and what reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.rows import Table
+from crowdbot.core.exchange.scene import Scene
+from crowdbot.core.registry.registry import Registry
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """The surroundings of a reader: report, components and name.
+
+    Attributes:
+        report: where each part is recorded.
+        registry: the installed components.
+        name: name of the document.
+    """
+
+    report: Report
+    registry: Registry
+    name: str
+
+
+Reader = Callable[[Sequence[Opened], Context], list[Scene]]
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One format.
+
+    Attributes:
+        name: short name.
+        title: for people, with its program.
+        fits: True for a file of this format.
+        read: returns the scenes of all its files together.
+        tables: its rows, for the documents.
+        loses: what it says that has no place here, in a sentence, for the documents.
+    """
+
+    name: str
+    title: str
+    fits: Callable[[Opened], bool]
+    read: Reader
+    tables: Sequence[Table]
+    loses: str = ""

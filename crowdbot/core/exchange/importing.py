@@ -1,0 +1,90 @@
+"""Import files of other programs: which format each is, one document, one report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from crowdbot.core.exchange.all_formats import FORMATS
+from crowdbot.core.exchange.checked import check
+from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.opened import Opened, open_file_of_others
+from crowdbot.core.exchange.overlaps import enter_in_turn
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.scene import Scene, id_of
+from crowdbot.core.exchange.write import Line, document
+from crowdbot.core.registry.registry import Registry
+from crowdbot.dsl.text.diagnostics import Diagnostic
+from crowdbot.errors import SpecError
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """The result of an import.
+
+    Attributes:
+        lines: the document.
+        scenes: those that its lines name.
+        ids: ids of its scenarios.
+        report: the fate of each part.
+        formats: titles of the formats that were read.
+    """
+
+    lines: list[Line]
+    scenes: list[Scene]
+    ids: list[str]
+    report: Report
+    formats: list[str]
+
+
+def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Imported:
+    """Read files of other programs as scenarios that validate.
+
+    Args:
+        paths: the files, in any order; those that they name are found beside them.
+        name: name of the document, without its ending.
+        registry: the installed components.
+
+    Raises:
+        SpecError: E401 to E403, a file cannot be read, is of no known format, or does not make a
+            valid scenario; with positions in the files.
+    """
+    report = Report()
+    opened = [open_file_of_others(path, report) for path in dict.fromkeys(paths)]
+    context = Context(report, registry, id_of(name))
+    scenes: list[Scene] = []
+    read: list[str] = []
+    for found, files in _by_format(opened).items():
+        scenes += FORMATS[found].read(files, context)
+        read.append(FORMATS[found].title)
+        for root in (root for file in files for root in file.roots):
+            root.used = True
+            report.rest(root)
+    for scene in scenes:
+        enter_in_turn(scene, report)
+    title = f"Imported from {' and '.join(read)}"
+    lines = document(scenes, context.name, title)
+    return Imported(lines, scenes, check(lines, scenes, registry, opened[0].top), report, read)
+
+
+def _by_format(opened: Sequence[Opened]) -> dict[str, list[Opened]]:
+    """Return the files of each format, in the order given; companions go with their format."""
+    found: dict[str, list[Opened]] = {}
+    for file in opened:
+        form = _format_of(file)
+        found.setdefault(form.name, []).append(file)
+    if "trial" in found and "umans" in found:  # policies of its people
+        found["trial"] += found.pop("umans")
+    return found
+
+
+def _format_of(file: Opened) -> Format:
+    for form in FORMATS.values():
+        if form.fits(file):
+            return form
+    shown = ", ".join(sorted(file.tags)[:5]) or "plain text"
+    message = f"a file of no known format (it has: {shown[:100]})"
+    hint = f"known are {', '.join(form.title for form in FORMATS.values())}"
+    mark = file.roots[0].mark if file.roots else file.top
+    raise SpecError([Diagnostic("E403", message, mark, hint)])

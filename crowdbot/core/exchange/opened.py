@@ -1,0 +1,65 @@
+"""Files that are to be imported, opened by the look of their content."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from crowdbot.core.exchange.data_items import parse_data
+from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.source import source_of
+from crowdbot.core.exchange.xml_items import parse_xml
+from crowdbot.dsl.text.diagnostics import Mark, Source
+
+_DATA = (".json", ".yaml", ".yml", ".scenario")
+_XML = (".xml", ".svg")
+
+
+@dataclass(slots=True)
+class Opened:
+    """One file.
+
+    Attributes:
+        path: its path.
+        source: its lines.
+        text: its content.
+        roots: root elements of XML, the root of JSON or YAML, or nothing for other text.
+        kind: ``xml``, ``data`` or ``text``.
+    """
+
+    path: Path
+    source: Source
+    text: str
+    kind: str
+    roots: list[Item] = field(default_factory=list)
+
+    @property
+    def top(self) -> Mark:
+        """Its beginning."""
+        return Mark(self.source)
+
+    @property
+    def tags(self) -> set[str]:
+        """Names of its root elements, or of the fields at its top."""
+        if self.kind == "data":
+            return {child.name for child in self.roots[0].children}
+        return {root.name for root in self.roots}
+
+
+def open_file_of_others(path: Path, report: Report) -> Opened:
+    """Open a file and parse it; record what its format does not allow, and is accepted.
+
+    Raises:
+        SpecError: E401, it cannot be read or parsed.
+    """
+    source, text = source_of(path)
+    start, ending = text.lstrip()[:1], path.suffix.lower()
+    if start == "<" or ending in _XML:
+        roots, odd = parse_xml(text, source)
+        for mark, note in odd:
+            report.odd(mark, note)
+        return Opened(path, source, text, "xml", roots)
+    if start == "{" or ending in _DATA:
+        return Opened(path, source, text, "data", [parse_data(text, source)])
+    return Opened(path, source, text, "text")

@@ -1,0 +1,47 @@
+"""People who overlap at the start: other simulators allow it, our language does not.
+
+They keep their places, which the simulated contact pushes apart as it does elsewhere, and enter a
+few milliseconds one after the other, within the first tick.
+"""
+
+from __future__ import annotations
+
+from crowdbot.core.exchange.report import Entry, Report
+from crowdbot.core.exchange.rows import Fate
+from crowdbot.core.exchange.scene import Scene
+from crowdbot.dsl.checks.agents import Disc, overlapping
+
+#: Time between two that overlap, s, and usual radius, m.
+_LATER, _RADIUS = 1e-3, 0.33
+_NOTE = "overlaps another at the start, which is not allowed here: enters some milliseconds later"
+
+
+def enter_in_turn(scene: Scene, report: Report) -> None:
+    """Delay agents who overlap others that enter at the same time; record each."""
+    radius = scene.crowd.get("body", {}).get("radius", _RADIUS)
+    waves: dict[float, list[int]] = {}
+    for number, agent in enumerate(scene.agents):
+        waves.setdefault(agent.get("start_time", 0.0), []).append(number)
+    for begin, wave in waves.items():
+        discs = {n: _disc(scene, n, radius) for n in wave}
+        turn = 0
+        while wave:
+            late = {wave[k] for _, k in overlapping([discs[n] for n in wave])}
+            if turn:
+                for number in (n for n in wave if n not in late):
+                    _delay(scene, report, number, round(begin + turn * _LATER, 6))
+            wave = [number for number in wave if number in late]
+            turn += 1
+
+
+def _disc(scene: Scene, number: int, radius: float) -> Disc:
+    agent = scene.agents[number]
+    return agent["x"], agent["y"], agent.get("radius", radius)
+
+
+def _delay(scene: Scene, report: Report, number: int, time: float) -> None:
+    path = ("crowd", "agents", str(number))
+    place = scene.origins.get(path)
+    report.entries.append(Entry(Fate.INTERPRETED, "start", place, "crowd.agents.start_time", _NOTE))
+    scene.comments[path] = "overlaps another: enters some milliseconds later"
+    scene.agents[number]["start_time"] = time

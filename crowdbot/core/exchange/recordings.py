@@ -1,0 +1,173 @@
+"""Recorded people: the original's recording, and the trajectories that UMANS writes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+
+from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.item import LARGEST, Item
+from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.rows import Row, Table
+from crowdbot.core.exchange.scene import Scene, around, id_of
+from crowdbot.core.exchange.trial.replays import HEADER
+from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
+from crowdbot.errors import SpecError
+
+_CELLS = re.compile(r"[,;\t]")
+_NAMES = {"t": ("t", "time", "timestamp"), "id": ("id", "agent", "agent_id", "person", "ped_id"),
+          "x": ("x", "pos_x", "posx"), "y": ("y", "pos_y", "posy"),
+          "entity": ("entity", "type", "kind")}  # fmt: skip
+#: Columns of a file without a header: UMANS' time, place and viewing direction of one agent.
+_BARE = {"t": 0, "x": 1, "y": 2}
+_NUMBERED = re.compile(r"(\d{1,9})$")
+RECORDING = Table(
+    "CSV with a header",
+    (
+        Row("time, id, x, y", "crowd.policy replay.file"),
+        Row("yaw, vx, vy", "", "they follow from the places"),
+        Row("entity robot", "", "a planner drives the robot here"),
+    ),
+)
+WRITTEN = Table(
+    "output_ID.csv",
+    (
+        Row("column 1 to 3", "crowd.policy replay.file", "time, x and y; ID is that of the name"),
+        Row("column 4 and 5", "", "the viewing direction: people look where they walk"),
+    ),
+)
+
+
+def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+    """Return one scene in which everybody in the files walks as recorded.
+
+    Raises:
+        SpecError: E402, a cell is not a number, or two files have the same person.
+    """
+    people: dict[int, list[tuple[float, float, float]]] = {}
+    for file in files:
+        for ident, points in _people(file, context.report).items():
+            if ident in people:
+                raise SpecError([Diagnostic("E402", f"person {ident} is in two files", file.top)])
+            people[ident] = points
+    if not people:
+        raise SpecError([Diagnostic("E402", "no person has two lines", files[0].top)])
+    scene = Scene(id_of(files[0].path.stem))
+    table = f"{context.name}.recorded.csv"
+    rows = [(t, ident, x, y) for ident, points in people.items() for t, x, y in points]
+    scene.tables[table] = HEADER + "".join(
+        f"{t!r},{i},{x!r},{y!r}\n" for t, i, x, y in sorted(rows)
+    )
+    xs, ys = [row[2] for row in rows], [row[3] for row in rows]
+    scene.environment["area"] = around(min(xs), max(xs), min(ys), max(ys))
+    scene.policy({"policy": {"kind": "replay", "file": table}, "costs": {}}, "replay", files[0].top)
+    scene.notes.append(f"Imported from recordings: {', '.join(f.path.name for f in files)}.")
+    context.report.added("environment", "an open floor: a recording has no walls", files[0].top)
+    return [scene]
+
+
+def _people(file: Opened, report: Report) -> dict[int, list[tuple[float, float, float]]]:
+    lines = file.text.split("\n")
+    head = _CELLS.split(lines[0])
+    columns = _columns(head)
+    bare = not columns
+    number = _NUMBERED.search(file.path.stem)
+    found: dict[int, list[tuple[float, float, float]]] = {}
+    robots = 0
+    for at in range(0 if bare else 1, len(lines)):
+        if not lines[at].strip():
+            continue
+        row = _Row(file, at, _CELLS.split(lines[at]), columns or _BARE)
+        if not bare and "entity" in columns and row.text("entity").lower().startswith("robot"):
+            robots += 1
+            continue
+        ident = int(number[1]) if bare and number else row.whole("id") if not bare else 0
+        point = (row.number("t"), row.number("x"), row.number("y"))
+        points = found.setdefault(ident, [])
+        if points and point[0] <= points[-1][0]:
+            row.refuse("the times of a person have to rise")
+        points.append(point)
+    _record(file, report, head, bare, robots)
+    return {ident: points for ident, points in found.items() if len(points) > 1}
+
+
+def _columns(head: Sequence[str]) -> dict[str, int]:
+    """Return our name -> column of a header; empty without a header."""
+    names = [cell.strip().strip('"').lower() for cell in head]
+    found = {
+        ours: names.index(theirs)
+        for ours, known in _NAMES.items()
+        for theirs in known[::-1]
+        if theirs in names
+    }
+    return found if {"t", "id", "x", "y"} <= set(found) else {}
+
+
+def _record(file: Opened, report: Report, head: Sequence[str], bare: bool, robots: int) -> None:
+    table = WRITTEN if bare else RECORDING
+    whole = Item(table.element, Mark(file.source))
+    report.carried(whole, table.rows[0].ours)
+    more = len(head) > 3 if bare else len(head) > len(_columns(head))
+    if more:
+        other = whole.add(Item("further columns", Mark(file.source)))
+        report.left_out(other, table.rows[1].note)
+    if robots:
+        report.left_out(whole.add(Item("robot", Mark(file.source))), RECORDING.rows[2].note)
+
+
+class _Row:
+    """One line, whose cells know their place."""
+
+    def __init__(
+        self, file: Opened, line: int, cells: Sequence[str], columns: dict[str, int]
+    ) -> None:
+        self._file, self._line, self._cells, self._columns = file, line, cells, columns
+
+    def text(self, name: str) -> str:
+        """Return a cell as text."""
+        at = self._columns[name]
+        if at >= len(self._cells):
+            self.refuse(f"there is no column {at + 1} ({name})")
+        return self._cells[at].strip().strip('"')
+
+    def number(self, name: str) -> float:
+        """Return a cell as a finite number."""
+        try:
+            value = float(self.text(name))
+        except ValueError:
+            value = math.nan
+        if not abs(value) <= LARGEST:
+            self.refuse(f"{name} is {self.text(name)[:40]!r}, and has to be a finite number")
+        return value
+
+    def whole(self, name: str) -> int:
+        """Return a cell as a whole number that is not negative."""
+        value = self.number(name)
+        if value != int(value) or value < 0:
+            self.refuse(f"{name} is {self.text(name)[:40]!r}, and has to be a whole number")
+        return int(value)
+
+    def refuse(self, message: str) -> None:
+        """Raise a SpecError at this line."""
+        raise SpecError([Diagnostic("E402", message, Mark(self._file.source, self._line))])
+
+
+def _is_recording(file: Opened) -> bool:
+    if file.kind != "text":
+        return False
+    first = next((line for line in file.text.split("\n") if line.strip()), "")
+    cells = [cell.strip() for cell in _CELLS.split(first)]
+    numbers = all(re.fullmatch(r"[-+0-9.eE]+", cell) for cell in cells)
+    return len(cells) >= 3 and (bool(_columns(cells)) or (numbers and len(cells) <= 5))
+
+
+RECORDINGS = Format(
+    "recordings",
+    "recorded people as CSV",
+    _is_recording,
+    read,
+    (RECORDING, WRITTEN),
+    "robots and walls",
+)

@@ -1,0 +1,136 @@
+"""The report of an import or export: each part that was read, its fate and its place."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.rows import Fate, Table
+from crowdbot.dsl.text.diagnostics import Mark
+
+#: Reason of parts that no reader asked for.
+UNKNOWN = "no meaning of it is known here"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One part of a file.
+
+    Attributes:
+        fate: what happened to it.
+        theirs: path of the part, or what was added.
+        at: its position; None for what only our document has.
+        ours: place in our document; empty if it has none.
+        note: reason, or how it was interpreted.
+    """
+
+    fate: Fate
+    theirs: str
+    at: Mark | None
+    ours: str = ""
+    note: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for ``--json``; line and column count from 1."""
+        place = {"file": self.at.source.name, "line": self.at.line + 1,
+                 "column": self.at.column + 1} if self.at else {}  # fmt: skip
+        return {"fate": self.fate.value, "theirs": self.theirs, **place, "ours": self.ours,
+                "note": self.note}  # fmt: skip
+
+
+@dataclass(slots=True)
+class Report:
+    """All entries so far."""
+
+    entries: list[Entry] = field(default_factory=list)
+
+    def carried(self, item: Item, ours: str) -> None:
+        """Record a part that is carried over as it is."""
+        item.used = True
+        self.entries.append(Entry(Fate.CARRIED, item.path, item.mark, ours))
+
+    def interpreted(self, item: Item, ours: str, note: str) -> None:
+        """Record a part that means something like a field of ours."""
+        item.used = True
+        self.entries.append(Entry(Fate.INTERPRETED, item.path, item.mark, ours, note))
+
+    def left_out(self, item: Item, note: str, *, whole: bool = True) -> None:
+        """Record a part, by default with everything in it, that has no place in our language."""
+        if whole:
+            item.take_all()
+        item.used = True
+        self.entries.append(Entry(Fate.LEFT_OUT, item.path, item.mark, "", note))
+
+    def added(self, ours: str, note: str, at: Mark | None = None) -> None:
+        """Record a field that our language needs and the files do not have."""
+        self.entries.append(Entry(Fate.ADDED, "", at, ours, note))
+
+    def odd(self, mark: Mark, note: str) -> None:
+        """Record something that the file's format does not allow, and that was accepted."""
+        self.entries.append(Entry(Fate.INTERPRETED, "(syntax)", mark, "", note))
+
+    def take(self, item: Item, table: Table) -> dict[str, Any]:
+        """Return our fields of an item's parts, as its table says, and record each.
+
+        Raises:
+            SpecError: a part has a value that its row does not accept.
+        """
+        found: dict[str, Any] = {}
+        for row in table.rows:
+            for part in item.every(row.theirs):
+                if row.ours:
+                    found[row.field] = row.read(part)
+                    self.entries.append(Entry(row.fate, part.path, part.mark, row.ours, row.note))
+                elif row.unless and _same(part, row.unless):
+                    self.carried(part, f"(nothing to carry over: {row.unless})")
+                else:
+                    self.left_out(part, row.note)
+        return found
+
+    def rest(self, root: Item) -> None:
+        """Record what nothing asked for: at its outermost part."""
+        stack = [root]
+        while stack:
+            item = stack.pop()
+            if not item.used:
+                self.left_out(item, UNKNOWN)
+            elif item.value is not None and not item.heard:
+                self.left_out(
+                    item, f"the text {str(item.value)[:40]!r} has no meaning here", whole=False
+                )
+            stack += reversed(item.children)
+
+    def counts(self) -> dict[str, int]:
+        """Return fate -> number of entries."""
+        found = Counter(entry.fate for entry in self.entries)
+        return {fate.value: found[fate] for fate in Fate}
+
+    def lines(self) -> list[str]:
+        """Return one line per kind of part that was not carried over as it is, then the sums."""
+        groups: dict[tuple[Fate, str, str, str], list[Entry]] = {}
+        for entry in self.entries:
+            if entry.fate != Fate.CARRIED:
+                key = (entry.fate, entry.theirs, entry.ours, entry.note)
+                groups.setdefault(key, []).append(entry)
+        order = sorted(groups, key=lambda key: list(Fate).index(key[0]))
+        sums = ", ".join(f"{number} {fate}" for fate, number in self.counts().items())
+        return [*(_line(key, groups[key]) for key in order), sums]
+
+
+def _same(part: Item, value: str) -> bool:
+    """Return True if a part has a value, as text or as number."""
+    text = part.text().lower()
+    try:
+        return text == value or float(text) == float(value)
+    except ValueError:
+        return False
+
+
+def _line(key: tuple[Fate, str, str, str], entries: list[Entry]) -> str:
+    fate, theirs, ours, note = key
+    first = next((str(e.at) for e in entries if e.at), "")
+    more = f" and {len(entries) - 1} more" if len(entries) > 1 else ""
+    what = " -> ".join(filter(None, (theirs, ours)))
+    return f"{fate.value}: {f'{first}{more}: ' if first else ''}{what}{f': {note}' if note else ''}"

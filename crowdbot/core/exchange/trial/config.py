@@ -1,0 +1,107 @@
+"""Config files and orders of trials: which trials there are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from crowdbot.core.exchange.companions import companion
+from crowdbot.core.exchange.formats import Context
+from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.opened import Opened, open_file_of_others
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.rows import Row, Table
+from crowdbot.dsl.text.diagnostics import Mark
+
+CONFIG = Table(
+    "Config",
+    (
+        Row("experience/sourceFileExperiment", "suite", "the trials in the order of this file"),
+        Row("experience@currentUser", "suite", "stands for {USER} and {TWO} in names of files"),
+        Row("experience@startingTrial", "", "a suite has no scenario to begin with", unless="0"),
+        Row("log", "", "crowdbot has its own messages"),
+        Row("AddOns", "", "how a planner connects is an option of crowdbot serve"),
+    ),
+)
+
+
+@dataclass(slots=True)
+class Trials:
+    """Trial files, each once, and words in paths."""
+
+    files: list[Opened] = field(default_factory=list)
+    words: dict[str, str] = field(default_factory=lambda: {"{USER}": "0", "{TWO}": "0"})
+
+    def add(self, file: Opened) -> None:
+        """Add a trial unless it is there already."""
+        if file.path.resolve() not in {f.path.resolve() for f in self.files}:
+            self.files.append(file)
+
+
+def find_trials(files: Sequence[Opened], context: Context) -> Trials:
+    """Return the trials that files are, or name.
+
+    Raises:
+        SpecError: a named file is missing or is not what it should be.
+    """
+    found = Trials()
+    configs = [f for f in files if "Config" in f.tags]
+    orders = [f for f in files if f.kind == "text"]
+    for file in configs:
+        for root in file.roots:
+            named = _config(root, found, context.report)
+            if named is not None:
+                path = companion(named, file.path, _replaced(named.text(), found))
+                if path.resolve() not in {f.path.resolve() for f in orders}:
+                    orders.append(open_file_of_others(path, context.report))
+    for file in orders:
+        _order(file, found, context.report)
+    for file in files:
+        if "Trial" in file.tags:
+            found.add(file)
+    return found
+
+
+def _config(root: Item, found: Trials, report: Report) -> Item | None:
+    named = None
+    experience = root.find("experience")
+    if experience is not None:
+        user = experience.find("@currentUser")
+        if user is not None:
+            number = user.whole(0)
+            found.words = {"{USER}": str(number), "{TWO}": str(number % 2)}
+            report.interpreted(user, "suite", CONFIG.rows[1].note)
+        start = experience.find("@startingTrial")
+        if start is not None:
+            if start.whole(0) == 0:
+                report.carried(start, "suite")
+            else:
+                report.left_out(start, CONFIG.rows[2].note)
+        named = experience.find("sourceFileExperiment")
+        if named is not None:
+            named.text()
+            report.carried(named, "suite")
+    for name, row in (("log", CONFIG.rows[3]), ("AddOns", CONFIG.rows[4])):
+        if (item := root.find(name)) is not None:
+            report.left_out(item, row.note)
+    return named
+
+
+def _order(file: Opened, found: Trials, report: Report) -> None:
+    for number, line in enumerate(file.text.split("\n")):
+        if not line.strip():
+            continue
+        item = Item("FileOrder", Mark(file.source, number, 0, max(1, len(line))), line)
+        path: Path = companion(item, file.path, _replaced(line, found))
+        trial = open_file_of_others(path, report)
+        if "Trial" not in trial.tags:
+            item.refuse(f"{path.name} is not a trial")
+        report.carried(item, "suite.matrix.trial")
+        found.add(trial)
+
+
+def _replaced(text: str, found: Trials) -> str:
+    for word, value in found.words.items():
+        text = text.replace(word, value)
+    return text
