@@ -108,6 +108,18 @@ class BuildPlanner(Protocol[PlannerSpecT]):
         ...
 
 
+class BuildPlannerWithHalf(Protocol[PlannerSpecT]):
+    """Builds a planner that uses another one, see ``PlannerSpec.half``; like `BuildPlanner`."""
+
+    def __call__(self, spec: PlannerSpecT, half: Planner, /) -> Planner:
+        """Return a planner that was not reset yet.
+
+        ``half`` takes any observation that this one gets, of which it sees the sensors that it
+        needs; its commands are within the limits. Reset it in ``reset``, call it in ``step``.
+        """
+        ...
+
+
 class BuildPolicy(Protocol[PolicySpecT]):
     """Builds a crowd policy: called once per recording with people, and once per named policy."""
 

@@ -67,7 +67,7 @@ HOMES = {
     "crowdbot.dsl.spec.component": "Component",
     "crowdbot.dsl.spec.component_specs": (
         "Agreement CostFunctionSpec CrowdPolicySpec EnvironmentSpec MetricSpec NoiseSpec "
-        "PlannerRole PlannerSpec RobotSpec SensorSpec"
+        "PlannerDocument PlannerRole PlannerSpec RobotSpec SensorSpec"
     ),
     "crowdbot.dsl.spec.metric_component": "Better MetricComponent MetricVariant declare_metric",
     "crowdbot.dsl.spec.metric_invariants": "MetricInvariants",
@@ -84,7 +84,7 @@ HOMES = {
     "crowdbot.errors": "InputError PluginError SimulationError did_you_mean nearest",
     "crowdbot.hookspecs": "hookimpl",
     "crowdbot.plugin.build_functions": (
-        "BuildCost BuildEnvironment BuildMetric BuildNoise BuildPlanner BuildPolicy "
-        "BuildRangeSensor BuildRobot BuildSensor"
+        "BuildCost BuildEnvironment BuildMetric BuildNoise BuildPlanner BuildPlannerWithHalf "
+        "BuildPolicy BuildRangeSensor BuildRobot BuildSensor"
     ),
 }

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, cast
 
+from crowdbot.core.planning.registered import half_of
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.spec.component import Component
+from crowdbot.dsl.spec.component_specs import PlannerSpec
 from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.errors import PlannerError
 from crowdbot.testing.around import around, built, specs_of
@@ -111,7 +113,13 @@ def _driver(
     kind: str, spec: ComponentSpec, known: Registry, sensors: Mapping[str, Any]
 ) -> Callable[[Course], Driven]:
     privileged = getattr(spec, "privileged", False) is True
-    return lambda course: Driven(built(known, spec), kind, course, sensors, privileged=privileged)
+    return lambda course: Driven(
+        built(known, spec, *half_of(cast(PlannerSpec, spec), known)),
+        kind,
+        course,
+        sensors,
+        privileged=privileged,
+    )
 
 
 def _drive(name: str, driven: Driven) -> list[Any]:

@@ -18,6 +18,10 @@ from crowdbot.plugins.noise.offset import OffsetSpec
 from crowdbot.plugins.noise.offset_build import build as build_noise
 from crowdbot.plugins.planners.dwa.dwa import DwaSpec
 from crowdbot.plugins.planners.dwa.dwa_build import build as build_planner
+from crowdbot.plugins.planners.probabilistic.probabilistic import ProbabilisticSpec
+from crowdbot.plugins.planners.probabilistic.probabilistic_build import (
+    build as build_probabilistic,
+)
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build as build_robot
 from crowdbot.plugins.sensors.bumper import BumperSpec
@@ -31,6 +35,7 @@ sensor: builds.BuildSensor[BumperSpec] = build_sensor
 proximity: builds.BuildRangeSensor[UltrasoundSpec] = build_proximity
 noise: builds.BuildNoise[OffsetSpec] = build_noise
 planner: builds.BuildPlanner[DwaSpec] = build_planner
+both: builds.BuildPlannerWithHalf[ProbabilisticSpec] = build_probabilistic
 policy: builds.BuildPolicy[ReplaySpec] = build_policy
 cost: builds.BuildCost[GoalReachingForceSpec] = build_cost
 metric: builds.BuildMetric[RiskSpec] = Risk
@@ -38,7 +43,7 @@ metric: builds.BuildMetric[RiskSpec] = Risk
 
 def test_every_category_has_a_contract_with_a_time() -> None:
     contracts = {n: c for n, c in vars(builds).items() if n.startswith("Build")}
-    assert len(contracts) == len(CATEGORIES) + 1  # sensors of distances have one of their own
+    assert len(contracts) == len(CATEGORIES) + 2  # also of sensors with noise, planners with a half
     for name, contract in contracts.items():
         first = (inspect.getdoc(contract) or "").partition("\n")[0]
-        assert "called " in first.lower() or name == "BuildRangeSensor"
+        assert "called " in first.lower() or name in ("BuildRangeSensor", "BuildPlannerWithHalf")

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from crowdbot.core.planning.half import HalfPlanner
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.python_file import checked_planner
 from crowdbot.core.registry.build_reference import load_build
@@ -73,14 +74,56 @@ def load_kind(kind: str, parameters: Mapping[str, Any], registry: Registry) -> P
     return spec
 
 
-def build_of_kind(spec: PlannerSpec, registry: Registry) -> Planner:
+def build_of_kind(spec: PlannerSpec, registry: Registry, half: Planner | None = None) -> Planner:
     """Build a planner from a spec.
+
+    Args:
+        half: the planner that it uses, if it uses one; default: built of its spec.
 
     Raises:
         PlannerError: it cannot be made, or lacks a method.
     """
     call = registry.plugin_call(spec, error=PlannerError, passes=PlannerError)
-    return registry.build(spec, checked_planner, call=call)
+    halves = half_of(spec, registry) if half is None else (half,)
+    return registry.build(spec, checked_planner, *halves, call=call)
+
+
+def half_of(spec: PlannerSpec, registry: Registry) -> tuple[Planner, ...]:
+    """Build the planner that a planner uses, in this process; empty if it uses none.
+
+    Raises:
+        InputError: it is not a registered kind, or a parameter is wrong.
+        PlannerError: it cannot be made.
+    """
+    if not uses_half(spec):
+        return ()
+    half = half_spec(spec, registry)
+    planner = build_of_kind(half, registry)
+    needs = getattr(half, "needs", None)
+    return (HalfPlanner(planner, half.kind, needs, privileged=is_privileged(half)),)
+
+
+def half_spec(spec: PlannerSpec, registry: Registry, where: str = "") -> PlannerSpec:
+    """Return the spec of the registered planner that a planner uses.
+
+    Raises:
+        InputError: it is not a registered kind, or a parameter is wrong.
+    """
+    what, where = getattr(spec, spec.half), f"{where}{spec.half}: "
+    if not isinstance(what, Mapping) or not isinstance(what.get("kind"), str):
+        raise InputError(f"{where}'{spec.kind}' runs in a process of its own; name a kind here")
+    parameters = {name: value for name, value in what.items() if name != "kind"}
+    return spec_of_kind(find_kind(what["kind"], registry, where), parameters, where)
+
+
+def uses_half(spec: PlannerSpec) -> bool:
+    """Return True if a planner uses another one."""
+    return bool(spec.half) and getattr(spec, spec.half) is not None
+
+
+def is_privileged(holder: object) -> bool:
+    """Return True if a planner class or spec is privileged, by class variable or field."""
+    return getattr(holder, "privileged", False) is True
 
 
 def _lines(error: ValidationError, kind: str, known: Mapping[str, Any], where: str) -> list[str]:

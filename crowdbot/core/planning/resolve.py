@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
@@ -15,6 +15,7 @@ from crowdbot.core.planning.description import described, role_of
 from crowdbot.core.planning.external import external_choice, is_external
 from crowdbot.core.planning.fleet_choice import fleet_choice
 from crowdbot.core.planning.guarded import planner_title
+from crowdbot.core.planning.half_choice import choice_with_half
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.process.process_planner import NotLoaded, ProcessPlan, describe
 from crowdbot.core.planning.python_file import (
@@ -25,14 +26,21 @@ from crowdbot.core.planning.python_file import (
     planner_class,
     preloads,
 )
-from crowdbot.core.planning.registered import build_of_kind, find_kind, spec_of_kind
+from crowdbot.core.planning.registered import (
+    build_of_kind,
+    find_kind,
+    half_spec,
+    is_privileged,
+    spec_of_kind,
+    uses_half,
+)
+from crowdbot.core.planning.selected_sensors import select_sensors
 from crowdbot.core.planning.unchanged_files import UnchangedFiles
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.plugin import BUILTIN
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.source_digest import check_source, source_digest
 from crowdbot.core.support.text_files import suggest_files
-from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import PlannerRole, PlannerSpec
 from crowdbot.dsl.suite.settings import setting_texts
@@ -78,13 +86,8 @@ def resolve_planner(
         raise InputError(f"{text}: no such file; did you mean {path}.py:{name}?")
     if text.endswith((".yaml", ".yml")) or "/" in text:
         document = _read(Path(text))
-        if is_external(document):
-            return external_choice(Path(text), document, given, place)
-        kind = document.pop("kind", None)
-        if not isinstance(kind, str):
-            raise InputError(f"{text}: 'kind' is missing: which planner is it?")
-        return _from_kind(kind, {**document, **given}, registry, f"{text}: ", place)
-    return _from_kind(text, given, registry, "", place)
+        return _from_document(document, given, registry, _Origin(f"{text}: ", Path(text)), place)
+    return _from_kind(text, given, registry, _Origin("", None), place)
 
 
 def kinds_of_role(role: PlannerRole, registry: Registry) -> list[str]:
@@ -98,47 +101,40 @@ def kinds_of_role(role: PlannerRole, registry: Registry) -> list[str]:
     )
 
 
-def select_sensors(
-    needs: Sequence[str] | None,
-    sensors: Mapping[str, SensorInfo],
-    planner: str,
-    *,
-    privileged: bool = False,
-) -> tuple[str, ...]:
-    """Return the names of the sensors that a planner gets, in the robot's order.
+class _Origin(NamedTuple):
+    """The place of a planner's document: start of messages, and the file, if there is one."""
 
-    Args:
-        needs: names or categories; None: all that it may have.
-        sensors: the robot's sensors.
-        planner: name for messages.
-        privileged: True if it may have privileged sensors.
+    where: str
+    path: Path | None
 
-    Raises:
-        InputError: no sensor matches a need, or only a privileged one.
-    """
-    if needs is None:
-        return tuple(n for n, s in sensors.items() if privileged or not s.privileged)
-    offered = {*sensors, *(s.category for s in sensors.values())}
-    for need in needs:
-        if need not in offered:
-            has = ", ".join(sorted(offered)) or "none"
-            raise InputError(f"planner '{planner}' needs '{need}'; the robot's sensors: {has}")
-    found = tuple(n for n, s in sensors.items() if n in needs or s.category in needs)
-    for name in found:
-        if sensors[name].privileged and not privileged:
-            raise InputError(
-                f"planner '{planner}' needs '{name}', which is privileged: "
-                "a planner that reads it must say 'privileged = True'"
-            )
-    return found
+
+def _from_document(
+    document: Mapping[str, Any],
+    given: Mapping[str, Any],
+    registry: Registry,
+    origin: _Origin,
+    place: PlannerPlace,
+) -> PlannerChoice:
+    """Return the planner of a document; ``given`` overrides its parameters."""
+    if is_external(document):
+        return external_choice(origin.path or Path("planner.yaml"), document, given, place)
+    parameters = {**document, **given}
+    kind = parameters.pop("kind", None)
+    if not isinstance(kind, str):
+        raise InputError(f"{origin.where}'kind' is missing: which planner is it?")
+    return _from_kind(kind, parameters, registry, origin, place)
 
 
 # ------------------------------------------------------------------ registered kinds
 def _from_kind(
-    kind: str, parameters: Mapping[str, Any], registry: Registry, where: str, place: PlannerPlace
+    kind: str,
+    parameters: Mapping[str, Any],
+    registry: Registry,
+    origin: _Origin,
+    place: PlannerPlace,
 ) -> PlannerChoice:
-    component = find_kind(kind, registry, where)
-    spec = spec_of_kind(component, parameters, where)
+    component = find_kind(kind, registry, origin.where)
+    spec = spec_of_kind(component, parameters, origin.where)
     owner = registry.owner(component)
     as_given = _is_default(component, spec)
     in_process = place.in_process
@@ -149,6 +145,12 @@ def _from_kind(
             f"planner '{kind}' cannot run in a process of its own: its plugin is known to this "
             "process only"
         )
+    if uses_half(spec) and owner.name == BUILTIN:
+        return choice_with_half(
+            spec, component, registry, _half(spec, registry, origin, place), _is_default
+        )
+    if uses_half(spec):
+        half_spec(spec, registry, origin.where)  # it is built in the same process
     description = described(component.spec, registry.plugin_call(spec))
     dump = spec.model_dump(mode="json")
     build: Callable[[], Planner]
@@ -178,12 +180,27 @@ def _from_kind(
         pinned=owner.pinned,
         origin=owner.distribution,
         needs=description.needs,
-        label=label_of(kind, {} if as_given else dump, _is_privileged(spec)),
-        privileged=_is_privileged(spec),
+        label=label_of(kind, {} if as_given else dump, is_privileged(spec)),
+        privileged=is_privileged(spec),
         role=description.role if as_given else "candidate",
         in_process=in_process,
         memory=place.own_memory(in_process),
     )
+
+
+def _half(
+    spec: PlannerSpec, registry: Registry, origin: _Origin, place: PlannerPlace
+) -> PlannerChoice:
+    """Return the planner in a planner's spec, which is a document, a kind, or a file."""
+    what = getattr(spec, spec.half)
+    where = f"{origin.where}{spec.half}: "
+    if isinstance(what, Mapping):
+        return _from_document(what, {}, registry, _Origin(where, origin.path), place)
+    folder = origin.path.parent if origin.path else Path()
+    found = resolve_planner(str(folder / what), registry, (), place)
+    if found.fleet:
+        raise InputError(f"{where}one planner is wanted, not those of several robots")
+    return found
 
 
 def _is_default(component: Component[Any], spec: PlannerSpec) -> bool:
@@ -195,11 +212,6 @@ def _is_default(component: Component[Any], spec: PlannerSpec) -> bool:
 
 def _has_defaults(component: Component[Any]) -> bool:
     return not any(f.is_required() for f in component.spec.model_fields.values())
-
-
-def _is_privileged(holder: object) -> bool:
-    """Return True if a planner class or spec is privileged, by class variable or field."""
-    return getattr(holder, "privileged", False) is True
 
 
 # ------------------------------------------------------------------------ documents

@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any, cast
 
 from crowdbot.core.planning.choice import PlannerChoice
+from crowdbot.core.planning.half import PlannerWithHalf
 from crowdbot.core.planning.host import RESET_LIMIT, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.planning.process.process_planner import ProcessPlanner
@@ -129,7 +130,7 @@ def hosted(setup: RunSetup, built: BuiltRun, watchdog: Watchdog | None) -> Itera
     try:
         yield host
     finally:
-        if isinstance(planner, ProcessPlanner):
+        if isinstance(planner, ProcessPlanner | PlannerWithHalf):
             planner.close()
 
 

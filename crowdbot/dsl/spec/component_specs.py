@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
-from pydantic import Field, model_validator
+from annotated_types import MinLen
+from pydantic import BeforeValidator, Field, model_validator
 
 from crowdbot.dsl.spec.reading_errors import ReadingError
 from crowdbot.dsl.spec.spec import ComponentSpec, Rectangle, Spec
@@ -162,11 +163,26 @@ class NoiseSpec(ComponentSpec):
     category: ClassVar[str] = "noise"
 
 
+def _as_document(value: Any) -> Any:
+    """Return the document of a kind that is given by its name; other values as they are."""
+    is_kind = isinstance(value, str) and not any(c in value for c in ":/\\ ")
+    return {"kind": value} if is_kind and not value.endswith((".yaml", ".yml")) else value
+
+
+#: The planner within a planner's spec (`PlannerSpec.half`): its document, its kind, or a file.
+PlannerDocument = Annotated[
+    dict[str, Any] | Annotated[str, MinLen(1)], BeforeValidator(_as_document)
+]
+
+
 class PlannerSpec(ComponentSpec):
     """Abstract planner, the thing under test; never part of a scenario."""
 
     category: ClassVar[str] = "planner"
     role: ClassVar[PlannerRole] = "candidate"
+    #: Name of the field with the planner that this one uses, a `PlannerDocument`; its build
+    #: function gets that planner, built, as its second argument. Empty: it uses none.
+    half: ClassVar[str] = ""
 
 
 class CrowdPolicySpec(ComponentSpec):

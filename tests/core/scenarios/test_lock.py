@@ -311,6 +311,7 @@ def test_a_suite_with_the_agents_of_the_one_it_extends_shares_their_file(suite: 
         ("challenge-2021", 144),
         ("challenge-2021-2d", 12),
         ("challenge-2026", 162),
+        ("shared-control", 60),
     ],
 )
 def test_packaged_suites_are_locked(name: str, count: int) -> None:

@@ -10,7 +10,7 @@ from pydantic import Field
 from crowdbot.plugin import NonNegativeLength, PlannerSpec, PositiveLength
 
 
-class RungSpec(PlannerSpec):
+class LadderSpec(PlannerSpec):
     """The ladder of sensing: the same planner with better and better knowledge.
 
     On its last rungs, ``truth``, the planner is privileged.
@@ -32,11 +32,16 @@ class RungSpec(PlannerSpec):
     person_radius: NonNegativeLength = Field(
         default=0.25, description="Disc that is kept clear around people, m."
     )
-    speed: Annotated[float, Gt(0), Le(1)] = Field(
-        default=1.0, description="Cruising speed as a fraction of the robot's largest."
-    )
 
     @property
     def privileged(self) -> bool:
         """Return True if a rung is the truth."""
         return "truth" in (self.tracks, self.localisation)
+
+
+class RungSpec(LadderSpec):
+    """A planner on the ladder of sensing that drives by itself."""
+
+    speed: Annotated[float, Gt(0), Le(1)] = Field(
+        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    )

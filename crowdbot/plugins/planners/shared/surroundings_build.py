@@ -22,7 +22,7 @@ from crowdbot.plugins.planners.shared.heading_by_walls_build import HeadingByWal
 from crowdbot.plugins.planners.shared.people_build import people_in
 from crowdbot.plugins.planners.shared.people_motion_build import PeopleMotion
 from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
-from crowdbot.plugins.planners.shared.rungs import RungSpec
+from crowdbot.plugins.planners.shared.rungs import LadderSpec
 
 #: Lidar points farther away play no part, m; in each sector the nearest one counts.
 REACH, SECTORS = 6.0, 180
@@ -58,7 +58,7 @@ class PlannerScene:
 class PlannerSurroundings:
     """Makes a `PlannerScene` of each observation; made and reset together with a planner."""
 
-    def __init__(self, spec: RungSpec) -> None:
+    def __init__(self, spec: LadderSpec) -> None:
         self._spec = spec
         self._lidars = LidarPoints({})
         self._tracker: PeopleTracker | None = None
@@ -188,3 +188,15 @@ def others(points: Array, people: Array, own: float) -> Array:
             out[count, 0], out[count, 1] = points[i, 0], points[i, 1]
             count += 1
     return out[:count]
+
+
+def bodies_in_base(scene: PlannerScene) -> Array:
+    """Return what is around, (N, 5) x, y, vx, vy, radius in the base frame; m, m/s."""
+    c, s = math.cos(scene.pose.yaw), math.sin(scene.pose.yaw)
+    to_base = np.array([[c, -s], [s, c]])  # of row vectors
+    still = np.zeros((len(scene.points), 3))
+    rows = np.concatenate([scene.people, np.column_stack([scene.points, still])])
+    here = scene.pose.x, scene.pose.y
+    return np.column_stack(
+        [(rows[:, :2] - here) @ to_base, rows[:, VX : VY + 1] @ to_base, rows[:, RADIUS]]
+    )

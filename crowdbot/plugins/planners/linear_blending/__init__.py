@@ -1,0 +1,1 @@
+"""Linear blending of the commands of user and planner."""

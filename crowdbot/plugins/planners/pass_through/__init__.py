@@ -1,0 +1,1 @@
+"""Pass-through: the command of the user."""

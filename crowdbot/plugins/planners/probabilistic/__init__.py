@@ -1,0 +1,1 @@
+"""Probabilistic shared control."""

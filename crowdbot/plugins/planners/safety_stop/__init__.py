@@ -1,0 +1,1 @@
+"""Safety stop: the command of the user, with brakes."""

@@ -1,0 +1,43 @@
+"""Safety stop: the user's command, with brakes."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from crowdbot.plugin import (
+    Component,
+    NonNegativeDuration,
+    NonNegativeLength,
+    PlannerDocument,
+)
+from crowdbot.plugins.planners.shared.rungs import LadderSpec
+
+
+class SafetyStopSpec(LadderSpec):
+    """Safeguarded driving: the user drives as long as the robot can stop in time."""
+
+    needs: ClassVar[tuple[str, ...]] = ("joystick", "lidar")
+    half: ClassVar[str] = "autonomy"
+
+    kind: Literal["safety_stop"] = "safety_stop"
+    autonomy: PlannerDocument | None = Field(
+        default=None,
+        description="Planner that drives while the user's command is not safe: its document, its "
+        "kind, or a file; unset: the robot brakes.",
+    )
+    reaction_time: NonNegativeDuration = Field(
+        default=0.2, description="Driven before braking sets in, s."
+    )
+    margin: NonNegativeLength = Field(
+        default=0.1, description="Free space that is kept around the robot, m."
+    )
+
+
+SAFETY_STOP = Component(
+    spec=SafetyStopSpec,
+    build="crowdbot.plugins.planners.safety_stop.safety_stop_build:build",
+    summary="what the user asks for, with brakes before a collision",
+    examples=({}, {"autonomy": {"kind": "goal_seek"}}),
+)
