@@ -8,6 +8,7 @@ from crowdbot.core.crowd.contact.geometry import (
     opposite_taken_for_parallel,
     single_angle,
 )
+from crowdbot.core.crowd.velocity_search.approach import approach
 from crowdbot.core.crowd.velocity_search.candidates import (
     ALONG_PREFERRED,
     PREFERRED_SPEED,
@@ -31,6 +32,7 @@ __all__ = [
     "Sampling",
     "VelocityCandidates",
     "WeightedCosts",
+    "approach",
     "draw",
     "is_clearly_longer",
     "is_clearly_shorter",

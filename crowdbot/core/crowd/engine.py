@@ -42,7 +42,7 @@ _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # columns of its motion
 
 
 @dataclass(frozen=True, slots=True)
-class _Group:
+class DecisionGroup:
     """Agents with the same policy and the same view.
 
     Attributes:
@@ -68,6 +68,10 @@ class CrowdEngine:
         policies: how they decide, as `Agents.policy` numbers them.
         aim: column of the state where the point begins that policies see as the goal: the goal,
             or a point on the way to it.
+        groups: agents with the same policy and the same view, when there is a robot.
+        ticks_per_decision: between two decisions.
+        parameters: what `tick` takes of people, world and scratch, as numbers.
+        heeds_robots, room, evades: what `evade_robots` takes.
 
     Raises:
         ValueError: an agent refers to a policy or a portal that does not exist.
@@ -91,19 +95,19 @@ class CrowdEngine:
             "pillars": immutable(world.pillars),
         }
         self.policies: Sequence[CrowdPolicy] = tuple(made)
-        self._groups = _groups(made, agents, _who_plans(agents, world))
+        self.groups = _groups(made, agents, _who_plans(agents, world))
         self._groups_alone = _groups(made, agents, np.zeros(len(agents), np.bool_))
         strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
-        self._ticks_per_decision = ticks(world.decision_rate)
+        self.ticks_per_decision = ticks(world.decision_rate)
         self._people = AgentParameters.of(
             agents, np.array(strength, np.float64)[agents.policy], _limits(made, agents, world)
         )
         self._place = WorldParameters.of(world, float(np.max(agents.radius, initial=0.0)))
-        dt = self._ticks_per_decision * TICK
+        dt = self.ticks_per_decision * TICK
         self._steering = parts_of(world.steering)
-        self._heeds_robots = ~agents.ignores_robot
-        self._room = 2.0 * agents.attention - 1.0
-        self._evades = world.response.by_decision(dt)
+        self.heeds_robots = ~agents.ignores_robot
+        self.room = 2.0 * agents.attention - 1.0
+        self.evades = world.response.by_decision(dt)
         self._router = (
             None
             if world.routing is None
@@ -112,7 +116,7 @@ class CrowdEngine:
         self.aim = s.GOAL_X if self._router is None else s.WAYPOINT_X
         self._members, self._ends = groups_of(agents)
         self._cohesion = None if world.cohesion is None else world.cohesion.forces
-        self._parameters = numbers_of(*self._people, *self._place, *Scratch.of(len(agents)))
+        self.parameters = numbers_of(*self._people, *self._place, *Scratch.of(len(agents)))
         self._usual: dict[int, tuple[Indices, Array]] = {}
 
     def initial_state(self, robots: int = 1) -> Array:
@@ -150,6 +154,16 @@ class CrowdEngine:
         rows[:, s.DIR_X : s.DIR_Y + 1] = facing
         rows[:, s.NOTICED] = s.UNAWARE
         return flat
+
+    @property
+    def decides_by_policies_alone(self) -> bool:
+        """True if decisions are those of policies, and evasion of robots; nothing else has a part.
+
+        Ways around walls, steering parts, forces of groups and images across a border are others.
+        """
+        grouped = self._cohesion is not None and len(self._members) > 0
+        border = self.world.periodic_boundary is not None
+        return not (self._router is not None or self._steering or grouped or border)
 
     def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
         """Return (N,) agents that start with a stay: at their first goal, which is a point."""
@@ -199,7 +213,7 @@ class CrowdEngine:
         if robots.shape[1] < 8:
             robots = np.pad(robots, ((0, 0), (0, 8 - robots.shape[1])))
         outlines = outline if outline.ndim == 3 else _alike(outline, len(robots))
-        if int(flat[s.TICK]) % self._ticks_per_decision == 0:
+        if int(flat[s.TICK]) % self.ticks_per_decision == 0:
             self._decide(flat, robots, outlines)
         usual = self._usual_robots(len(robots))
         numbers = usual[0] if numbers is None else numbers
@@ -224,11 +238,11 @@ class CrowdEngine:
         Returns:
             number of ticks advanced.
         """
-        since = int(flat[s.TICK]) % self._ticks_per_decision
+        since = int(flat[s.TICK]) % self.ticks_per_decision
         if since == 0:
             self._decide(flat, NOBODY, DISCS)
         # Images across a border move with every tick.
-        count = min(most, self._ticks_per_decision - since)
+        count = min(most, self.ticks_per_decision - since)
         count = count if self.world.periodic_boundary is None else 1
         return int(
             ticks_without_robots(
@@ -247,7 +261,7 @@ class CrowdEngine:
     ) -> tuple[Any, ...]:
         """Return all arguments of `tick`."""
         return (
-            flat, robots, outlines, numbers, stiffnesses, self._fixed(flat), dt, *self._parameters,
+            flat, robots, outlines, numbers, stiffnesses, self._fixed(flat), dt, *self.parameters,
         )  # fmt: skip
 
     def run(self, duration: float, sample_rate: float = 16.0) -> tuple[Array, Array]:
@@ -277,9 +291,9 @@ class CrowdEngine:
         if not self.world.robot_visible:
             robots = np.where(_MOTION, 0.0, robots)
         if self._router is not None:
-            number = int(flat[s.TICK]) // self._ticks_per_decision
-            self._router.find(people, self._ticks_per_decision * TICK, number)
-        for group in self._groups if len(robots) else self._groups_alone:
+            number = int(flat[s.TICK]) // self.ticks_per_decision
+            self._router.find(people, self.ticks_per_decision * TICK, number)
+        for group in self.groups if len(robots) else self._groups_alone:
             shown = robots[:, _SEEN] if group.sees_robot and len(robots) else _NOT_SHOWN
             view = self._view(flat, rows, group.members, shown)
             decides: Any = view.decides
@@ -305,8 +319,8 @@ class CrowdEngine:
             return
         now = float(flat[s.TICK]) * TICK
         evade_robots(
-            people, self.agents.radius, self._heeds_robots, self.agents.late, self._room,
-            self.agents.preferred_speed, robots, outlines, self._evades, now,
+            people, self.agents.radius, self.heeds_robots, self.agents.late, self.room,
+            self.agents.preferred_speed, robots, outlines, self.evades, now,
         )  # fmt: skip
 
     def _view(
@@ -321,7 +335,7 @@ class CrowdEngine:
             present=present,
             robot=robots,
             walls=self.world.walls,
-            dt=self._ticks_per_decision * TICK,
+            dt=self.ticks_per_decision * TICK,
             t=float(flat[s.TICK]) * TICK,
             decides=present & members,
             pillars=self.world.pillars,
@@ -364,14 +378,14 @@ def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
 
 def _groups(
     policies: Sequence[CrowdPolicy], agents: Agents, sees_robot: NDArray[np.bool_]
-) -> list[_Group]:
+) -> list[DecisionGroup]:
     """Groups of agents, by policy and by whether it is shown robots."""
     found = []
     for number, policy in enumerate(policies):
         for sees in (True, False):
             members = (agents.policy == number) & (sees_robot == sees)
             if np.any(members):
-                found.append(_Group(policy, members, sees, _is_foreign(policy)))
+                found.append(DecisionGroup(policy, members, sees, _is_foreign(policy)))
     return found
 
 

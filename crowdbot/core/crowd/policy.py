@@ -86,6 +86,8 @@ class AcceleratingPolicy(Protocol):
     the steering parts that limit speeds; default: the time between decisions. A policy that chooses
     among fixed velocities may list them in an attribute ``velocity_candidates``
     (`crowdbot.core.types.candidates`), which makes recordings smaller and changes nothing else.
+    A policy whose whole decision is to `approach` what a `Sampler` chose may name that sampler in
+    an attribute ``compiled_search``: then many worlds decide in one compiled call.
     With a true attribute ``walks_through_walls`` walls do not hold its people back, as in records
     whose plan does not fit.
     """

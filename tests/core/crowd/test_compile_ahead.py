@@ -16,7 +16,7 @@ import crowdbot
 from crowdbot.core.crowd.compile_ahead import compile_ahead
 from numba.core.registry import CPUDispatcher
 
-DEAR = {"step.ticks_without_robots", "step.tick", "velocity_search.sampling._choose",
+DEAR = {"step.ticks_without_robots", "step.tick", "velocity_search.sampling.choose_velocities",
         "velocity_search.surroundings.sort_surroundings",
         "response.evasion.evade_robots"}
 

@@ -27,13 +27,13 @@ def check_numbers(costs: WeightedCosts, view: CrowdView, around: Surroundings) -
         report_broken(costs, view, "a cost")
 
 
-def report_broken(costs: WeightedCosts, view: CrowdView, what: str) -> NoReturn:
+def report_broken(costs: WeightedCosts, view: CrowdView | None, what: str) -> NoReturn:
     """Report the function that returned NaN: the one that does so again, or else all that may have.
 
     Raises:
         PluginError: always.
     """
-    guilty = [c for c in costs.compiled if _is_broken(costs, c, view)]
+    guilty = [c for c in costs.compiled if view is not None and _is_broken(costs, c, view)]
     for cost in guilty or costs.compiled:
         if cost.call is not None and (guilty or len(costs.compiled) == 1):
             cost.call.fail(f"returned NaN as {what}")

@@ -9,6 +9,7 @@ at each decision, and candidates above the best cost are skipped.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -59,6 +60,23 @@ from crowdbot.core.support.records import Rows, rows_of
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
+class SearchArguments(NamedTuple):
+    """What the compiled search takes of a sampler; see `choose_velocities`."""
+
+    options: FanOptions
+    ordered: bool
+    tabulated: bool
+    candidates: Array
+    regular: Array
+    ranked: Array
+    indices: Indices
+    first: Indices
+    frame: Array
+    world: Array
+    active: Indices
+    tried: Array
+
+
 class Sampler:
     """Weighted costs over candidates, ready to decide for one set of agents."""
 
@@ -92,13 +110,22 @@ class Sampler:
         around = costs.surroundings(view)
         self._tabulate(view.dt, view)
         chosen = np.zeros((len(view.position), 2))
-        _choose(
+        choose_velocities(
             *around, costs.functions, costs.weights, *self._options, costs.ordered,
             self._candidates, self._polar, self._tabulated, self._ranked, self._index, self._first,
             self._frame, self._world, costs.active, self._tried, chosen,
         )  # fmt: skip
         check_numbers(costs, view, around)
         return chosen
+
+    def arguments(self, dt: float) -> SearchArguments:
+        """Return what `choose_velocities` takes for decisions every ``dt`` seconds."""
+        self._tabulate(dt, None)
+        return SearchArguments(
+            self._options, self.costs.ordered, self._tabulated, self._candidates, self._polar,
+            self._ranked, self._index, self._first, self._frame, self._world, self.costs.active,
+            self._tried,
+        )  # fmt: skip
 
     def candidates(self, view: CrowdView) -> Array:
         """The regular candidates (N, S, 2) of all agents, or new random ones, world frame, m/s."""
@@ -121,7 +148,7 @@ class Sampler:
         chosen[~np.isfinite(total[rows, best])] = 0.0
         return np.asarray(chosen)
 
-    def _tabulate(self, dt: float, view: CrowdView) -> None:
+    def _tabulate(self, dt: float, view: CrowdView | None) -> None:
         """Sum the base costs and sort each agent's candidates by them; ``view`` is for errors."""
         if not self._tabulated or self._table_dt == dt:
             return
@@ -168,7 +195,7 @@ def _tabulate(
 
 
 @kernel
-def _choose(
+def choose_velocities(
     table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
     walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
     traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
@@ -251,7 +278,7 @@ def _candidates_of(
     base: int, direction: int, radius: int, half: float, drawn: bool,
     candidates: Array, regular: Array, frame: Array, result: Array,
 ) -> None:  # fmt: skip
-    """Write the candidates of all agents (N, S, 2), m/s; arguments as of `_choose`."""
+    """Write the candidates of all agents (N, S, 2), m/s; arguments as of `choose_velocities`."""
     around = Surroundings(
         table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
         reach, traits, settings, random, near, found, deciding,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,16 +36,25 @@ from crowdbot.core.crowd.velocity_search.cost import (
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
 from crowdbot.core.crowd.velocity_search.minstd import seeds
 from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs
-from crowdbot.core.crowd.velocity_search.neighbours import DISC
-from crowdbot.core.crowd.velocity_search.records import AGENT, NEIGHBOUR, WALL, WORK_COLUMNS
+from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
+from crowdbot.core.crowd.velocity_search.records import (
+    AGENT,
+    NEIGHBOUR,
+    WALL,
+    WORK_COLUMNS,
+    AgentRecord,
+    NeighbourRecord,
+    WallRecord,
+)
 from crowdbot.core.crowd.velocity_search.surroundings import (
     SETTINGS,
     TRAITS,
+    SettingsRecord,
     Surroundings,
     sort_surroundings,
 )
 from crowdbot.core.geometry.segment_grid import grid_of
-from crowdbot.core.support.records import rows_of
+from crowdbot.core.support.records import Rows, rows_of
 from crowdbot.core.types.arrays import Array
 
 _Addresses = NDArray[np.intp]
@@ -59,6 +69,22 @@ _PARTS = (
     (GRADIENTS, "gradient", GRADIENT),
     (OPTIMA, "optimum", OPTIMUM),
 )
+
+
+class DecisionTables(NamedTuple):
+    """Records for one set of agents; scratch, but for the settings.
+
+    Attributes:
+        discs, table, near, found, deciding, settings: as of `Surroundings`; ``discs`` are those of
+            ``table`` before sorting.
+    """
+
+    discs: Rows[DiscRecord]
+    table: Rows[DiscRecord]
+    near: Rows[NeighbourRecord]
+    found: Rows[WallRecord]
+    deciding: Rows[AgentRecord]
+    settings: Rows[SettingsRecord]
 
 
 class WeightedCosts:
@@ -97,7 +123,7 @@ class WeightedCosts:
         self.params = np.zeros((len(self.compiled), width))
         for row, cost in zip(self.params, self.compiled, strict=True):
             row[: len(cost.params)] = cost.params
-        self.functions[:, PARAMS] = _layers(self.params)
+        self.functions[:, PARAMS] = layers(self.params)
         self.weights = np.array([c.weight for c in self.compiled], np.float64)
         # Scratch of compiled loops: functions whose excess may be nonzero.
         self.active = np.zeros(len(self.compiled), np.int64)
@@ -123,8 +149,20 @@ class WeightedCosts:
                 largest = max(largest, float(discs[:, -1].max()))
         if largest != self._largest_seen:
             self._largest_seen = largest
-            self._reach = max((c.reach(self.largest, largest) for c in self._all), default=0.0)
+            self._reach = self.reach_of(largest)
         return self._reach
+
+    def reach_of(self, largest: float) -> float:
+        """Centre distance beyond which no disc up to a radius matters to a person, m."""
+        return max((c.reach(self.largest, largest) for c in self._all), default=0.0)
+
+    def tables(self, discs: int, walls: int, dt: float) -> DecisionTables:
+        """Return the tables for decisions every ``dt`` seconds, made anew if they are too small."""
+        self._make_room(discs, walls)
+        self._time_step[0] = dt
+        return DecisionTables(
+            self._discs, self._table, self._near, self._found, self._deciding, self._settings
+        )
 
     def surroundings(self, view: CrowdView) -> Surroundings:
         """Sort all discs of a view, and return the data for compiled loops.
@@ -157,13 +195,13 @@ class WeightedCosts:
             self._discs, self._table = rows_of(discs, DISC), rows_of(discs, DISC)
             self._near, self._found = rows_of(discs, NEIGHBOUR), rows_of(walls, WALL)
             self.work = np.zeros((len(self.compiled), work_rows(discs + walls), WORK_COLUMNS))
-            self.functions[:, WORK] = _layers(self.work)
+            self.functions[:, WORK] = layers(self.work)
 
 
 def _addresses(functions: Sequence[object], signature: object) -> _Addresses:
     return np.array([0 if f is None else address_of(f, signature) for f in functions], np.intp)
 
 
-def _layers(array: Array) -> _Addresses:
+def layers(array: Array) -> _Addresses:
     """Return the addresses of an array's parts along its first axis; valid while it lives."""
     return np.asarray(array.ctypes.data + array.strides[0] * np.arange(len(array)), np.intp)

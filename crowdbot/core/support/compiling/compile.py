@@ -35,6 +35,11 @@ def array_kernel(function: F) -> F:
     return cast(F, _compiled(function, _OPTIONS))
 
 
+def free_kernel(function: F) -> F:
+    """As `array_kernel`, for long work on the caller's own arrays: threads may do it at once."""
+    return cast(F, _compiled(function, {"nogil": True, **_OPTIONS}))
+
+
 def inline_kernel(function: F) -> F:
     """As `kernel`, for a function that is inlined into its callers.
 
@@ -72,4 +77,4 @@ def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     return KernelDispatcher(function, targetoptions=whole)
 
 
-__all__ = ["array_kernel", "declared_kernel", "inline_kernel", "kernel"]
+__all__ = ["array_kernel", "declared_kernel", "free_kernel", "inline_kernel", "kernel"]

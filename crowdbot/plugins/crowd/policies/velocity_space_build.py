@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
-from crowdbot.plugin import Agents, Array, CompiledCost, CrowdView, NumpyCost, kernel
+from crowdbot.plugin import Agents, Array, CompiledCost, CrowdView, NumpyCost
 from crowdbot.plugin.for_crowds import (
     ALONG_PREFERRED,
     PREFERRED_SPEED,
@@ -16,8 +15,7 @@ from crowdbot.plugin.for_crowds import (
     Sampling,
     VelocityCandidates,
     WeightedCosts,
-    is_clearly_longer,
-    is_clearly_shorter,
+    approach,
 )
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 
@@ -78,6 +76,8 @@ class VelocitySpace:
             self.minimiser = Optimum(self.costs)
         else:
             self.minimiser = Sampler(sampling_of(spec), self.costs)
+        found = self.minimiser
+        self.compiled_search = found if isinstance(found, Sampler) else None
 
     def accelerations(self, view: CrowdView) -> Array:
         """Return accelerations to the chosen velocity or down the gradient, limited, m/s^2."""
@@ -91,44 +91,12 @@ class VelocitySpace:
 
     def _limited(self, found: Array, view: CrowdView, *, descend: bool) -> Array:
         agents = view.agents
-        _accelerate(
+        approach(
             found, descend, view.position, view.velocity, view.goal, agents.radius,
             agents.preferred_speed, agents.max_acceleration,
             max(self.costs.relaxation_time, view.dt), view.dt,
         )  # fmt: skip
         return found
-
-
-@kernel
-def _accelerate(
-    found: Array,
-    descend: bool,
-    position: Array,
-    velocity: Array,
-    goal: Array,
-    radius: Array,
-    preferred: Array,
-    limit: Array,
-    relaxation: float,
-    dt: float,
-) -> None:
-    """Convert results to accelerations, in place; agents that have arrived stop at once."""
-    for i in range(found.shape[0]):
-        gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]
-        arrived = not is_clearly_longer(gx, gy, radius[i]) and math.hypot(gx, gy) <= radius[i]
-        ax, ay = found[i, 0], found[i, 1]
-        if arrived or preferred[i] == 0.0:
-            ax, ay = -velocity[i, 0] / dt, -velocity[i, 1] / dt
-        elif not descend:
-            ax, ay = (ax - velocity[i, 0]) / relaxation, (ay - velocity[i, 1]) / relaxation
-        elif math.isinf(ax) or math.isinf(ay):  # away from forbidden velocities at once
-            ax = math.copysign(limit[i], ax) if math.isinf(ax) else 0.0
-            ay = math.copysign(limit[i], ay) if math.isinf(ay) else 0.0
-        scale = 1.0
-        if not is_clearly_shorter(ax, ay, limit[i]):
-            norm = math.hypot(ax, ay)
-            scale = limit[i] / norm if norm > limit[i] else 1.0
-        found[i, 0], found[i, 1] = ax * scale, ay * scale
 
 
 def build(

@@ -113,7 +113,7 @@ def test_who_makes_no_headway_takes_the_other_door() -> None:
 def test_straight_ways_are_what_they_were() -> None:
     starts, goals = np.array([[-4.0, 0.0], [3.0, 1.0]]), np.array([[-1.0, -4.0], [4.0, -4.0]])
     mesh = _engine(DOOR, starts, goals)
-    straight = CrowdEngine(mesh.agents, replace(mesh.world, routing=None), mesh._groups[0].policy)
+    straight = CrowdEngine(mesh.agents, replace(mesh.world, routing=None), mesh.groups[0].policy)
     one, two = mesh.run(2.0)[1], straight.run(2.0)[1]
     assert np.array_equal(one, two)  # nothing is in the way
 

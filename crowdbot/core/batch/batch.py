@@ -1,0 +1,154 @@
+"""Worlds of any scenarios that step together, in one compiled call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from crowdbot.core.batch import step as k
+from crowdbot.core.batch.array_tables import ENTRY
+from crowdbot.core.batch.crowd_tables import CROWD_FIELDS, GROUP_FIELDS
+from crowdbot.core.batch.robot_tables import DRIVE_STATE, ROBOT_FIELDS
+from crowdbot.core.batch.scanner_tables import SCANNER_FIELDS
+from crowdbot.core.batch.world import World
+from crowdbot.core.support.records import columns_of
+from crowdbot.core.types.arrays import Array, Indices
+from crowdbot.errors import PluginError
+
+_DRIVE = {name: column for column, name in enumerate(DRIVE_STATE.names)}
+_WANTED = [_DRIVE[name] for name in ("wanted_v", "wanted_w", "wanted_vy")]
+_SLEWED = [_DRIVE[name] for name in ("v", "w", "vy")]
+_NEWS = [_DRIVE[name] for name in ("blocked", "touched", "since")]
+_MOST_KEY = 2**62
+
+
+class Batch:
+    """Worlds side by side. Not for two threads at once; threads have batches of their own.
+
+    Args:
+        worlds: the first ones; `put` replaces any.
+        keys: (W,) of their noise.
+
+    Attributes:
+        worlds: as they are now.
+        drives: (W, R, D) `crowdbot.core.batch.robot_tables.DriveStateRecord` of all robots.
+        least, most: (W, R, 3) limits of commands v, w, vy, m/s and rad/s.
+    """
+
+    def __init__(self, worlds: Sequence[World], keys: Sequence[int]) -> None:
+        self.worlds = list(worlds)
+        count, robots = len(worlds), max(len(w.robots) for w in worlds)
+        self._most = max(len(w.groups) for w in worlds), max(len(w.scanners) for w in worlds)
+        self._table = np.zeros((count, k.WORLD_COLUMNS), np.int64)
+        self._crowds = np.zeros((count, len(CROWD_FIELDS), ENTRY), np.int64)
+        self._robots = np.zeros((count, robots, len(ROBOT_FIELDS), ENTRY), np.int64)
+        self.drives = np.zeros((count, robots, columns_of(DRIVE_STATE)))
+        self.least, self.most = np.zeros((2, count, robots, 3))
+        self._sound = np.ones(count, np.bool_)
+        self._lay_out()
+        for w, key in enumerate(keys):
+            self._show(w, key)
+        self._read(np.arange(count))
+
+    def put(self, w: int, world: World, key: int) -> None:
+        """Replace a world; it begins at its initial state, with its scanners read."""
+        world.reset()
+        self.worlds[w] = world
+        if len(world.groups) > self._most[0] or len(world.scanners) > self._most[1]:
+            self._most = (
+                max(self._most[0], len(world.groups)), max(self._most[1], len(world.scanners)),
+            )  # fmt: skip
+            kept = self._table.copy()
+            self._lay_out()
+            for other in range(len(self.worlds)):
+                self._show_tables(other)
+                self._table[other, [k.NOISE_KEY, k.NOW]] = kept[other, [k.NOISE_KEY, k.NOW]]
+        self._show(w, key)
+        self._read(np.array([w]))
+
+    def step(self, commands: Array, which: Indices | None = None) -> None:
+        """Advance worlds by one step each, one period of their planner.
+
+        Args:
+            commands: (W, R, 3) v, w, vy of each robot, m/s and rad/s; clamped to its limits.
+            which: rows of the worlds; None: all.
+
+        Raises:
+            PluginError: a cost function of a crowd returned NaN.
+        """
+        chosen = np.arange(len(self.worlds)) if which is None else which
+        self.drives[:, :, _WANTED] = np.clip(commands, self.least, self.most)
+        self.drives[:, :, _NEWS] = 0.0
+        slow = [w for w in chosen.tolist() if not self.worlds[w].compiled]
+        fast = chosen if not slow else np.setdiff1d(chosen, slow)
+        k.step_worlds(
+            fast, self._table, self._crowds, self._groups, self._robots, self._scanners,
+            self.drives, self._sound,
+        )  # fmt: skip
+        for w in slow:
+            self._step_slowly(w)
+        if not self._sound.all():
+            self._refuse(int(np.flatnonzero(~self._sound)[0]))
+
+    @property
+    def now(self) -> Indices:
+        """Return (W,) ticks of 1/128 s since each world began."""
+        return self._table[:, k.NOW]
+
+    @property
+    def commands(self) -> Array:
+        """Return (W, R, 3) the commands v, w, vy of all robots after slew limits."""
+        return self.drives[:, :, _SLEWED]
+
+    def drive(self, name: str) -> Array:
+        """Return (W, R) a field of `DriveStateRecord`."""
+        return self.drives[:, :, _DRIVE[name]]
+
+    def _step_slowly(self, w: int) -> None:
+        world = self.worlds[w]
+        for _ in range(int(self._table[w, k.PERIOD])):
+            world.advance_people()
+            k.step_robots(w, self._table, self._crowds, self._robots, self._scanners, self.drives)
+
+    def _read(self, which: Indices) -> None:
+        k.read_scanners(which, self._table, self._crowds, self._scanners)
+
+    def _lay_out(self) -> None:
+        """Make room for the largest number of groups and scanners of a world."""
+        count, (groups, scanners) = len(self.worlds), self._most
+        self._groups = np.zeros((count * groups, len(GROUP_FIELDS), ENTRY), np.int64)
+        self._scanners = np.zeros((count * scanners, len(SCANNER_FIELDS), ENTRY), np.int64)
+
+    def _show(self, w: int, key: int) -> None:
+        """Begin a world: its tables, its time, its robots at rest."""
+        self._show_tables(w)
+        self._table[w, k.NOISE_KEY], self._table[w, k.NOW] = key % _MOST_KEY, 0
+        self._sound[w] = True
+        self.drives[w] = 0.0
+        self.drives[w, :, [_DRIVE["clear"], _DRIVE["arrived"]]] = -1.0
+
+    def _show_tables(self, w: int) -> None:
+        world, (groups, scanners) = self.worlds[w], self._most
+        row = self._table[w]
+        row[k.FIRST_GROUP], row[k.GROUPS] = w * groups, len(world.groups)
+        row[k.FIRST_SCANNER], row[k.SCANNERS] = w * scanners, len(world.scanners)
+        row[k.PEOPLE], row[k.PERIOD] = world.people, world.blueprint.period
+        self._crowds[w] = world.crowd.entries
+        for place, table in enumerate(world.groups):
+            self._groups[w * groups + place] = table.entries
+        for place, table in enumerate(world.scanners):
+            self._scanners[w * scanners + place] = table.entries
+        for r, (table, model) in enumerate(
+            zip(world.blueprint.tables, world.blueprint.models, strict=True)
+        ):
+            self._robots[w, r] = table.entries
+            limits = model.limits
+            self.least[w, r] = limits.v_min, -limits.w_max, -limits.vy_max
+            self.most[w, r] = limits.v_max, limits.w_max, limits.vy_max
+
+    def _refuse(self, w: int) -> None:
+        raise PluginError(
+            f"a cost function of the crowd of {self.worlds[w].blueprint.scenario.id} returned NaN; "
+            "crowdbot run finds which one"
+        )

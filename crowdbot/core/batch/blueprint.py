@@ -1,0 +1,146 @@
+"""A scenario resolved for many worlds: its place, its robots, what they see."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.batch.array_tables import ArrayTable
+from crowdbot.core.batch.robot_tables import robot_table
+from crowdbot.core.batch.scanner_tables import SeenSensor
+from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.environments.build import build_environment
+from crowdbot.core.population.realise import realise
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.robots import build_model
+from crowdbot.core.robots.link_mount import at_link
+from crowdbot.core.robots.task import build_sensors, sensor_context
+from crowdbot.core.scenarios.lock import population
+from crowdbot.core.sim.build_crowd import build_crowd
+from crowdbot.core.support.ticks import ticks
+from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.core.types.robot import RobotModel
+from crowdbot.core.types.task import Task
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.errors import InputError
+
+#: Categories of sensors that batches of worlds simulate.
+SCANNERS = ("lidar", "lidar3d")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Blueprint:
+    """What all draws of a scenario share.
+
+    Attributes:
+        scenario: as it was written.
+        parts: its place.
+        names, models, tasks, tables: of its robots, in order.
+        sensors: lidars that are simulated.
+        period: ticks between two commands.
+    """
+
+    scenario: Scenario
+    registry: Registry = field(repr=False)
+    parts: EnvironmentParts = field(repr=False)
+    names: tuple[str, ...]
+    models: tuple[RobotModel, ...] = field(repr=False)
+    tasks: tuple[Task, ...] = field(repr=False)
+    tables: tuple[ArrayTable, ...] = field(repr=False)
+    sensors: tuple[SeenSensor, ...] = field(repr=False)
+    period: int
+
+    def crowd(self, root: int | None) -> CrowdEngine | None:
+        """Return the people of one draw; None without a crowd.
+
+        Args:
+            root: root of the random numbers of the draw; None: the people of the scenario, from
+                its suite's lock if it has one.
+
+        Raises:
+            InputError: the people do not fit, or those of the suite are hidden.
+        """
+        scenario = self.scenario if root is None else with_root(self.scenario, root)
+        if root is None:
+            people = population(scenario, self.registry).agents
+        else:
+            people = realise(scenario, self.parts)
+        return build_crowd(scenario, people, self.parts, self.registry)
+
+
+def with_root(scenario: Scenario, root: int) -> Scenario:
+    """Return a scenario whose people are drawn from another root of random numbers."""
+    crowd = scenario.crowd
+    if crowd is None:
+        return scenario
+    seed = crowd.seed.model_copy(update={"root": root})
+    return scenario.model_copy(update={"crowd": crowd.model_copy(update={"seed": seed})})
+
+
+def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) -> Blueprint:
+    """Resolve a scenario.
+
+    Args:
+        sensors: names or categories of the lidars that are simulated.
+
+    Raises:
+        InputError: there is no robot, a robot lacks a sensor, or batches cannot simulate it.
+        PluginError: a component cannot be built.
+    """
+    if not scenario.robots:
+        raise InputError(f"{scenario.id} has no robot, and an environment drives robots")
+    parts = build_environment(registry, scenario.environment)
+    models, tasks, tables, seen = [], [], [], []
+    for k, robot in enumerate(scenario.robots.values()):
+        model = build_model(registry, robot.model)
+        context = sensor_context(robot, model, parts)
+        models.append(model)
+        tasks.append(context.task)
+        tables.append(robot_table(model, parts, np.asarray(context.task.goal_zone)))
+        wanted = _chosen(scenario, k, robot.sensors, sensors)
+        built = build_sensors(registry, robot.model_copy(update={"sensors": wanted}), context)
+        for name, sensor in built.items():
+            spec: Any = at_link(wanted[name], model)
+            seen.append(SeenSensor(name=name, robot=k, spec=spec, info=sensor.info()))
+    return Blueprint(
+        scenario=scenario,
+        registry=registry,
+        parts=parts,
+        names=tuple(scenario.robots),
+        models=tuple(models),
+        tasks=tuple(tasks),
+        tables=tuple(tables),
+        sensors=tuple(seen),
+        period=ticks(scenario.rates.planner),
+    )
+
+
+def _chosen(scenario: Scenario, k: int, own: Any, wanted: Sequence[str]) -> dict[str, Any]:
+    """Return the specs of the sensors that are wanted, by name or category.
+
+    Raises:
+        InputError: there is no such sensor, or it is not a lidar.
+    """
+    robot, found = list(scenario.robots)[k], {}
+    for name in wanted:
+        fitting = {n: s for n, s in own.items() if name in (n, _category(s))}
+        if not fitting:
+            known = ", ".join(f"'{n}' ({_category(s)})" for n, s in own.items()) or "none"
+            raise InputError(
+                f"{scenario.id}: robot '{robot}' has no sensor '{name}'; it has {known}"
+            )
+        for n, spec in fitting.items():
+            if _category(spec) not in SCANNERS:
+                raise InputError(
+                    f"{scenario.id}: sensor '{n}' of robot '{robot}' is of kind '{spec.kind}'; "
+                    f"batches of worlds simulate lidars only ({', '.join(SCANNERS)})"
+                )
+            found[n] = spec
+    return found
+
+
+def _category(spec: Any) -> str:
+    return "lidar" if spec.kind == "lidar2d" else str(spec.kind)

@@ -1,0 +1,131 @@
+"""One step of many worlds, compiled: decisions, contacts, motion, robots, readings."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.batch import crowd_tables as c
+from crowdbot.core.batch.array_tables import floats1, floats2, floats3, ints1
+from crowdbot.core.batch.decide import decide
+from crowdbot.core.batch.drive import move, watch_goal
+from crowdbot.core.batch.robot_tables import DRIVE_STATE
+from crowdbot.core.batch.scan import is_due, scan
+from crowdbot.core.batch.scanner_tables import OWN, SCANNER
+from crowdbot.core.crowd.contact.robot_contact import ROBOT
+from crowdbot.core.crowd.state import (
+    AGENT_COLUMNS,
+    FELT,
+    FELT_SIZE,
+    HEADER_SIZE,
+    PERSON,
+    TOUCH_COLUMNS,
+)
+from crowdbot.core.crowd.step import tick
+from crowdbot.core.support.compiling.compile import array_kernel, free_kernel
+from crowdbot.core.support.records import as_record, as_rows
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+#: Columns of the table of worlds: its first group and their number; likewise of robots and
+#: scanners; people; key of noise; ticks of a step; ticks since the
+#: start.
+FIRST_GROUP, GROUPS, FIRST_SCANNER, SCANNERS, PEOPLE, NOISE_KEY, PERIOD, NOW = range(8)
+WORLD_COLUMNS = 8
+
+
+@free_kernel
+def step_worlds(
+    which: Indices, worlds: Indices, crowds: Indices, groups: Indices, robots: Indices,
+    scanners: Indices, drives: Array, sound: Mask,
+) -> None:  # fmt: skip
+    """Advance some worlds by a step each, and read the scanners that are due.
+
+    Args:
+        which: (K,) rows of worlds.
+        worlds: (W, `WORLD_COLUMNS`), changed.
+        crowds: (W, F, 4) entries of `crowd_table`.
+        groups: (G, F, 4) entries of `group_tables`.
+        robots: (W, R, F, 4) entries of `robot_table`.
+        scanners: (S, F, 4) entries of `scanner_table`.
+        drives: (W, R, D) `DriveStateRecord`, changed.
+        sound: (W,) set to False where a cost function returned NaN.
+    """
+    for k in range(which.shape[0]):
+        w = which[k]
+        for _ in range(worlds[w, PERIOD]):
+            if worlds[w, PEOPLE] > 0:
+                own = groups[worlds[w, FIRST_GROUP] : worlds[w, FIRST_GROUP] + worlds[w, GROUPS]]
+                if not _advance_people(worlds[w], crowds[w], own):
+                    sound[w] = False
+            _advance_robots(worlds[w], crowds[w], robots[w], drives[w])
+            worlds[w, NOW] += 1
+            _read(worlds[w], crowds[w], scanners)
+
+
+@free_kernel
+def step_robots(
+    w: int, worlds: Indices, crowds: Indices, robots: Indices, scanners: Indices, drives: Array
+) -> None:
+    """As `step_worlds` for one tick of a world whose people have been advanced already."""
+    _advance_robots(worlds[w], crowds[w], robots[w], drives[w])
+    worlds[w, NOW] += 1
+    _read(worlds[w], crowds[w], scanners)
+
+
+@free_kernel
+def read_scanners(which: Indices, worlds: Indices, crowds: Indices, scanners: Indices) -> None:
+    """Read the scanners of some worlds at their present tick, where they are due."""
+    for k in range(which.shape[0]):
+        _read(worlds[which[k]], crowds[which[k]], scanners)
+
+
+@array_kernel
+def _advance_people(world: Indices, crowd: Indices, groups: Indices) -> bool:
+    """Decide if that is due, then advance people and contacts by a tick."""
+    counts, now, sound = ints1(crowd, c.COUNTS), world[NOW], True
+    if now % counts[c.EVERY] == 0:
+        sound = decide(crowd, groups, now * TICK)
+    tick(
+        floats1(crowd, c.FLAT), floats2(crowd, c.ROBOTS), floats3(crowd, c.OUTLINES),
+        ints1(crowd, c.NUMBERS), floats1(crowd, c.STIFFNESSES), floats2(crowd, c.DISCS), TICK,
+        floats1(crowd, c.TRAITS), floats1(crowd, c.ROUTE), floats1(crowd, c.ORIGIN),
+        ints1(crowd, c.ENTRY_ORDER), floats2(crowd, c.WALLS), floats2(crowd, c.ENTRANCE),
+        floats2(crowd, c.OUT), floats1(crowd, c.BOUNDARY), floats1(crowd, c.RULES),
+        floats1(crowd, c.RESPONSE), np.uint64(counts[c.GOAL_KEY]), floats2(crowd, c.SOLIDS),
+        floats1(crowd, c.GRID_FRAME), ints1(crowd, c.GRID_FIRST), ints1(crowd, c.GRID_NEAR),
+        floats2(crowd, c.REACTION), floats1(crowd, c.PLACED), ints1(crowd, c.ORDER),
+        floats1(crowd, c.ROOM),
+    )  # fmt: skip
+    return sound
+
+
+@array_kernel
+def _advance_robots(world: Indices, crowd: Indices, robots: Indices, drives: Array) -> None:
+    """Move all robots by a tick; note who was touched, who was stopped and who arrived."""
+    flat, people = floats1(crowd, c.FLAT), world[PEOPLE]
+    rows = as_rows(floats2(crowd, c.ROBOTS), ROBOT)
+    felt_first = HEADER_SIZE + people * AGENT_COLUMNS
+    for r in range(rows.shape[0]):
+        drive = as_record(drives[r], DRIVE_STATE)
+        if people > 0:
+            first = felt_first + r * (FELT_SIZE + people * TOUCH_COLUMNS)
+            felt = as_record(flat[first:], FELT)
+            if felt.robot_fx != 0.0 or felt.robot_fy != 0.0:
+                drive.touched += 1.0
+        x, y = rows[r].x, rows[r].y
+        move(rows[r], drive, robots[r])
+        drive.since += TICK
+        watch_goal(rows[r], drive, robots[r], x, y)
+
+
+@array_kernel
+def _read(world: Indices, crowd: Indices, scanners: Indices) -> None:
+    """Read a world's scanners that are due."""
+    people = as_rows(
+        floats1(crowd, c.FLAT)[HEADER_SIZE : HEADER_SIZE + world[PEOPLE] * AGENT_COLUMNS], PERSON
+    )
+    rows = as_rows(floats2(crowd, c.ROBOTS), ROBOT)
+    for k in range(world[SCANNERS]):
+        own = scanners[world[FIRST_SCANNER] + k]
+        if is_due(world[NOW], as_record(floats1(own, OWN), SCANNER).rate):
+            scan(own, people, rows, world[NOW], np.uint64(world[NOISE_KEY] + k))

@@ -1,0 +1,121 @@
+"""One draw of a scenario's people, ready to be stepped in a batch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.batch.array_tables import ArrayTable, ScratchPool
+from crowdbot.core.batch.blueprint import Blueprint
+from crowdbot.core.batch.crowd_tables import (
+    CROWD_FIELDS,
+    crowd_table,
+    group_tables,
+    is_compiled,
+    random_states,
+)
+from crowdbot.core.batch.scanner_tables import others_of, scanner_table
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.contact.robot_contact import R_YAW
+from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.sim.build_crowd import in_series
+from crowdbot.core.sim.contacts.bodies import outlines_of, rows_of
+from crowdbot.core.sim.contacts.start_pose_check import check_start
+from crowdbot.core.types.arrays import Array
+
+
+class World:
+    """People, robots and scanners of one world; begins at its initial state.
+
+    Attributes:
+        blueprint: its scenario.
+        engine: its people; None without any.
+        robots: (R, 8) rows of the robots as people feel them.
+        compiled: True if people decide in compiled code alone.
+        crowd, groups, scanners: arrays for compiled code.
+        root: root of the draw; None: the people of the scenario.
+
+    Args:
+        pool: scratch that worlds of one thread share.
+    """
+
+    def __init__(
+        self, blueprint: Blueprint, root: int | None, pool: ScratchPool | None = None
+    ) -> None:
+        pool = pool or ScratchPool()
+        self.blueprint, self.root = blueprint, root
+        self.engine = blueprint.crowd(root)
+        spec, models = blueprint.scenario.crowd, blueprint.models
+        self._start = rows_of(models, spec.robot_response.margin if spec else 0.0)
+        for row, task in zip(self._start, blueprint.tasks, strict=True):
+            row[[0, 1, R_YAW]] = task.start
+        for model, task, name in zip(models, blueprint.tasks, blueprint.names, strict=True):
+            check_start(blueprint.parts, model, task.start, self.engine, name)
+        self.robots = self._start.copy()
+        self._initial = s.blank(0, len(models))
+        if self.engine is not None:
+            self._initial = self.engine.initial_state(len(models))
+        self.flat = self._initial.copy()
+        self.outlines = outlines_of(models)
+        self.compiled = self.engine is None or is_compiled(self.engine)
+        self._drawn = [] if self.engine is None else random_states(self.engine)
+        self._drawn_first = [drawn.copy() for drawn in self._drawn]
+        self.stiffnesses = self._stiffnesses()
+        self.crowd = self._crowd(pool)
+        grouped = self.engine is not None and self.compiled
+        self.groups = (
+            group_tables(self.engine, self.robots, pool) if grouped and self.engine else []
+        )
+        self.scanners = [
+            scanner_table(seen, models, self._scene(seen.robot), pool) for seen in blueprint.sensors
+        ]
+
+    @property
+    def people(self) -> int:
+        """Return how many people there are, present or to come."""
+        return 0 if self.engine is None else len(self.engine.agents)
+
+    def reset(self) -> None:
+        """Return to the initial state."""
+        self.flat[:] = self._initial
+        self.robots[:] = self._start
+        for drawn, first in zip(self._drawn, self._drawn_first, strict=True):
+            drawn[:] = first
+        for scanner in self.scanners:
+            scanner.arrays["ranges"][:] = np.inf
+
+    def rows(self) -> Array:
+        """Return the state of all people (N, C), see `crowdbot.core.crowd.state`; shared memory."""
+        return s.view(self.flat)[1]
+
+    def advance_people(self) -> None:
+        """Advance people by a tick with `CrowdEngine`, who do not decide in compiled code alone."""
+        assert self.engine is not None
+        self.engine.advance(
+            self.flat, self.robots, self.outlines, numbers=np.arange(len(self.robots)),
+            stiffnesses=self.stiffnesses,
+        )  # fmt: skip
+
+    def _stiffnesses(self) -> Array:
+        body = self.blueprint.scenario.contact.stiffness
+        return np.array([in_series(body, m.skin_stiffness) for m in self.blueprint.models])
+
+    def _crowd(self, pool: ScratchPool) -> ArrayTable:
+        if self.engine is None:
+            own = ArrayTable(CROWD_FIELDS)
+            own.put(flat=self.flat, robots=self.robots)
+            return own
+        return crowd_table(
+            self.engine, self.flat, self.robots, self.outlines, self.stiffnesses, pool
+        )
+
+    def _scene(self, robot: int) -> Scene:
+        """Return what a robot's lidars see."""
+        b = self.blueprint
+        spec, parts = b.scenario.crowd, b.parts
+        agents = None if self.engine is None else self.engine.agents
+        radius = np.zeros(0) if agents is None else agents.radius
+        height = np.full(len(radius), spec.body.height if spec else 0.0)
+        return Scene(
+            parts.walls, parts.wall_heights, radius, height, parts.pillars, parts.pillar_heights,
+            None if agents is None else agents.looks, others_of(b.models, robot),
+        )  # fmt: skip
