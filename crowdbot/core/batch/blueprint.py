@@ -33,7 +33,7 @@ SCANNERS = ("lidar", "lidar3d")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Blueprint:
-    """What all draws of a scenario share.
+    """Parts that all draws of a scenario share.
 
     Attributes:
         scenario: as it was written.

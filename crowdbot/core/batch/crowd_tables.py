@@ -1,4 +1,4 @@
-"""What compiled code takes of a crowd: the arrays of its engine, by address."""
+"""Arrays for compiled code: a crowd: the arrays of its engine, by address."""
 
 from __future__ import annotations
 

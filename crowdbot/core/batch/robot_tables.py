@@ -1,4 +1,4 @@
-"""What compiled code takes of a robot with kinematic control, by address."""
+"""Arrays for compiled code: a robot with kinematic control, by address."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What compiled code takes of a lidar, by address."""
+"""Arrays for compiled code: a lidar, by address."""
 
 from __future__ import annotations
 

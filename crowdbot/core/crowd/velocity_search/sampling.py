@@ -61,7 +61,7 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
 class SearchArguments(NamedTuple):
-    """What the compiled search takes of a sampler; see `choose_velocities`."""
+    """Arguments of the compiled search; see `choose_velocities`."""
 
     options: FanOptions
     ordered: bool

@@ -157,7 +157,7 @@ class WeightedCosts:
         return max((c.reach(self.largest, largest) for c in self._all), default=0.0)
 
     def tables(self, discs: int, walls: int, dt: float) -> DecisionTables:
-        """Return the tables for decisions every ``dt`` seconds, made anew if they are too small."""
+        """Return the tables for decisions every ``dt`` seconds; larger ones where needed."""
         self._make_room(discs, walls)
         self._time_step[0] = dt
         return DecisionTables(
