@@ -30,6 +30,7 @@ class PersonRun:
 
     Attributes:
         record: which sensors are simulated.
+        duration: of people alone, s.
     """
 
     spec: str
@@ -39,6 +40,7 @@ class PersonRun:
     out: Path
     record: Literal["all", "used", "none"]
     references: bool
+    duration: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +81,10 @@ def request_of(given: PersonRun, registry: Registry) -> Request:
         out=given.out,
         entry=expansion.entry(chosen),
         options=RunOptions(
-            record=given.record, references=given.references, metrics=expansion.metrics
+            record=given.record,
+            references=given.references,
+            metrics=expansion.metrics,
+            duration=given.duration,
         ),
     )
 

@@ -105,7 +105,10 @@ class CrowdEngine:
         self._place = WorldParameters.of(world, float(np.max(agents.radius, initial=0.0)))
         dt = self.ticks_per_decision * TICK
         self._steering = parts_of(world.steering)
-        self.heeds_robots = ~agents.ignores_robot
+        led = np.array([getattr(p, "commanded", False) for p in made], np.bool_)
+        self._commanded = led[agents.policy] if len(agents) else np.zeros(0, np.bool_)
+        self._led = bool(self._commanded.any())
+        self.heeds_robots = ~agents.ignores_robot & ~self._commanded
         self.room = 2.0 * agents.attention - 1.0
         self.evades = world.response.by_decision(dt)
         self._router = (
@@ -293,6 +296,7 @@ class CrowdEngine:
         if self._router is not None:
             number = int(flat[s.TICK]) // self.ticks_per_decision
             self._router.find(people, self.ticks_per_decision * TICK, number)
+        asked = list[tuple[NDArray[np.bool_], Array]]()
         for group in self.groups if len(robots) else self._groups_alone:
             shown = robots[:, _SEEN] if group.sees_robot and len(robots) else _NOT_SHOWN
             view = self._view(flat, rows, group.members, shown)
@@ -300,6 +304,8 @@ class CrowdEngine:
             if group.foreign:
                 view = immutable_fields(replace(view, **self._kept))
             wanted = desired_acceleration(group.policy, view)
+            if self._led and np.any(group.members & self._commanded):
+                asked.append((decides, wanted))
             if self._steering:
                 relaxation = relaxation_time_of(group.policy)
                 wanted = steer(self._steering, view, relaxation, wanted, self.world.steering.key)
@@ -312,6 +318,8 @@ class CrowdEngine:
                 self._place.boundary, self._cohesion,
             )  # fmt: skip
         self._evade(flat, people, robots, outlines)
+        for decides, wanted in asked:  # nothing else changes what those want who are led
+            np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
 
     def _evade(self, flat: Array, people: s.People, robots: Array, outlines: Array) -> None:
         """Change what people want who have noticed robots, whatever their policy is."""

@@ -89,7 +89,8 @@ class AcceleratingPolicy(Protocol):
     A policy whose whole decision is to `approach` what a `Sampler` chose may name that sampler in
     an attribute ``compiled_search``: then many worlds decide in one compiled call.
     With a true attribute ``walks_through_walls`` walls do not hold its people back, as in records
-    whose plan does not fit.
+    whose plan does not fit. With a true attribute ``commanded`` nothing else changes what its
+    people want: neither robots, nor steering parts, nor groups.
     """
 
     def accelerations(self, view: CrowdView) -> Array:

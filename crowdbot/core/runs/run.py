@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice
@@ -29,8 +29,13 @@ from crowdbot.dsl.suite.suite_entry import IN_NO_SUITE, SuiteEntry
 from crowdbot.dsl.text.path_names import path_problem
 from crowdbot.errors import InputError
 
+if TYPE_CHECKING:
+    from crowdbot.core.crowd import CrowdEngine
+
 #: Is given a function that returns what all robots see, by name.
 OnBegin = Callable[[Callable[[], Mapping[str, Observation]]], None]
+#: Is given the engine of the people, and what takes signals into the recording: time, name, value.
+OnCrowd = Callable[["CrowdEngine", Callable[[float, str, float], None]], None]
 
 
 @dataclass(frozen=True)
@@ -157,6 +162,7 @@ class Request:
         watchers: show the run, not its references, while it goes on.
         on_begin: called when a recording of robots begins, with a function that returns what the
             planners of all robots that go on see at the present step; to be called within a step.
+        on_crowd: called when a recording with people begins, not for references.
     """
 
     scenario: Scenario
@@ -172,6 +178,7 @@ class Request:
     on_hang: Callable[[], object] | None = None
     watchers: Sequence[Watcher] = ()
     on_begin: OnBegin | None = None
+    on_crowd: OnCrowd | None = None
 
     @property
     def pinned(self) -> bool:

@@ -66,6 +66,8 @@ def record_robots(
         ]
         if engine is not None:
             engine.advance(engine.initial_state())  # compiles kernels before the clock starts
+            if setup.on_crowd is not None:
+                setup.on_crowd(engine, logs.people.writer.signal)
         blocks = build_diagram(robots, engine, logs.people, seed=setup.seed)
         outcome = run(
             blocks, stage=setup.stage, progress=setup.progress, stop=setup.stop,

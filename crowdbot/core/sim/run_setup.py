@@ -24,10 +24,11 @@ from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
-from crowdbot.core.runs.run import OnBegin
+from crowdbot.core.runs.run import OnBegin, OnCrowd
 from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.crowd_only import run_crowd
+from crowdbot.core.sim.loggers.watched_run import WatchedRun
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 
@@ -36,7 +37,7 @@ from crowdbot.errors import InputError
 class RunSetup:
     """The setup of one recording; ``hashes`` identify its run in its header.
 
-    ``on_begin`` is as in `Request`.
+    ``on_begin`` and ``on_crowd`` are as in `Request`.
     """
 
     scenario: Scenario
@@ -53,6 +54,7 @@ class RunSetup:
     hashes: Mapping[str, str] = field(default_factory=dict)
     watchers: Sequence[Watcher] = ()
     on_begin: OnBegin | None = None
+    on_crowd: OnCrowd | None = None
 
 
 def record_crowd(setup: RunSetup, duration: float) -> Outcome:
@@ -80,7 +82,10 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
             setup.progress(Progress(setup.stage, t, duration, factor, None))
 
     with recording(setup, header, engine) as (writer, ending):
-        log = RunLog(writer, ids(engine), robot=None, aim=engine.aim)
+        watched = WatchedRun(setup.watchers, header, {}, {}).watch("", people=True)
+        log = RunLog(writer, ids(engine), robot=None, aim=engine.aim, on_sample=watched)
+        if setup.on_crowd is not None:
+            setup.on_crowd(engine, writer.signal)
         whole = run_crowd(
             engine, log, duration, scenario.rates.log, on_sample=report, stop=setup.stop
         )

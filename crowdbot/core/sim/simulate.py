@@ -318,4 +318,5 @@ def _setup(request: Request, prepared: Prepared, folder: Path, identity: RunIden
         hashes=provenance.recording_hashes(identity),
         watchers=request.watchers,
         on_begin=request.on_begin,
+        on_crowd=request.on_crowd,
     )

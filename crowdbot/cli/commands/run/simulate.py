@@ -104,7 +104,7 @@ def simulate(
             run = simulate_it(
                 chosen,
                 registry,
-                planner=_one_or_several(planner),
+                planner=one_or_several(planner),
                 planner_settings=planner_set or (),
                 seed=seed,
                 out=out,
@@ -128,7 +128,7 @@ def simulate(
         raise typer.Exit(3)
 
 
-def _one_or_several(planners: Sequence[str] | None) -> str:
+def one_or_several(planners: Sequence[str] | None) -> str:
     """Return the planner of all robots, or of each, in the format of `resolve_planner`.
 
     Raises:

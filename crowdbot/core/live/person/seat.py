@@ -66,7 +66,7 @@ class Seat:
         self.session, self._robot, self._rate = session, robot, rate
         self.log = SeatLog()
         self.on_taken: Callable[[int, float], object] = lambda *_: None
-        self.why_waiting = "not begun"
+        self.why_waiting = "preparing"
         self._lock = threading.Lock()
         self._page: Hashable | None = None
         self._stick = CENTRED
@@ -113,9 +113,10 @@ class Seat:
         return True
 
     def begin(self, who: Hashable) -> None:
-        """Start the run, at the wish of the person in the seat."""
+        """Start the run that waits for it, at the wish of the person in the seat."""
         with self._lock:
-            self._begun = self._begun or self._page == who
+            if self._page == who and self.why_waiting == "not begun":
+                self._begun = True
 
     def leave(self, who: Hashable) -> None:
         """Handle a page that is gone."""

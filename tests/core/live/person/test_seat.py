@@ -138,6 +138,7 @@ def test_the_run_begins_when_the_person_says_so_and_waits_while_gone(
 def test_steps_keep_to_real_time_and_nothing_is_hurried(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(seats, "LATE", 0.02)
     seat = held(Stick(1))
+    seat.why_waiting = "not begun"
     seat.begin("page")
     seat.pace(0.0)
     began = time.monotonic()

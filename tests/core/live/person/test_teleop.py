@@ -63,6 +63,7 @@ class Hand(threading.Thread):
         match said["op"]:
             case "scene":
                 self.scene = said["scene"]
+            case "state" if said["waits"] == "not begun":
                 say(page, "begin")
             case "frame":
                 self.frames.append(said)

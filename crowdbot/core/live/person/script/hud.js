@@ -1,9 +1,10 @@
 // What the page says: who drives, why the run waits, speed, goal, latency.
 
-const words = { connected: false, drives: false, taken: false, waits: "not begun", end: null };
+const words = { connected: false, drives: false, taken: false, waits: "preparing", end: null };
 
 const WAITS = {
   "not begun": "The run waits for its start.",
+  preparing: "The run is being prepared: people alone, compiled code.",
   paused: "Paused. The run goes on when Pause is released.",
   hidden: "The run waits: the page was hidden.",
   disconnected: "The run waits for its page.",
@@ -39,7 +40,7 @@ function writeWords() {
   const over = Boolean(words.end);
   byId("begin").hidden = over || !words.drives || words.waits !== "not begun";
   byId("sit").hidden = over || words.drives || words.taken || !words.connected;
-  byId("pause").hidden = over || !words.drives || words.waits === "not begun";
+  byId("pause").hidden = over || !words.drives || ["not begun", "preparing"].includes(words.waits);
   byId("pause").setAttribute("aria-pressed", String(words.waits === "paused"));
 }
 

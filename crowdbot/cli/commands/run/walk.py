@@ -1,0 +1,176 @@
+"""``crowdbot walk``: a person walks in the crowd from a page in the browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from crowdbot.cli.serving.person_run import PageDoors, PersonRun, page_of, request_of, show_end
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
+from crowdbot.cli.shared.run_arguments import (
+    AllScores,
+    AsJson,
+    OutRoot,
+    Overrides,
+    RecordChoice,
+    RunSeed,
+    ScenarioArgument,
+    SpecArgument,
+)
+from crowdbot.errors import UsageError
+
+if TYPE_CHECKING:
+    from crowdbot.core.runs.run import Request, Run
+    from crowdbot.core.sim.built_run import BuiltRun
+    from crowdbot.dsl.scenario.scenario import Scenario
+
+
+def walk(
+    spec: SpecArgument,
+    scenario: ScenarioArgument = None,
+    at: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="Your start, m; default: a free place.")
+    ] = None,
+    goal: Annotated[
+        str | None,
+        typer.Option(metavar="X,Y", help="Your own goal, m: your trip is then scored, too."),
+    ] = None,
+    speed: Annotated[
+        float,
+        typer.Option(min=0.1, max=2.5, metavar="M/S", help="Speed of full deflection."),
+    ] = 1.4,
+    planner: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[ROBOT=]NAME|FILE|file.py:Class",
+            help="The planner of the robot, dwa by default; repeatable with the names of robots.",
+        ),
+    ] = None,
+    planner_set: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Change the planner; repeatable."),
+    ] = None,
+    duration: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="Of a scenario without a robot; default 60."),
+    ] = None,
+    port: PagePort = 0,
+    open_: OpenPage = False,
+    rate: Rate = 1.0,
+    replay: ReplayRun = None,
+    overrides: Overrides = None,
+    seed: RunSeed = 0,
+    out: OutRoot = Path("runs"),
+    record: Annotated[
+        RecordChoice, typer.Option(help="Sensors to simulate and record.")
+    ] = RecordChoice.used,
+    references: Annotated[
+        bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
+    ] = True,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    everything: AllScores = False,
+    as_json: AsJson = False,
+) -> None:
+    """Walk in the crowd yourself, with a body that people and robots see and avoid.
+
+    The run keeps to real time and waits while no page is there. Your own way is not scored, unless
+    it has a goal.
+
+    Example: crowdbot walk challenge-2020 counter-d0250-dispersed-c20-r05 --at 6,0 --open
+
+    Example: crowdbot walk challenge-2020 counter-d0250-dispersed-c20-r05 --replay runs/RUN
+    """
+    from crowdbot.cli.shared.one_run import import_simulate, interruptible, print_run
+    from crowdbot.core.live.person.walking import Body
+    from crowdbot.core.support.stdout_guard import stdout_to_stderr
+
+    with stdout_to_stderr():
+        given = PersonRun(
+            spec=spec, scenario=scenario, overrides=overrides or (), seed=seed, out=out,
+            record=record.value, references=references, duration=duration,
+        )  # fmt: skip
+        without = request_of(given, installed(plugin, no_plugins))
+        import_simulate()
+        body = Body(at=_point("--at", at), goal=_point("--goal", goal), speed=speed)
+        request, builts = _with_person(without, body, planner or (), planner_set or ())
+        if replay is not None:
+            from crowdbot.core.live.person.walk import walk_again
+
+            run = walk_again(request, builts, without.scenario, replay)
+        else:
+            with interruptible() as stop:
+                doors = PageDoors(port=port, open_=open_, rate=rate)
+                run = _walked(request, builts, without.scenario, doors, stop, speed)
+    print_run(run, as_json=as_json, everything=everything)
+    if run.failed:
+        raise typer.Exit(3)
+
+
+def _point(option: str, text: str | None) -> tuple[float, float] | None:
+    if text is None:
+        return None
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        raise UsageError(f"{option} {text}: a place is X,Y in m, such as 6,-0.5") from None
+    if not (abs(x) < 1e6 and abs(y) < 1e6):
+        raise UsageError(f"{option} {text}: that is not a place")
+    return x, y
+
+
+def _with_person(
+    without: Request, body: Any, planners: list[str] | tuple[()], settings: list[str] | tuple[()]
+) -> tuple[Request, Mapping[str, BuiltRun]]:
+    """Return the request of the scenario with the person, and the runs of its robots."""
+    from crowdbot.cli.commands.run.simulate import one_or_several
+    from crowdbot.core.live.person.walking import with_person
+    from crowdbot.core.planning.given_planner import choose_planner
+    from crowdbot.core.sim.preflight import preflight
+
+    scenario = with_person(without.scenario, without.registry, body)
+    request = replace(without, scenario=scenario, options=replace(without.options, force=True))
+    if not scenario.robots:
+        if planners:
+            raise UsageError(f"--planner {planners[0]}: {without.scenario.id} has no robot")
+        return request, {}
+    choice = choose_planner(one_or_several(planners), without.registry, settings)
+    request = replace(request, choice=choice)
+    return request, preflight(request)
+
+
+def _walked(
+    request: Request,
+    builts: Mapping[str, BuiltRun],
+    without: Scenario,
+    doors: PageDoors,
+    stop: Callable[[], bool],
+    speed: float,
+) -> Run:
+    """Make the run with the person of the page."""
+    import numpy as np
+
+    from crowdbot.core.environments.build import build_environment
+    from crowdbot.core.live.person.picture import Picture
+    from crowdbot.core.live.person.walk import seat_in_the_crowd, walk
+    from crowdbot.core.live.person.walking import PERSON
+    from crowdbot.core.scenarios.lock import population
+
+    scenario = request.scenario
+    people = population(scenario, request.registry).agents
+    me = int(np.flatnonzero(people.id == PERSON)[0])
+    about = {"driven": 0, "walker": me, "yaw": float(people.heading[me])}
+    parts = build_environment(request.registry, scenario.environment)
+    seat = seat_in_the_crowd(stop, doors.rate)
+    with page_of(seat, "walk", scenario.id, doors) as server:
+        picture = Picture(server, scenario, parts, builts, people, about)
+        picture.show()
+        watched = replace(request, watchers=[picture], on_begin=picture.begin_run)
+        run = walk(watched, builts, seat, without, speed)
+        show_end(server, run)
+        return run
