@@ -94,12 +94,12 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
 #: Parameters that name no file to read: names, numbers, addresses, and what is written.
 NO_FILES = {
     "accept", "allow_origin", "environment", "include", "key", "known", "trust",
-    "axes", "by", "cluster", "command_topic", "commitment", "connect",
+    "at", "axes", "by", "cluster", "command_topic", "commitment", "connect",
     "contact", "csv", "distro", "fit", "folder", "host", "id_", "kind", "md", "metric", "metrics",
     "name",
     "one", "only", "out", "overrides", "page", "parquet", "planner", "planner_set", "robot",
     "scenario", "search", "secret", "seeds", "suite", "team", "title", "token", "user_topic",
-    "variant", "zenoh", "floor", "source",
+    "variant", "zenoh", "floor", "source", "goal",
 }  # fmt: skip
 #: Read after something else that an empty folder lacks, by a reader that the others test.
 NOT_REACHED = {
