@@ -61,6 +61,8 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("info", "file"): (".mcap", "info", "{}"),
     ("leaderboard", "folder"): ("", "leaderboard", "{}", "--out", "RUNS/l.html"),
     ("leaderboard", "audit"): (".json", "leaderboard", "RUNS", "--audit", "{}"),
+    ("challenge-page", "suite"): (".yaml", "challenge-page", "{}", "--out", "RUNS"),
+    ("challenge-page", "bundles"): ("", "challenge-page", SHORT, "{}", "--out", "RUNS"),
     ("judge", "suite"): (".yaml", "judge", "{}", "RUNS"),
     ("judge", "submissions"): ("", "judge", SHORT, "{}"),
     ("judge-log", "log"): (".jsonl", "judge-log", "{}"),

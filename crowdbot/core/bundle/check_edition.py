@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from pathlib import Path
 
-from crowdbot.core.bundle.manifest import LOCK, RULES, Manifest
+from crowdbot.core.bundle.manifest import LOCK, RULES, Edition, Manifest
 from crowdbot.core.bundle.verification import content_hash
 from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.round import Round
 
 _SHOWN = 3
 
@@ -34,6 +36,15 @@ def lock_of(expansion: Expansion) -> Path | None:
     return path if path is not None and path.exists() else None
 
 
+def late(bundle: Path, edition: Edition) -> str:
+    """Return why a bundle was not in time, by the time of its file; empty if it was."""
+    if not edition.closes:
+        return ""
+    arrived = datetime.fromtimestamp(bundle.stat().st_mtime, UTC)
+    reason = Round(closes=edition.closes).problem(arrived)
+    return reason and f"{reason}; the file is of {arrived:%Y-%m-%d %H:%M} UTC"
+
+
 def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
     """Yield false statements of a manifest about its edition."""
     edition, name = manifest.edition, expansion.suite_id
@@ -44,6 +55,7 @@ def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
         "lock": content_hash(lock) if lock else "",
         "scenarios": len(expansion.scenarios),
         "rules": RULES,
+        "handed_in": expansion.round.planners if expansion.round else "any",
     }
     for key, value in wanted.items():
         said = getattr(edition, key)

@@ -9,10 +9,11 @@ from typing import Any
 
 from crowdbot.core.bundle.archive import Archive, open_archive
 from crowdbot.core.bundle.check import check_members, claimed_runs
+from crowdbot.core.bundle.check_edition import late
 from crowdbot.core.bundle.check_run import ClaimedRun, declared_problems
 from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.score_members import score_member
-from crowdbot.core.bundle.verification import content_hash, read_verification
+from crowdbot.core.bundle.verification import JUDGED, content_hash, read_verification
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import MetricPart
@@ -49,8 +50,19 @@ class LeaderboardEntry:
 
     @property
     def ranked(self) -> bool:
-        """Return True if it is complete."""
-        return not self.manifest.missing
+        """Return True if it is complete, and was handed in as the round asks."""
+        return not self.manifest.missing and not self.wrong_form
+
+    @property
+    def wrong_form(self) -> bool:
+        """Return True if the round takes sealed planners only, and the team ran this one itself."""
+        judged = (self.verification or {}).get("outcome") == JUDGED
+        return self.manifest.edition.handed_in == "sealed" and not judged
+
+    @property
+    def late(self) -> str:
+        """Return why the archive was not in time, by the time of its file; empty if it was."""
+        return late(self.path, self.manifest.edition)
 
     @property
     def is_verified(self) -> bool:

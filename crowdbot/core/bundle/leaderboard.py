@@ -123,6 +123,8 @@ def _entry(table: Standings, entry: LeaderboardEntry, here: Path) -> dict[str, A
         "runs": len(manifest.runs),
         "failed": entry.failed,
         "missing": len(manifest.missing),
+        "unranked": "this round ranks sealed planners only" if entry.wrong_form else "",
+        "late": entry.late,
         "pinned": manifest.pinned,
         "process": processes(run.record for run in entry.runs),
         "state": _state(entry),

@@ -9,6 +9,7 @@ from annotated_types import Ge
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from crowdbot.core.support.strict_json import parse_json
+from crowdbot.dsl.suite.round import HandedIn
 from crowdbot.errors import InputError, hidden_character
 
 #: Version of the bundle format of this release.
@@ -63,6 +64,8 @@ class Edition(_Model):
         lock: SHA-256 of its lock, or empty.
         scenarios: number of scenarios.
         rules: version of the rules.
+        closes: day or moment at which the suite's round closes; empty: never.
+        handed_in: ``sealed`` if only planners that the organisers ran are ranked.
     """
 
     suite: str
@@ -70,6 +73,8 @@ class Edition(_Model):
     lock: str
     scenarios: int
     rules: int
+    closes: str = ""
+    handed_in: HandedIn = "any"
 
     @property
     def name(self) -> str:
@@ -125,7 +130,9 @@ class Manifest(_Model):
 
     def text(self) -> str:
         """Return the file's text."""
-        return json.dumps(self.model_dump(mode="json"), indent=1, ensure_ascii=False) + "\n"
+        content = self.model_dump(mode="json")
+        content["edition"] = self.edition.model_dump(mode="json", exclude_defaults=True)
+        return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
 def name_problem(text: str) -> str:

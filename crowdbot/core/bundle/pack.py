@@ -29,6 +29,7 @@ from crowdbot.core.support.strict_json import parse_json
 from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.round import Round
 from crowdbot.errors import InputError, UnknownNameError, printable
 
 _OF_A_RUN = (files.RECORD, files.SCENARIO, files.SCORES)
@@ -236,7 +237,7 @@ def _manifest(
     missing: Sequence[str],
     members: Mapping[str, Path | bytes],
 ) -> Manifest:
-    first = found[0].record
+    first, held = found[0].record, expansion.round or Round()
     lock = members.get(LOCK)
     return Manifest(
         bundle=BUNDLE,
@@ -249,6 +250,8 @@ def _manifest(
             lock=hashlib.sha256(lock).hexdigest() if isinstance(lock, bytes) else "",
             scenarios=len(expansion.scenarios),
             rules=RULES,
+            closes=held.closes or "",
+            handed_in=held.planners,
         ),
         planner=first.planner.document(),
         classed="privileged" if first.knows_truth else "sensors only",

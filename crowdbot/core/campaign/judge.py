@@ -7,6 +7,7 @@ import shutil
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +83,8 @@ def judge(setup: Judge) -> Judgement:
     own = own_public_key()
     lines = read_log(path, {own} - {""})
     found = Judgement()
-    sealed = dict(_received(setup, path, lines, found))
+    closed = expansion.round.problem(datetime.now(UTC)) if expansion.round else ""
+    sealed = dict(_received(setup, path, lines, found, closed))
     if any(scenario.hidden for scenario in expansion.scenarios):
         found.waits = True
         return found
@@ -95,9 +97,12 @@ def judge(setup: Judge) -> Judgement:
 
 
 def _received(
-    setup: Judge, path: Path, lines: list[LogLine], found: Judgement
+    setup: Judge, path: Path, lines: list[LogLine], found: Judgement, closed: str
 ) -> Iterator[tuple[str, Sealed]]:
-    """Yield the submissions that were received in time, after logging new ones."""
+    """Yield the submissions that were received in time, after logging new ones.
+
+    ``closed``: why no new one is taken now; empty if it is.
+    """
     files = sorted(setup.submissions.glob(f"*{SUFFIX}"))
     if not files:
         raise InputError(f"{setup.submissions}: no submissions (*{SUFFIX}) there")
@@ -110,8 +115,8 @@ def _received(
             found.left_out[file.name] = str(error).removeprefix(f"{file}: ")
             continue
         if one.sha256 not in known:
-            if opened:
-                found.left_out[file.name] = "handed in after the draws were opened"
+            if opened or closed:
+                found.left_out[file.name] = closed or "handed in after the draws were opened"
                 continue
             about = one.about
             append(

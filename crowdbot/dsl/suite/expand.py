@@ -18,6 +18,7 @@ from crowdbot.dsl.suite.axis_words import AxisWords, axis_words
 from crowdbot.dsl.suite.include import Loader
 from crowdbot.dsl.suite.installed import Installed
 from crowdbot.dsl.suite.matrix import DRAW, combinations
+from crowdbot.dsl.suite.round import Round
 from crowdbot.dsl.suite.suite import ParsedSuite, Recorded, read_suite
 from crowdbot.dsl.suite.suite_entry import NO_SUITE, SuiteEntry, digest_of
 from crowdbot.dsl.text.diagnostics import MAX_ERRORS, Diagnostic, Mark, Source
@@ -52,6 +53,7 @@ class Expansion:
         words: axis -> label -> readable names of the quantity and the value.
         altered: the ``key=value`` texts that ``--set`` applied to each scenario.
         record: what to record by default; None: not said.
+        round: round of a challenge; None: not said.
     """
 
     suite_id: str
@@ -65,6 +67,7 @@ class Expansion:
     words: dict[str, dict[str, AxisWords]] = field(default_factory=dict, repr=False)
     altered: tuple[str, ...] = ()
     record: Recorded | None = None
+    round: Round | None = None
 
     def words_of(self, scenario: str) -> dict[str, AxisWords]:
         """Return axis -> readable names of a scenario's label; axes without names are left out."""
@@ -227,6 +230,7 @@ class _Expander:
             axis_words(suite.base, suite.axes, self._set),
             self._altered,
             suite.record,
+            suite.round,
         )
 
     def _unusable(self, bare: _Bare) -> str:

@@ -11,6 +11,7 @@
     seeds: {crowd: [axis, …]}
     metrics: [name, …]
     record: all|used|none
+    round: {opens: …, closes: …}
     references: {name: {override}}
 """
 
@@ -29,6 +30,7 @@ from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.suite.commitment import COMMITMENT, SALT, read_commitment
 from crowdbot.dsl.suite.installed import Installed, check_metrics, check_versions
 from crowdbot.dsl.suite.matrix import DRAW, MAX_COMBINATIONS, Axis, read_axes
+from crowdbot.dsl.suite.round import Round
 from crowdbot.dsl.suite.selection import Kept, read_selection
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.dsl.text.finder import Finder
@@ -135,6 +137,9 @@ class SuiteDocument(Spec):
         default=None,
         description="What `crowdbot simulate` records where it is not told; outside the hash.",
     )
+    round: Round | None = Field(
+        default=None, description="Dates and rules of a challenge; outside the hash."
+    )
     references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
     kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
 
@@ -166,6 +171,7 @@ class ParsedSuite:
         hidden: True until the seed is revealed; then ``seed`` is a node of None.
         run_seeds: seeds of the runs that a bundle consists of.
         record: what to record by default; None: not said.
+        round: round of a challenge; None: not said.
         problems: errors found so far.
         tree: the whole document, including ``extends``.
         finder: finds the document's files; None: assets are not searched.
@@ -188,6 +194,7 @@ class ParsedSuite:
     hidden: bool = False
     run_seeds: tuple[int, ...] = (0,)
     record: Recorded | None = None
+    round: Round | None = None
 
 
 def read_suite(
@@ -211,7 +218,7 @@ def read_suite(
         problems.append(Diagnostic("E013", text, root.mark, hint))
         return None
     model = ScenarioDocument if root.child("suite") is None else SuiteDocument
-    _, found = validate(model, to_data(root), root)
+    read, found = validate(model, to_data(root), root)
     problems += found
     if installed is not None:
         check_metrics(root.child("metrics"), installed, problems)
@@ -220,7 +227,10 @@ def read_suite(
     body = root.child("scenario" if single else "base")
     if body is None or not isinstance(body.value, dict):
         return None
-    return _scenario(root, body, problems) if single else _suite(root, body, problems)
+    if single:
+        return _scenario(root, body, problems)
+    held = read.round if isinstance(read, SuiteDocument) else None
+    return replace(_suite(root, body, problems), round=held)
 
 
 def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:

@@ -195,3 +195,20 @@ def test_hidden_draws_only_receive(tmp_path: Path, capsys: pytest.CaptureFixture
         said = capsys.readouterr().out
         assert f"{received} received; the draws are hidden: nothing was run" in said
     assert _log(tmp_path / "out") == ["received"]
+
+
+@pytest.mark.parametrize(
+    ("dates", "why"),
+    [("opens: 2999-01-01", "the round opens on 2999-01-01"),
+     ("closes: 2001-01-01", "the round closed on 2001-01-01")],
+)  # fmt: skip
+def test_nothing_is_received_outside_the_round(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], dates: str, why: str
+) -> None:
+    (tmp_path / "suite.yaml").write_text(SUITE + f"round: {{{dates}}}\n")
+    (tmp_path / "in").mkdir()
+    _planner(tmp_path / "mine")
+    assert _seal(tmp_path / "mine", tmp_path / "in" / "a.cbs") == 0
+    assert _judge(tmp_path) == 1
+    assert f"a.cbs is left out: {why}" in capsys.readouterr().err
+    assert "received" not in _log(tmp_path / "out")

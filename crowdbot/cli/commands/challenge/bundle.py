@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +15,9 @@ from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
 from crowdbot.dsl.suite.suite_entry import NO_SUITE
 from crowdbot.errors import UsageError
+
+if TYPE_CHECKING:
+    from crowdbot.dsl.suite.expand import Expansion
 
 
 def bundle(
@@ -97,6 +101,8 @@ def bundle(
     )  # fmt: skip
     target = out or Path(f"{expansion.suite_id}-{planner}.cbz")
     manifest = pack(submission, expansion, lock, registry, target)
+    for line in _round_lines(expansion):
+        say(f"warning: {line}", err=True)
     if more := other_seeds(submission, expansion):
         seeds = ", ".join(map(str, more))
         say(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
@@ -118,6 +124,16 @@ def bundle(
     if verdict is not None:
         print_verdict(verdict)
         raise typer.Exit(0 if verdict["ok"] else 1)
+
+
+def _round_lines(expansion: Expansion) -> list[str]:
+    """Return what the suite's round says against handing in this bundle now."""
+    if expansion.round is None:
+        return []
+    lines = [expansion.round.problem(datetime.now(UTC))]
+    if expansion.round.planners == "sealed":
+        lines.append("this round ranks sealed planners only: hand in what crowdbot seal writes")
+    return [line for line in lines if line]
 
 
 def _offer(root: Path) -> str:

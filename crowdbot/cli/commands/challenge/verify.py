@@ -151,6 +151,7 @@ def verify_bundle(
         asked: the extent of the verification.
     """
     from crowdbot.core.bundle.archive import open_archive
+    from crowdbot.core.bundle.check_edition import late
     from crowdbot.core.bundle.odds import odds_of_finding
     from crowdbot.core.bundle.verification import content_hash
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
@@ -165,6 +166,7 @@ def verify_bundle(
     odds = odds_of_finding(len(manifest.runs), len(verdict.relations))
     return names | _document(verdict, seed, digest) | {
         "odds": {str(k): round(p, 4) for k, p in odds.items()}, "trusted": list(asked.trusted),
+        "late": late(bundle, manifest.edition),
     }  # fmt: skip
 
 
@@ -300,6 +302,8 @@ def print_verdict(document: dict[str, Any]) -> None:
     if document["runs"]:
         chances = (f"{k}: {100.0 * p:.0f} %" for k, p in document["odds"].items())
         say(f"odds of finding edited runs with this sample, {', '.join(chances)}")
+    if document["late"]:
+        say(f"warning: {document['late']}", err=True)
     head, outcome = f"{document['edition']}: {document['planner']}", document["outcome"]
     chosen = f", sample seed {document['seed']}" if document["runs"] else ""
     say(f"{head}: {outcome}: {_SAYS[outcome]}{chosen}")

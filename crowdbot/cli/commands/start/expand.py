@@ -11,6 +11,7 @@ import typer
 from crowdbot.cli.output.say import say
 from crowdbot.cli.output.scenario_list import hash_of, print_scenarios
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.errors import printable
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
@@ -55,8 +56,10 @@ def expand(
     scenarios = _matching(expansion, only or ())
     if as_json and not count:
         say(json.dumps([_row(expansion, s, registry) for s in scenarios], indent=2))
-    else:
-        print_scenarios(scenarios, registry, count=count)
+        return
+    print_scenarios(scenarios, registry, count=count)
+    if expansion.round is not None and not count:
+        say(f"round: {printable(expansion.round.text)}")
 
 
 def _matching(expansion: Expansion, patterns: Sequence[str]) -> list[Scenario]:

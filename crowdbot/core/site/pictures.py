@@ -1,0 +1,71 @@
+"""Pictures of a suite's conditions, drawn from above."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from crowdbot.core.registry.registry import Registry
+from crowdbot.core.scenarios.lock import population
+from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.view.build import build_map_content
+from crowdbot.core.view.facts import scenario_facts
+from crowdbot.core.view.render import render
+from crowdbot.core.view.svg import to_svg
+from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.matrix import DRAW
+
+FOLDER = "scenarios"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """One condition of a suite.
+
+    Attributes:
+        scenario: id of the scenario that is drawn, the first draw of the condition.
+        words: the condition in words: quantity and value of each axis.
+        draws: number of its scenarios.
+        file: picture, relative to the site; empty while the draws are hidden.
+    """
+
+    scenario: str
+    words: tuple[str, ...]
+    draws: int
+    file: str = ""
+
+
+def draw_conditions(expansion: Expansion, registry: Registry, folder: Path) -> list[Picture]:
+    """Draw the first scenario of each condition into ``scenarios/`` of a folder.
+
+    Raises:
+        InputError: a picture cannot be written.
+    """
+    groups: dict[tuple[tuple[str, str], ...], list[Scenario]] = {}
+    for scenario in expansion.scenarios:
+        labels = expansion.axes.get(scenario.id, {})
+        condition = tuple((axis, label) for axis, label in labels.items() if axis != DRAW)
+        groups.setdefault(condition or ((scenario.id, ""),), []).append(scenario)
+    return [_draw(expansion, group, registry, folder) for group in groups.values()]
+
+
+def _draw(expansion: Expansion, group: list[Scenario], registry: Registry, folder: Path) -> Picture:
+    first = group[0]
+    words = expansion.words_of(first.id)
+    said = tuple(f"{one.title}: {one.value}" for axis, one in words.items() if axis != DRAW)
+    file = "" if first.hidden else f"{FOLDER}/{first.id.replace('/', '_')}.svg"
+    if file:
+        (folder / FOLDER).mkdir(exist_ok=True)
+        atomic_write(folder / file, _svg(first, registry))
+    return Picture(scenario=first.id, words=said, draws=len(group), file=file)
+
+
+def _svg(scenario: Scenario, registry: Registry) -> str:
+    people = population(scenario, registry).agents
+    facts = scenario_facts(
+        scenario, people, content_hash(scenario, registry.spec_versions(scenario))
+    )
+    content = build_map_content(scenario, people, registry)
+    return to_svg(render(content, scenario.id, facts, heading=False))

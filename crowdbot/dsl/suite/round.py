@@ -1,0 +1,98 @@
+"""A round of a challenge: when planners are handed in, in which form, and whom to ask."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, time
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
+
+from crowdbot.dsl.spec.spec import Spec
+
+#: The form in which planners are handed in.
+HandedIn = Literal["any", "sealed"]
+_TEXT = 500
+
+
+def _moment(text: str) -> str:
+    """Return the text of a day or a moment with a time zone.
+
+    Raises:
+        ValueError: it is neither.
+    """
+    try:
+        if datetime.fromisoformat(text).tzinfo is not None or len(text) == len("2027-01-31"):
+            return text
+    except ValueError:
+        pass
+    raise ValueError("write a day such as 2027-01-31, or a moment such as 2027-01-31T12:00Z")
+
+
+Moment = Annotated[
+    str,
+    AfterValidator(_moment),
+    WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d\d-\d\d([T ].*(Z|[+-]\d\d:?\d\d))?$"}),
+]
+
+
+class Round(Spec):
+    """A round of a challenge; all days begin and end in UTC."""
+
+    opens: Moment | None = Field(
+        default=None, description="Day or moment from which planners are taken."
+    )
+    closes: Moment | None = Field(
+        default=None, description="Last day, or the moment, until which planners are taken."
+    )
+    planners: HandedIn = Field(
+        default="any",
+        description="`sealed`: only planners that were handed in sealed, and that the organisers "
+        "ran, are ranked.",
+    )
+    contact: str = Field(default="", max_length=_TEXT, description="Whom to ask.")
+    rules: str = Field(
+        default="", max_length=_TEXT, description="Address of the rules, or the rules in a line."
+    )
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Round:
+        if self.opens and self.closes and self.begin >= self.end:
+            raise ValueError("a round closes after it opens")
+        return self
+
+    @property
+    def begin(self) -> datetime:
+        """Return the moment from which planners are taken."""
+        return _at(self.opens, time.min) if self.opens else datetime.min.replace(tzinfo=UTC)
+
+    @property
+    def end(self) -> datetime:
+        """Return the moment until which planners are taken."""
+        return _at(self.closes, time.max) if self.closes else datetime.max.replace(tzinfo=UTC)
+
+    def problem(self, moment: datetime) -> str:
+        """Return why nothing is taken at a moment; empty if it is."""
+        if moment < self.begin:
+            return f"the round opens on {self.opens}"
+        return f"the round closed on {self.closes}" if moment > self.end else ""
+
+    @property
+    def text(self) -> str:
+        """Return the round in a line."""
+        parts = [
+            f"opens {self.opens}" if self.opens else "",
+            f"closes {self.closes}" if self.closes else "",
+            "sealed planners only" if self.planners == "sealed" else "",
+            f"rules: {self.rules}" if self.rules else "",
+            f"contact: {self.contact}" if self.contact else "",
+        ]
+        return ", ".join(part for part in parts if part) or "no dates"
+
+
+def _at(text: str, alone: time) -> datetime:
+    """Return a moment; of a day without a time, its first or last."""
+    found = datetime.fromisoformat(text)
+    return found if found.tzinfo is not None else datetime.combine(found.date(), alone, UTC)
+
+
+__all__ = ["HandedIn", "Round"]

@@ -1,0 +1,81 @@
+"""The site of a challenge: pages, pictures, and entries that the round does not rank."""
+
+from __future__ import annotations
+
+import os
+import re
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from crowdbot import cli
+from crowdbot.core.bundle.check_edition import late
+from crowdbot.core.bundle.manifest import Edition
+from tests.core.bundle.made_up_runs import make_bundle, write_suite
+
+ROUND = "round: {closes: 2027-03-31, planners: sealed, contact: us@example.org}\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("site")
+    suite = write_suite(folder)
+    suite.write_text(suite.read_text() + ROUND)
+    for planner in ("dwa", "goal_seek"):
+        make_bundle(folder, planner, f"{planner}.cbz", team="A <b>team</b>")
+    return folder
+
+
+def test_without_bundles(folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "new" / "site"
+    assert cli.main(["challenge-page", str(folder / "tiny.yaml"), "--out", str(out)]) == 0
+    page = (out / "index.html").read_text()
+    assert "Nothing was handed in yet" in page
+    assert "us@example.org" in page
+    assert "crowdbot seal mine.py:Mine" in page
+    pictures = re.findall(r'<img src="([^"]+)"', page)
+    assert pictures
+    assert all((out / name).read_text().startswith("<?xml") for name in pictures)
+    assert "http" not in re.sub(r"<[^>]*Security-Policy[^>]*>", "", page)
+
+
+def test_with_bundles(folder: Path, tmp_path: Path) -> None:
+    arguments = ["challenge-page", str(folder / "tiny.yaml"), str(folder)]
+    assert cli.main([*arguments, "--out", str(tmp_path)]) == 0
+    board = (tmp_path / "leaderboard.html").read_text()
+    assert "A &lt;b&gt;team&lt;/b&gt;" in board
+    assert board.count("not ranked: this round ranks sealed planners only") == 2
+    assert "· dwa" not in (tmp_path / "index.html").read_text()
+
+
+def test_bundles_are_ranked_where_a_round_takes_them(tmp_path: Path) -> None:
+    suite = write_suite(tmp_path)
+    for planner in ("dwa", "goal_seek"):
+        make_bundle(tmp_path, planner, f"{planner}.cbz", team="A <b>team</b>")
+    out = tmp_path / "site"
+    assert cli.main(["challenge-page", str(suite), str(tmp_path), "--out", str(out)]) == 0
+    page = (out / "index.html").read_text()
+    assert "A &lt;b&gt;team&lt;/b&gt; · dwa" in page
+    assert "crowdbot bundle runs" in page
+
+
+def test_bundles_of_another_suite_are_no_site(folder: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.yaml"
+    other.write_text((folder / "tiny.yaml").read_text().replace("id: tiny", "id: other"))
+    arguments = ["challenge-page", str(other), str(folder), "--out", str(tmp_path)]
+    assert cli.main(arguments) == 1
+    assert not (tmp_path / "index.html").exists()
+
+
+def test_a_bundle_after_the_round_is_told(tmp_path: Path) -> None:
+    bundle = tmp_path / "a.cbz"
+    bundle.touch()
+    edition = Edition(suite="a", title="", lock="", scenarios=1, rules=2, closes="2027-03-31")
+    for moment, told in (
+        (datetime(2027, 3, 31, 20, tzinfo=UTC), ""),
+        (datetime(2027, 4, 1, 8, 30, tzinfo=UTC), "the file is of 2027-04-01 08:30 UTC"),
+    ):
+        os.utime(bundle, (moment.timestamp(), moment.timestamp()))
+        assert late(bundle, edition).endswith(told)
+        assert bool(late(bundle, edition)) is bool(told)
