@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from crowdbot.core.realism.crowds import lines_of
+from crowdbot.core.realism.near_robots.known import response_lines
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.report.cards import cards
 from crowdbot.core.report.encode import Attempt, attempts, axes_of, status_of
@@ -67,6 +68,7 @@ class Contents:
         suspicion: why the results may be meaningless; empty if there is no reason.
         sample: check of the sample size for a verdict; None if nothing is compared.
         crowds: realism of the runs' people, a line per different crowd.
+        responses: realism of their response to the robot, a line per kind.
         orders: orders of the planners by the ranking rule, and by others beside it; None for one
             planner.
         ranks: dependence of the order of planners on the crowd; None for runs of one crowd.
@@ -83,6 +85,7 @@ class Contents:
     floors: tuple[FloorCheck, ...]
     suspicion: str
     crowds: tuple[str, ...] = ()
+    responses: tuple[str, ...] = ()
     sample: SampleSize | None = None
     ranks: CrowdRanks | None = None
     orders: Orders | None = None
@@ -132,6 +135,10 @@ def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
     return lines_of((name, like) for name, like in told if name or like)
 
 
+def _responses(runs: Sequence[RunRow]) -> list[str]:
+    return [r.record.conditions.get("people_and_robot", "") for r in runs]
+
+
 def gather(
     results: Results, registry: Registry, heading: Heading, replays: Mapping[str, str]
 ) -> Contents:
@@ -166,6 +173,7 @@ def gather(
         floors=check_floors(results, table=table),
         suspicion=suspicion(heading.audit, results.runs),
         crowds=tuple(crowd_lines(results.runs)),
+        responses=tuple(response_lines(_responses(results.runs))),
         sample=sample_size(worked_out.headline),
         ranks=crowd_ranks(results, table=table),
         orders=orders(table, results.marks) if len(table.planners) > 1 else None,

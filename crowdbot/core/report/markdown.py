@@ -20,6 +20,9 @@ def markdown(contents: Contents) -> str:
     lines = [f"# {_plain(heading.suite)}", ""]
     lines += [f"Made {_plain(heading.made)}.", ""] if heading.made else []
     lines += [text for line in contents.crowds for text in (f"Crowd: {_plain(line)}.", "")]
+    lines += [
+        text for x in contents.responses for text in (f"Response to the robot: {_plain(x)}.", "")
+    ]
     lines += [f"**{_plain(contents.suspicion)}.**", ""] if contents.suspicion else []
     if contents.sample and contents.sample.too_small:
         lines += [f"**{_plain(contents.sample.text)}.**", ""]
