@@ -19,6 +19,7 @@ SEEDS = (1, 2)
 
 
 def main() -> None:
+    """Measure each kind of response, and write the numbers."""
     registry, rows = discover(allow=()), {}
     for kind in KINDS:
         crowd = open_responding(kind, registry)
