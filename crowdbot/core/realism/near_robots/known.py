@@ -1,4 +1,4 @@
-"""What is known of responses to a robot without a simulation: a line for the head of a report."""
+"""Realism of the kinds of response, known without a simulation: a line for the head of a report."""
 
 from __future__ import annotations
 
