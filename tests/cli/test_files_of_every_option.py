@@ -56,6 +56,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("expand", "spec"): (".yaml", "expand", "{}"),
     ("export", "run"): (".mcap", "export", "{}", "--to", "csv"),
     ("export-map", "spec"): (".yaml", "export-map", "{}"),
+    ("export-trial", "spec"): (".yaml", "export-trial", "{}", "--out", "RUNS/trial.xml"),
     ("export-urdf", "spec"): (".yaml", "export-urdf", "robot", "--spec", "{}"),
     ("import", "files"): (".xml", "import", "{}", "--out", "RUNS/imported.yaml"),
     ("info", "file"): (".mcap", "info", "{}"),

@@ -58,7 +58,7 @@ class Item:
                 names.append(item.name)
             item = item.parent
         names.append(item.name)
-        return "/".join(reversed(names)).replace("/@", "@")
+        return "/".join(filter(None, reversed(names))).replace("/@", "@")
 
     def find(self, name: str) -> Item | None:
         """Return the first child of a name, and count it as used."""

@@ -1,0 +1,57 @@
+"""``crowdbot export-trial``: a scenario as a trial of the original, with a report."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+
+
+def export_trial(
+    spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
+    scenario: Annotated[
+        str | None, typer.Argument(metavar="[ID]", help="Id, unique beginning, or pattern.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="File to write, .xml; default: ID.xml, here."),
+    ] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+    ] = None,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,
+) -> None:
+    """Write a scenario as trial XML of the original, and its policies beside it where needed.
+
+    Example: crowdbot export-trial challenge-2020 in-d0125-slow-c20-r05 --out trial1.xml
+    """
+    from crowdbot.core.exchange.trial_export.document import export_trial as write
+    from crowdbot.core.scenarios.library import open_spec, pick
+    from crowdbot.core.support.atomic_write import atomic_write
+
+    check_ending(out, ".xml")
+    registry = installed(plugin, no_plugins)
+    chosen = pick(open_spec(spec, registry, overrides or []), scenario)
+    made = write(chosen, registry)
+    target = out or Path(f"{chosen.id.replace('/', '_')}.xml")
+    files = {target: made.text}
+    if made.policies:
+        files[target.with_name(f"{target.stem}.policies.xml")] = made.policies
+    for path, text in files.items():
+        atomic_write(path, text)
+    if as_json:
+        entries = [entry.as_dict() for entry in made.report.entries]
+        say(json.dumps({"files": [str(p) for p in files], "report": entries}, indent=2))
+        return
+    for entry in made.report.entries:
+        say(f"{entry.ours}: {entry.note}")
+    for path in files:
+        say(f"wrote {path}")

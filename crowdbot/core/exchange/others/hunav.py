@@ -1,0 +1,158 @@
+"""HuNavSim: agents.yaml, the parameters of its loader."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.others.usual import social_forces
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.rows import Row, Table, not_negative, positive
+from crowdbot.core.exchange.scene import Data, Scene, id_of
+
+#: Behaviours by number: name, and our like of it.
+_BEHAVIOURS = {
+    1: ("regular", "the robot is one of the people"),
+    2: ("impassive", "people ignore the robot"),
+    3: ("surprised", "people stop and look at the robot: here they evade it"),
+    4: ("scared", "people keep far from the robot: here they evade it"),
+    5: ("curious", "people approach the robot: here they evade it"),
+    6: ("threatening", "people block the robot: here they evade it"),
+}
+
+
+def _behaviour(item: Item) -> int:
+    kind = item.find("type") or item
+    return kind.whole(1, 6)
+
+
+AGENT = Table(
+    "agent",
+    (
+        Row("id", "crowd.agents.id", read=lambda item: item.whole(0, 2147483647)),
+        Row("skin", "", "bodies have no clothes"),
+        Row("group_id", "crowd.agents.group", read=lambda item: item.whole(-1, 2147483647)),
+        Row("max_vel", "crowd.agents.speed", "the speed at which they walk, and their largest",
+            positive),
+        Row("radius", "crowd.agents.radius", read=lambda item: item.number(0.01, 100.0)),
+        Row("goal_radius", "", "a goal is reached at the crowd's own distance", not_negative),
+        Row("cyclic_goals", "crowd.agents.at_goal",
+            read=lambda item: "loop" if item.truth() else "stop"),
+    ),
+)  # fmt: skip
+MORE = Table(
+    "agent",
+    (
+        Row(
+            "behavior", "crowd.agents.attention", "2, impassive: the least attentive; see the note"
+        ),
+        Row("init_pose", "crowd.agents.x, y, heading"),
+        Row("goals", "crowd.agents.goals"),
+        Row("init_pose z, goal h", "", "heights and headings at goals"),
+    ),
+)
+LOADER = Table(
+    "hunav_loader",
+    (
+        Row("map", "", "give the floor with environment.kind: floor_plan and the map.yaml"),
+        Row("simulator", "", "the simulator is crowdbot"),
+        Row("publish_people", "", "recordings have people"),
+        Row("yaml_base_name", "", "a name of this file"),
+    ),
+)
+
+
+def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+    """Return one scene for each file.
+
+    Raises:
+        SpecError: E402, an agent is missing or a value cannot be.
+    """
+    return [_scene(file, context.report) for file in files]
+
+
+def _parameters(file: Opened) -> Item:
+    loader = file.roots[0].need("hunav_loader")
+    return loader.need("ros__parameters")
+
+
+def _scene(file: Opened, report: Report) -> Scene:
+    parameters, scene = _parameters(file), Scene(id_of(file.path.stem))
+    scene.notes.append(f"Imported from HuNavSim: {file.path.name}.")
+    report.take(parameters, LOADER)
+    policy = scene.policy(social_forces(), "social_forces", parameters.mark)
+    report.interpreted(parameters, "crowd.policy", "its social force model is ours of 1995")
+    names = parameters.need("agents").every()
+    for name in names:
+        _agent(name, parameters, policy, scene, report)
+    if not names:
+        parameters.need("agents").refuse("no agent is named here")
+    _ignoring(scene)
+    return scene
+
+
+def _agent(name: Item, parameters: Item, policy: str, scene: Scene, report: Report) -> None:
+    item = parameters.need(name.text())
+    report.carried(name, "crowd.agents")
+    fields: Data = {"speed": 1.5, "radius": 0.35, **report.take(item, AGENT)}
+    fields["max_speed"] = fields["speed"]
+    pose = item.need("init_pose")
+    row = {"x": pose.need("x").number(), "y": pose.need("y").number(), **fields, "policy": policy}
+    heading = pose.find("h")
+    if heading is not None:
+        row["heading"] = heading.number()
+    report.carried(pose, "crowd.agents.x, y, heading")
+    for extra in ("z",):
+        if (height := pose.find(extra)) is not None:
+            report.left_out(height, MORE.rows[3].note)
+    row["goals"] = _goals(item, report) or [[row["x"], row["y"]]]
+    _behave(item, row, report)
+    scene.agent(row, item.mark)
+
+
+def _goals(item: Item, report: Report) -> list[list[float]]:
+    listed = item.find("goals")
+    found = []
+    for name in listed.every() if listed else []:
+        goal = item.need(name.text())
+        found.append([goal.need("x").number(), goal.need("y").number()])
+        report.carried(name, "crowd.agents.goals")
+        report.carried(goal, "crowd.agents.goals")
+        for extra in ("h", "z"):
+            if (other := goal.find(extra)) is not None:
+                report.left_out(other, MORE.rows[3].note)
+    return found
+
+
+def _behave(item: Item, row: Data, report: Report) -> None:
+    given = item.find("behavior")
+    if given is None:
+        return
+    kind = _behaviour(given)
+    name, like = _BEHAVIOURS[kind]
+    row["attention"] = 0.0 if kind == 2 else 0.5
+    report.interpreted(given.find("type") or given, "crowd.agents.attention", f"{name}: {like}")
+    for part in given.children:
+        if not part.used:
+            report.left_out(part, "parameters of that behaviour")
+
+
+def _ignoring(scene: Scene) -> None:
+    """Let those with attention 0 ignore robots."""
+    count = sum(1 for agent in scene.agents if agent.get("attention") == 0.0)
+    if count:
+        share = round(count / len(scene.agents), 6)
+        share = min(share, 0.999999)
+        scene.crowd["robot_response"] = {"reaction": "mixed", "ignoring_fraction": share}
+
+
+HUNAV = Format(
+    "hunav",
+    "HuNavSim agents.yaml",
+    lambda file: file.kind == "data" and "hunav_loader" in file.tags,
+    read,
+    (LOADER, AGENT, MORE),
+    "the map, behaviours near the robot but for ignoring it",
+)

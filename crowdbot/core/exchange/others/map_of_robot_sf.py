@@ -1,0 +1,188 @@
+"""A map of robot_sf, as its SVG and its YAML or JSON both say it, and scenes of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.others.shapes import Corners, area_of, middle, rectangle_in, size
+from crowdbot.core.exchange.others.usual import social_forces, standing_robot
+from crowdbot.core.exchange.polygons import add_polygon
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.scene import Data, Scene, free_name
+
+#: People per m^2 on routes and in crowded zones, and width of a route, m: usual values there.
+DENSITY, WIDTH = 0.04, 3.0
+#: Most robot routes, each of which is a scenario.
+_MOST_ROUTES = 50
+
+
+@dataclass(slots=True)
+class Route:
+    """A route from one zone to another.
+
+    Attributes:
+        item: where it is written.
+        spawn: number of the spawn zone.
+        goal: number of the goal zone.
+        points: way points, m.
+    """
+
+    item: Item
+    spawn: int
+    goal: int
+    points: Corners
+
+
+@dataclass(slots=True)
+class Person:
+    """A single pedestrian: start, then the points where it goes."""
+
+    item: Item
+    points: Corners
+    speed: float | None = None
+
+
+@dataclass(slots=True)
+class Map:
+    """Everything in a map; zones by their number.
+
+    Attributes:
+        item: the whole.
+        bounds: x0, x1, y0, y1; None to take those of everything.
+    """
+
+    item: Item
+    bounds: tuple[float, float, float, float] | None = None
+    obstacles: list[tuple[Item, Corners]] = field(default_factory=list)
+    zones: dict[str, dict[int, tuple[Item, Corners]]] = field(default_factory=dict)
+    robot_routes: list[Route] = field(default_factory=list)
+    ped_routes: list[Route] = field(default_factory=list)
+    people: list[Person] = field(default_factory=list)
+
+    def zone(self, kind: str, number: int, route: Route) -> tuple[Item, Corners]:
+        """Return a zone, or a square at the route's end where the map has none.
+
+        Raises:
+            SpecError: E402, there are such zones, but not this one.
+        """
+        known = self.zones.get(kind, {})
+        if number in known:
+            return known[number]
+        if known:
+            route.item.refuse(f"no {kind} {number}; there are: {', '.join(map(str, known))}")
+        x, y = route.points[0 if "spawn" in kind else -1]
+        return route.item, [[x - 1, y - 1], [x + 1, y - 1], [x + 1, y + 1], [x - 1, y + 1]]
+
+
+def scenes_of(found: Map, name: str, note: str, report: Report) -> list[Scene]:
+    """Return one scene for each route of the robot, or one without a robot.
+
+    Raises:
+        SpecError: E402, a route names a zone that is not there.
+    """
+    routes = found.robot_routes[:_MOST_ROUTES]
+    for route in found.robot_routes[_MOST_ROUTES:]:
+        report.left_out(route.item, f"more than {_MOST_ROUTES} routes")
+    scenes = []
+    chosen: list[Route | None] = [*routes]
+    for way in chosen or [None]:
+        ending = f"-{way.spawn}-{way.goal}" if way is not None and len(routes) > 1 else ""
+        scene = Scene(f"{name}{ending}")
+        scene.notes.append(note)
+        _floor(found, scene, report)
+        if way is not None:
+            _robot(found, way, scene, report)
+        _people(found, scene, report)
+        scenes.append(scene)
+    return scenes
+
+
+def _floor(found: Map, scene: Scene, report: Report) -> None:
+    if found.bounds is not None:
+        x0, x1, y0, y1 = found.bounds
+        scene.environment = {"kind": "floor", "border": "walls",
+                             "area": {"x": [x0, x1], "y": [y0, y1]}}  # fmt: skip
+    scene.origins["environment",] = found.item.mark
+    for item, corners in found.obstacles:
+        inside = _within(corners, found.bounds)
+        add_polygon(scene, report, item, inside)
+        report.carried(item, "environment.blocks")
+
+
+def _within(corners: Corners, bounds: tuple[float, float, float, float] | None) -> Corners:
+    """Return an outline moved into the bounds: what is outside of the map stops no one."""
+    if bounds is None:
+        return corners
+    x0, x1, y0, y1 = bounds
+    return [[min(max(x, x0), x1), min(max(y, y0), y1)] for x, y in corners]
+
+
+def _robot(found: Map, route: Route, scene: Scene, report: Report) -> None:
+    _, spawn = found.zone("robot_spawn_zone", route.spawn, route)
+    item, goal = found.zone("robot_goal_zone", route.goal, route)
+    start_area, _ = rectangle_in(spawn)
+    goal_area, how = rectangle_in(goal)
+    x, y = middle(start_area)
+    ahead = next((p for p in route.points if math.dist(p, (x, y)) > 0.1), middle(goal_area))
+    scene.part("zones", "robot_goal", goal_area, item.mark)
+    heading = math.atan2(ahead[1] - y, ahead[0] - x)
+    scene.robots["robot"] = standing_robot("robot_goal", (x, y, heading))
+    scene.origins["robots", "robot"] = route.item.mark
+    report.interpreted(route.item, "robots.task", "from zone to zone; planners find the way")
+    if how:
+        report.interpreted(item, "zones.robot_goal", how)
+    report.added("robots.robot.model", "a TurtleBot2", route.item.mark)
+
+
+def _people(found: Map, scene: Scene, report: Report) -> None:
+    streams: Data = {}
+    for route in found.ped_routes:
+        _, spawn = found.zone("ped_spawn_zone", route.spawn, route)
+        _, goal = found.zone("ped_goal_zone", route.goal, route)
+        origin, destination = rectangle_in(spawn)[0], rectangle_in(goal)[0]
+        length = _length(route.points)
+        count = max(1, min(round(DENSITY * WIDTH * length), round(0.8 * size(origin))))
+        name = free_name(f"route_{route.spawn}_{route.goal}", streams)
+        streams[name] = {"kind": "through", "origin": area_of(origin), "count": count,
+                         "destination": area_of(destination),
+                         "at_destination": "return"}  # fmt: skip
+        scene.origins["crowd", "streams", name] = route.item.mark
+        note = f"{DENSITY} people/m^2 on a way {WIDTH:g} m wide; they find their own way"
+        report.interpreted(route.item, "crowd.streams", note)
+    _crowded(found, scene, streams, report)
+    if streams:
+        scene.crowd["streams"] = streams
+        scene.crowd["speed"] = {"mean": 1.3, "std": 0.2}
+    if streams or found.people:
+        policy = scene.policy(social_forces(), "social_forces", found.item.mark)
+        scene.crowd["routing"] = {"kind": "mesh"}
+        report.added("crowd.policy", "its social force model is ours of 1995", found.item.mark)
+        for person in found.people:
+            _single(person, policy, scene, report)
+
+
+def _length(points: Corners) -> float:
+    return sum(math.dist(a, b) for a, b in pairwise(points))
+
+
+def _crowded(found: Map, scene: Scene, streams: Data, report: Report) -> None:
+    for number, (item, corners) in found.zones.get("ped_crowded_zone", {}).items():
+        area, _ = rectangle_in(corners)
+        name = free_name(f"crowded_{number}", streams)
+        scene.crowd.setdefault("goal_areas", {})[name] = {"area": area_of(area)}
+        streams[name] = {"kind": "wandering", "area": area_of(area), "areas": [name],
+                         "count": max(1, round(DENSITY * size(area)))}  # fmt: skip
+        scene.origins["crowd", "streams", name] = item.mark
+        note = f"people who stroll within, {DENSITY} people/m^2"
+        report.interpreted(item, "crowd.streams", note)
+
+
+def _single(person: Person, policy: str, scene: Scene, report: Report) -> None:
+    (x, y), *goals = person.points
+    row: Data = {"x": x, "y": y, "goals": goals or [[x, y]], "policy": policy,
+                 "speed": person.speed or 1.3}  # fmt: skip
+    scene.agent(row, person.item.mark)
+    report.carried(person.item, "crowd.agents")

@@ -1,0 +1,179 @@
+"""pedsim_ros: scene XML with obstacles, waypoints, queues, attractions and agents."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.others.shapes import area_of, box
+from crowdbot.core.exchange.others.usual import social_forces, standing_robot
+from crowdbot.core.exchange.polygons import add_wall
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.rows import Row, Table
+from crowdbot.core.exchange.scene import Data, Scene, free_name, id_of, name_of
+
+SCENARIO = Table(
+    "scenario",
+    (
+        Row("obstacle", "environment.walls", "5 cm thick"),
+        Row("waypoint", "crowd.goal_areas", "the square in its circle"),
+        Row("waypoint@b", "", "its behaviour"),
+        Row("queue", "crowd.goal_areas", "a goal 1 m wide: people do not line up at it"),
+        Row("attraction", "", "people are not drawn to places they have no goal in"),
+        Row("source, sink", "crowd.goal_areas", "people neither enter there nor leave"),
+    ),
+)
+AGENT = Table(
+    "agent",
+    (
+        Row("@x, @y, @dx, @dy", "crowd.spawns.area", "the middle, and half the width and depth"),
+        Row("@n", "crowd.spawns.count"),
+        Row("@type=0, 1", "crowd.spawns.speed", "adults 1.34 m/s, children 1 m/s"),
+        Row("@type=2", "robots", "a TurtleBot2; its way points are its start and goal"),
+        Row("@type=3", "crowd.spawns.speed", "elderly people, 0.9 m/s"),
+        Row("addwaypoint, addqueue", "crowd.spawns.goals.areas"),
+    ),
+)
+#: Speeds by type: mean and standard deviation, m/s.
+_SPEEDS = {0: (1.34, 0.26), 1: (1.0, 0.2), 3: (0.9, 0.15)}
+_RADIUS, _THICK = 0.35, 0.05
+
+
+def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+    """Return one scene for each file.
+
+    Raises:
+        SpecError: E402, a value cannot be, or a waypoint is unknown.
+    """
+    return [_scene(file, root, context.report) for file in files for root in file.roots]
+
+
+def _scene(file: Opened, root: Item, report: Report) -> Scene:
+    scene = Scene(id_of(file.path.stem))
+    scene.notes.append(f"Imported from pedsim_ros: {file.path.name}.")
+    for item in root.every("obstacle"):
+        ends = [[item.need(f"@x{k}").number(), item.need(f"@y{k}").number()] for k in (1, 2)]
+        add_wall(scene, item, ends[0], ends[1], _THICK)
+        report.interpreted(item, "environment.walls", SCENARIO.rows[0].note)
+    for item in root.every("attraction"):
+        report.left_out(item, SCENARIO.rows[4].note)
+    areas = _areas(root, scene, report)
+    for item in root.every("agent"):
+        _agent(item, areas, scene, report)
+    if scene.crowd.get("spawns"):
+        scene.policy(social_forces(), "social_forces", root.mark)
+        scene.crowd["body"] = {"radius": _RADIUS}
+        if scene.environment.get("walls"):
+            scene.crowd["routing"] = {"kind": "mesh"}
+        report.interpreted(root, "crowd.policy", "its social force model is ours of 1995")
+        report.added("crowd.body.radius", f"{_RADIUS} m, as pedsim has it", root.mark)
+    return scene
+
+
+def _areas(root: Item, scene: Scene, report: Report) -> dict[str, tuple[str, list[float]]]:
+    """Return id -> name of the goal area and its bounds x0, x1, y0, y1."""
+    found: dict[str, tuple[str, list[float]]] = {}
+    areas: Data = {}
+    for item in root.every("waypoint", "queue", "source", "sink"):
+        ident = item.find("@id")
+        key = ident.text() if ident else f"{item.name}{len(found)}"
+        x, y = item.need("@x").number(), item.need("@y").number()
+        radius = item.find("@r")
+        half = 0.7071 * radius.number(0.0, 1e4) if radius else 0.5
+        half = max(half, 0.1)
+        bounds = [x - half, x + half, y - half, y + half]
+        name = free_name(name_of(key), areas)
+        areas[name] = {"area": area_of(box(*bounds))}
+        scene.origins["crowd", "goal_areas", name] = item.mark
+        found[key] = (name, bounds)
+        row = SCENARIO.rows[1] if item.name == "waypoint" else SCENARIO.rows[3]
+        note = row.note if item.name in ("waypoint", "queue") else SCENARIO.rows[5].note
+        report.interpreted(item, "crowd.goal_areas", note)
+        for extra in ("@b", "@direction"):
+            if (part := item.find(extra)) is not None:
+                report.left_out(part, "its behaviour, or the direction of the line")
+    if areas:
+        scene.crowd["goal_areas"] = areas
+    return found
+
+
+def _agent(
+    item: Item, areas: dict[str, tuple[str, list[float]]], scene: Scene, report: Report
+) -> None:
+    kind = item.find("@type")
+    number = kind.whole(0, 3) if kind else 0
+    x, y = item.need("@x").number(), item.need("@y").number()
+    way = []
+    for part in item.every("addwaypoint", "addqueue"):
+        ident = part.need("@id")
+        if ident.text() not in areas:
+            ident.refuse(f"no waypoint '{ident.text()[:60]}'", list(areas))
+        way.append(areas[ident.text()])
+        report.carried(part, "crowd.spawns.goals.areas")
+    if number == 2:
+        _robot(item, (x, y), way, scene, report)
+        return
+    _spawn(item, (x, y), number, [name for name, _ in way], scene, report)
+
+
+def _spawn(
+    item: Item, at: tuple[float, float], number: int, way: list[str], scene: Scene, report: Report
+) -> None:  # fmt: skip
+    count = item.find("@n")
+    people = count.whole(0, 100_000) if count else 1
+    halves = []
+    for name in ("@dx", "@dy"):
+        part = item.find(name)
+        halves.append(max(part.number(0.0, 1e5) if part else 0.0, 1.2 * _RADIUS))
+    if people == 0:
+        report.left_out(item, "no people: n is 0")
+        return
+    needed = people * 4.0 * (2.2 * _RADIUS) ** 2
+    grown = max(1.0, (needed / (4.0 * halves[0] * halves[1])) ** 0.5)
+    if grown > 1.0:
+        report.interpreted(item, "crowd.spawns.area", "grown, since people may not overlap here")
+    dx, dy = halves[0] * grown, halves[1] * grown
+    mean, std = _SPEEDS[number]
+    spawn: Data = {
+        "area": area_of(box(at[0] - dx, at[0] + dx, at[1] - dy, at[1] + dy)), "count": people,
+        "speed": {"mean": mean, "std": std},
+    }  # fmt: skip
+    if way:
+        spawn["goals"] = {"areas": way, "at_goal": "loop"}
+    else:
+        spawn["standing"] = True
+    spawns = scene.crowd.setdefault("spawns", {})
+    name = free_name("people", spawns)
+    spawns[name] = spawn
+    scene.origins["crowd", "spawns", name] = item.mark
+    for part in item.every("@x", "@y", "@dx", "@dy", "@n", "@type"):
+        report.carried(part, "crowd.spawns")
+
+
+def _robot(
+    item: Item, at: tuple[float, float], way: list[tuple[str, list[float]]], scene: Scene,
+    report: Report,
+) -> None:  # fmt: skip
+    name = free_name("robot", scene.robots)
+    goal = way[-1][1] if way else [at[0] + 4.5, at[0] + 5.5, at[1] - 0.5, at[1] + 0.5]
+    middle = (0.5 * (goal[0] + goal[1]), 0.5 * (goal[2] + goal[3]))
+    half = 0.5
+    zone = {"x": [middle[0] - half, middle[0] + half], "y": [middle[1] - half, middle[1] + half]}
+    scene.part("zones", f"{name}_goal", zone, item.mark)
+    scene.robots[name] = standing_robot(f"{name}_goal", (*at, 0.0))
+    scene.origins["robots", name] = item.mark
+    report.interpreted(item, "robots", AGENT.rows[3].note)
+    for part in item.every("@n", "@dx", "@dy", "@type", "@x", "@y"):
+        part.text()
+
+
+PEDSIM = Format(
+    "pedsim",
+    "pedsim_ros scenes",
+    lambda file: file.kind == "xml" and "scenario" in file.tags,
+    read,
+    (SCENARIO, AGENT),
+    "attractions, lines of waiting people, behaviours of waypoints",
+)

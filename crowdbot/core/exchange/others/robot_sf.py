@@ -1,0 +1,229 @@
+"""robot_sf: maps as labelled SVG, and as JSON or YAML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.others.map_of_robot_sf import Map, Person, Route, scenes_of
+from crowdbot.core.exchange.others.shapes import Corners, pairs
+from crowdbot.core.exchange.others.svg_paths import points_of
+from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.rows import Row, Table
+from crowdbot.core.exchange.scene import Scene, id_of
+
+SVG = Table(
+    "svg",
+    (
+        Row("@width, @height", "environment.area, border", "one unit is 1 m, y as it is written"),
+        Row("label obstacle", "environment.blocks"),
+        Row("label robot_spawn_zone, robot_goal_zone", "robots.task"),
+        Row("label robot_route_I_J", "robots.task", "each route is a scenario"),
+        Row("label ped_spawn_zone, ped_goal_zone, ped_route_I_J", "crowd.streams",
+            "0.04 people/m^2 on a way 3 m wide"),
+        Row("label ped_crowded_zone", "crowd.streams", "people who stroll within"),
+        Row("label single_ped_ID_start, single_ped_ID_goal", "crowd.agents"),
+        Row("class poi, other labels", "", "places that no one goes to"),
+        Row("@transform, styles, layers", "", "robot_sf reads raw coordinates, and so does this"),
+    ),
+)  # fmt: skip
+MAP = Table(
+    "map",
+    (
+        Row("x_margin, y_margin", "environment.area, border"),
+        Row("obstacles", "environment.blocks"),
+        Row("robot_spawn_zones, robot_goal_zones, goal_zones, robot_routes", "robots.task"),
+        Row("ped_spawn_zones, ped_goal_zones, ped_routes", "crowd.streams",
+            "0.04 people/m^2 on a way 3 m wide"),
+        Row("ped_crowded_zones", "crowd.streams", "people who stroll within"),
+        Row("single_pedestrians", "crowd.agents"),
+    ),
+)  # fmt: skip
+_ZONE = re.compile(r"(robot_spawn_zone|robot_goal_zone|ped_spawn_zone|ped_goal_zone|"
+                   r"ped_crowded_zone)(?:_(\d{1,4}))?")  # fmt: skip
+_ROUTE = re.compile(r"(robot|ped)_route_(\d{1,4})_(\d{1,4})")
+_SINGLE = re.compile(r"single_ped_(\w{1,60})_(start|goal)")
+_DRAWN = ("rect", "path", "circle", "ellipse", "polygon", "polyline", "line")
+_LENGTH = re.compile(r"\s*([0-9.eE+-]+)\s*(?:px|m)?\s*")
+
+
+def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+    """Return the scenes of each map.
+
+    Raises:
+        SpecError: E402, a part has a value that cannot be.
+    """
+    found = []
+    for file in files:
+        note = f"Imported from robot_sf: {file.path.name}. x and y are those of the map."
+        root = file.roots[0]
+        made = _svg(root, context.report) if file.kind == "xml" else _data(root, context.report)
+        found += scenes_of(made, id_of(file.path.stem), note, context.report)
+    return found
+
+
+def _svg(root: Item, report: Report) -> Map:
+    found = Map(root)
+    width, height = _length(root, "@width"), _length(root, "@height")
+    if width and height:
+        found.bounds = (0.0, width, 0.0, height)
+        report.carried(root, "environment.area")
+    starts: dict[str, tuple[Item, list[float]]] = {}
+    goals: dict[str, list[float]] = {}
+    for item in list(root.walk()):
+        label = item.find("@label") if item.name in _DRAWN else None
+        if label is not None:
+            _labelled(item, label.text(), found, (starts, goals), report)
+    for ident, (item, start) in starts.items():
+        ends = [goals.pop(ident)] if ident in goals else []
+        found.people.append(Person(item, [start, *ends]))
+    for item in root.walk():
+        if item.used and item.name in _DRAWN:
+            _style(item, report)
+    for item in root.walk():
+        if not item.used:
+            report.left_out(item, SVG.rows[-1].note)
+    return found
+
+
+def _length(root: Item, name: str) -> float:
+    item = root.find(name)
+    match = _LENGTH.fullmatch(item.text()) if item else None
+    if match is None or item is None:
+        return 0.0
+    return Item(name, item.mark, match[1]).number(1e-3)
+
+
+def _labelled(
+    item: Item, label: str, found: Map,
+    singles: tuple[dict[str, tuple[Item, list[float]]], dict[str, list[float]]], report: Report,
+) -> None:  # fmt: skip
+    if label in ("obstacle", "bound"):
+        item.used = True
+        found.obstacles.append((item, points_of(item, report)))
+    elif zone := _ZONE.fullmatch(label):
+        item.used = True
+        known = found.zones.setdefault(zone[1], {})
+        number = int(zone[2]) if zone[2] else len(known)
+        known[number] = (item, points_of(item, report))
+    elif route := _ROUTE.fullmatch(label):
+        item.used = True
+        points = points_of(item, report)
+        if len(points) < 2:
+            item.refuse("a route of fewer than two points")
+        into = found.robot_routes if route[1] == "robot" else found.ped_routes
+        into.append(Route(item, int(route[2]), int(route[3]), points))
+    elif single := _SINGLE.fullmatch(label):
+        item.used = True
+        at = [item.need("@cx").number(), item.need("@cy").number()]
+        if single[2] == "start":
+            singles[0][single[1]] = (item, at)
+        else:
+            singles[1][single[1]] = at
+            report.carried(item, "crowd.agents.goals")
+    else:
+        report.left_out(item, SVG.rows[-2].note)
+
+
+def _style(item: Item, report: Report) -> None:
+    for part in item.every():
+        if part.name == "@transform":
+            report.left_out(part, SVG.rows[-1].note)
+        else:
+            part.take_all()
+    parent = item.parent
+    while parent is not None and not parent.used:
+        parent.used = True
+        for part in parent.children:
+            if part.name.startswith("@"):
+                part.take_all()
+                if part.name == "@transform":
+                    report.left_out(part, SVG.rows[-1].note)
+        parent = parent.parent
+
+
+def _data(root: Item, report: Report) -> Map:
+    found = Map(root)
+    margins = [root.find(name) for name in ("x_margin", "y_margin")]
+    if all(margins):
+        numbers = [part.number() for m in margins if m for part in m.every()]
+        if len(numbers) != 4 or not (numbers[0] < numbers[1] and numbers[2] < numbers[3]):
+            root.refuse("x_margin and y_margin have to be two rising numbers each")
+        found.bounds = (numbers[0], numbers[1], numbers[2], numbers[3])
+        for m in margins:
+            if m is not None:
+                report.carried(m, "environment.area")
+    for item in _entries(root, "obstacles"):
+        vertices = item.find("vertices") if item.children[:1] else None
+        found.obstacles.append((item, pairs(vertices or item)))
+    for kind in ("robot_spawn", "robot_goal", "ped_spawn", "ped_goal", "ped_crowded"):
+        listed = _entries(root, f"{kind}_zones")
+        if kind.endswith("goal") and not listed:
+            listed = _entries(root, "goal_zones")
+        known = found.zones.setdefault(f"{kind}_zone", {})
+        for item in listed:
+            known[len(known)] = (item, _zone(item))
+            report.carried(item, "zones")
+    for kind, into in (("robot", found.robot_routes), ("ped", found.ped_routes)):
+        for item in _entries(root, f"{kind}_routes"):
+            points = pairs(item.need("waypoints"), 2)
+            spawn, goal = item.need("spawn_id").whole(0), item.need("goal_id").whole(0)
+            into.append(Route(item, spawn, goal, points))
+    for item in _entries(root, "single_pedestrians"):
+        found.people.append(_single(item, report))
+    return found
+
+
+def _entries(root: Item, name: str) -> list[Item]:
+    listed = root.find(name)
+    return listed.every() if listed else []
+
+
+def _zone(item: Item) -> Corners:
+    """Return the corners of a zone given by three, the fourth being a + c - b."""
+    points = pairs(item)
+    if len(points) == 3:
+        (ax, ay), (bx, by), (cx, cy) = points
+        points.append([ax + cx - bx, ay + cy - by])
+    return points
+
+
+def _single(item: Item, report: Report) -> Person:
+    points = [_point(item.need("start"))]
+    goal, trajectory = item.find("goal"), item.find("trajectory")
+    if goal is not None and goal.children:
+        points.append(_point(goal))
+    if trajectory is not None and trajectory.children:
+        points += [_point(part) for part in trajectory.every()]
+    speed = item.find("speed_m_s") or item.find("speed")
+    for part in item.children:
+        if not part.used:
+            report.left_out(part, "agents have no such parameter")
+    given = speed.number(0.01, 20.0) if speed is not None and speed.value is not None else None
+    return Person(item, points, given)
+
+
+def _point(item: Item) -> list[float]:
+    numbers = [part.number() for part in item.every()]
+    if len(numbers) != 2:
+        item.refuse(f"a point has {len(numbers)} numbers, not 2")
+    return numbers
+
+
+def _fits(file: Opened) -> bool:
+    if file.kind == "xml":
+        return "svg" in file.tags
+    return file.kind == "data" and bool({"robot_spawn_zones", "x_margin"} & file.tags)
+
+
+ROBOT_SF = Format(
+    "robot_sf",
+    "robot_sf maps",
+    _fits,
+    read,
+    (SVG, MAP),
+    "points of interest, styles, the shape of routes",
+)

@@ -1,0 +1,42 @@
+"""Elements of a trial: numbers, places and wrappers as the original writes them."""
+
+from __future__ import annotations
+
+import math
+from xml.etree import ElementTree as Xml
+
+#: Largest number of a float32, which stands for no limit.
+UNLIMITED = "3.402823E+38"
+
+
+def number(value: float) -> str:
+    """Return a number without its fraction where it has none."""
+    value = float(value) + 0.0
+    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
+
+
+def limit(value: float) -> str:
+    """Return a limit of speed or acceleration; 1000 and more is none."""
+    return UNLIMITED if value >= 1e3 else number(value)
+
+
+def add(parent: Xml.Element, tag: str, **attributes: str) -> Xml.Element:
+    """Append an element and return it."""
+    return Xml.SubElement(parent, tag, attributes)
+
+
+def place(parent: Xml.Element, tag: str, x: float, y: float, z: float = 0.0) -> Xml.Element:
+    """Append a place: our x is a trial's y, our y its x."""
+    return add(parent, tag, x=number(y), y=number(x), z=number(z))
+
+
+def turn(parent: Xml.Element, heading: float) -> Xml.Element:
+    """Append a ``Rotation``: degrees, the other way round."""
+    return add(parent, "Rotation", x="0", y="0", z=number(-math.degrees(heading)))
+
+
+def text_of(root: Xml.Element) -> str:
+    """Return a document as the original's files are: indented, with a byte order mark."""
+    Xml.indent(root)
+    body = Xml.tostring(root, encoding="unicode")
+    return f'\ufeff<?xml version="1.0" encoding="utf-8"?>\n{body}\n'
