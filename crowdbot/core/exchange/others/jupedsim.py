@@ -88,7 +88,7 @@ def _geometry(text: str, mark: Mark, scene: Scene) -> None:
 
 
 def _bare(file: Opened, report: Report) -> Scene:
-    """Return a floor with two people who walk to and fro, since WKT has none."""
+    """Return a floor with two people who walk back and forth, since WKT has none."""
     from shapely import from_wkt, maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
 
     scene = Scene(id_of(file.path.stem))

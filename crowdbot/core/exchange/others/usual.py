@@ -1,4 +1,4 @@
-"""What scenes of others leave to their own models: our usual policies in their place."""
+"""Our usual policies, in place of the models that scenes of others leave to their simulator."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ def number(value: float) -> str:
 
 
 def limit(value: float) -> str:
-    """Return a limit of speed or acceleration; 1000 and more is none."""
+    """Return a limit of speed or acceleration; 1000 and more means no limit."""
     return UNLIMITED if value >= 1e3 else number(value)
 
 

@@ -18,8 +18,8 @@ from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
 
 _LOOPS = {"loop": "true", "portal": "true", "return": "true", "onward": "true"}
 _ENDINGS = {
-    "portal": "walk to and fro between the portals instead of coming in again",
-    "return": "walk to and fro instead of coming in again",
+    "portal": "walk back and forth between the portals instead of coming in again",
+    "return": "walk back and forth instead of coming in again",
     "onward": "walk their first ways again and again",
     "remove": "stop at the end instead of leaving",
 }
