@@ -37,7 +37,7 @@ _people = st.fixed_dictionaries(
         "policy": st.sampled_from(["preset_0", "preset_1", "preset_2", "own"]),
     }
 )
-#: A policy of UMANS beside the presets.
+#: A policy of UMANS other than the presets.
 _OWN = {
     "policy": {"kind": "velocity_space", "method": "sampling", "relaxation_time": 0.25,
                "samples": "random", "random_samples": 30, "base": "current_velocity",
