@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from crowdbot.core.geometry.rotation import rotation
     from crowdbot.core.geometry.rough_angle import rough_angle
     from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
+    from crowdbot.core.planning.weights.weights_file import read_weights
     from crowdbot.core.recording.from_mcap import Trajectories
     from crowdbot.core.recording.recording import Recording, RecordingInfo
     from crowdbot.core.robots.description import Description, read_description
@@ -374,6 +375,7 @@ __all__ = [
     "read_description",
     "read_published",
     "read_record",
+    "read_weights",
     "record_type",
     "record_values",
     "rotation",

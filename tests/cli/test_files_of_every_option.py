@@ -92,6 +92,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("walk", "replay"): (".mcap", "walk", SHORT, "--out", "RUNS", "--replay", "{}"),
     ("view", "spec"): (".yaml", "view", "{}"),
     ("why", "path"): ("", "why", "{}"),
+    ("weights", "file"): (".pth", "weights", "{}"),
     ("view", "others"): (".yaml", "view", "RUNS", "{}", "--out", "RUNS/v.html"),
 }  # fmt: skip
 #: Parameters that name no file to read: names, numbers, addresses, and what is written.

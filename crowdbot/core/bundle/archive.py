@@ -24,6 +24,7 @@ LIMITS: Mapping[str, int] = {
     ".yaml": 4 << 20,
     ".csv": 64 << 20,
     ".mcap": 4 << 30,
+    ".weights": 1 << 30,
 }
 _ALL_TEXTS = 2 << 30  # all members except recordings, which are stored uncompressed
 _MOST = 100_000

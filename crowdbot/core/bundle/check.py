@@ -12,10 +12,12 @@ from crowdbot.core.bundle.check_planner import planner_problems
 from crowdbot.core.bundle.check_recordings import recording_problems
 from crowdbot.core.bundle.check_run import ClaimedRun, declared_problems, run_problems
 from crowdbot.core.bundle.check_scores import recorded_score_problems
-from crowdbot.core.bundle.manifest import LOCK, BundledRun, Manifest
+from crowdbot.core.bundle.manifest import LOCK, PLANNER_FILES, BundledRun, Manifest
 from crowdbot.core.bundle.pack import read_json
+from crowdbot.core.planning.files_of_spec import KEPT
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.planner_files_kept import digests_of_files
 from crowdbot.core.runs.run_record import RunRecord, record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import parse_scores
@@ -144,7 +146,13 @@ def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:
     """Yield members that belong to no run of the bundle."""
     own = {f"{run.directory}/{name}" for run in manifest.runs for name in _OF_A_RUN}
     recordings = {f"{run.directory}/{files.RECORDING}" for run in manifest.runs}
-    for name in sorted(names - own - recordings - {LOCK}):
+    read = {f"{PLANNER_FILES}{d}{KEPT}": d for _, d in digests_of_files(manifest.planner)}
+    for name in sorted(set(read) & names):
+        if manifest.members[name].sha256 != read[name]:
+            yield f"{name} is not the file that the planner read: it has another content"
+    for name in sorted(set(read) - names):
+        yield f"{name[:200]} is missing, which the planner reads"
+    for name in sorted(names - own - recordings - {LOCK} - set(read)):
         if not name.startswith(_REFERENCES):
             yield f"{name[:200]} belongs to no run of the manifest"
     lacking = sorted(recordings - names)

@@ -15,6 +15,8 @@ from crowdbot.errors import InputError, hidden_character
 #: Version of the bundle format of this release.
 BUNDLE = 1
 MANIFEST, LOCK = "bundle.json", "suite.lock.json"
+#: Folder of files that the planner reads, named by their SHA-256.
+PLANNER_FILES = "planner/"
 
 #: Version of the bundle rules, raised when they change.
 RULES = 2

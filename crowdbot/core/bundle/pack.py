@@ -14,6 +14,7 @@ from crowdbot.core.bundle.check_edition import missing_runs
 from crowdbot.core.bundle.manifest import (
     BUNDLE,
     LOCK,
+    PLANNER_FILES,
     RULES,
     BundledRun,
     Edition,
@@ -22,9 +23,11 @@ from crowdbot.core.bundle.manifest import (
 )
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.planner_files_kept import digests_of_files, kept_file
 from crowdbot.core.runs.run_record import RunRecord, record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import read_scores_csv
+from crowdbot.core.support.source_digest import file_digest
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.lock import LockFiles
@@ -211,10 +214,22 @@ def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path 
         if run.axes and not run.record.axes:  # runs made from Python have no suite
             whole = files.json_text({**run.record.document(), "axes": dict(run.axes)})
             members[f"runs/{run.folder}/{files.RECORD}"] = whole.encode()
+    members |= dict(_planner_files(submission.root, found[0].record.planner.document()))
     for name, place in members.items():
         if isinstance(place, Path) and not place.is_file():
             raise InputError(f"{place}: missing; run {name} again")
     return members
+
+
+def _planner_files(root: Path, planner: Mapping[str, Any]) -> Iterator[tuple[str, Path]]:
+    """Yield the files that the planner reads, as they were kept beside its runs."""
+    for name, digest in digests_of_files(planner):
+        file = kept_file(root, digest)
+        if not file.is_file() or file_digest(file) != digest:
+            raise InputError(
+                f"{file}: missing or changed; it is {name}, which the planner reads: run again"
+            )
+        yield PLANNER_FILES + file.name, file
 
 
 def _references(root: Path, folder: Path, run: _Found) -> Iterator[tuple[str, Path]]:

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from crowdbot.core.planning.containment.offer import Aspect, kernel_offer
@@ -32,12 +33,14 @@ class PlannerPlace:
         contained: True to refuse planners that this system does not contain.
         lenient: True to accept a planner that cannot be loaded in its process; it fails in every
             run, and a campaign continues with the others.
+        kept: folder of files that planners read, each named by its SHA-256; None: none.
     """
 
     in_process: bool | None = None
     memory: int | None = MEMORY
     lenient: bool = False
     contained: bool = False
+    kept: Path | None = None
 
     def own_memory(self, in_process: bool) -> int | None:
         """Return the memory limit, if there is a separate process."""
@@ -69,6 +72,7 @@ class PlannerChoice:
             runs are never reused.
         patience: s after which a step in this process counts as hung; None: default.
         fleet: the planner of each robot, if they differ.
+        files: SHA-256 -> file that it reads, such as weights.
     """
 
     name: str
@@ -85,10 +89,19 @@ class PlannerChoice:
     repeatable: bool = True
     patience: float | None = None
     fleet: Mapping[str, PlannerChoice] = field(default_factory=dict)
+    files: Mapping[str, Path] = field(default_factory=dict)
 
     def of(self, robot: str) -> PlannerChoice:
         """Return the planner of one robot."""
         return self.fleet.get(robot, self)
+
+    @property
+    def all_files(self) -> dict[str, Path]:
+        """Return SHA-256 -> file of all that it, or its fleet, reads."""
+        found = dict(self.files)
+        for choice in self.fleet.values():
+            found |= choice.files
+        return found
 
     @property
     def died(self) -> str:

@@ -13,6 +13,7 @@ from typing import Any, cast
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.description import described
+from crowdbot.core.planning.files_of_spec import with_absolute_files
 from crowdbot.core.planning.planner import Observation, Planner
 from crowdbot.core.planning.python_file import (
     build_of_class,
@@ -60,7 +61,8 @@ def choose_planner(
     if isinstance(planner, str | Path):
         return resolve_planner(str(planner), registry, setting_texts(settings), place)
     if isinstance(planner, PlannerSpec):
-        values = {**planner.model_dump(mode="json", exclude={"kind"}), **setting_values(settings)}
+        values = planner.model_dump(mode="json", exclude={"kind"})
+        values |= {**with_absolute_files(planner), **setting_values(settings)}
         return resolve_planner(_kind(planner), registry, setting_texts(values), place)
     given = setting_values(settings)
     if inspect.isclass(planner):

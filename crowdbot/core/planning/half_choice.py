@@ -87,4 +87,5 @@ def choice_with_half(
         memory=half.memory,
         repeatable=half.repeatable,
         patience=half.patience,
+        files=half.all_files,
     )

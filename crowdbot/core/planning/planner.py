@@ -98,7 +98,8 @@ def named_drawing(name: str, rows: ArrayLike) -> tuple[str, NDArray[np.float32]]
     named_signal(name, 0.0)
     table = np.array(rows, np.float32)
     if table.size == 0:
-        table = table.reshape(0, table.shape[1] if table.ndim == 2 else 2)
+        usual = TRACK_COLUMNS if name == TRACKS else 2  # messages lose the columns of no rows
+        table = table.reshape(0, table.shape[1] if table.ndim == 2 else usual)
     if table.ndim != 2 or not 2 <= table.shape[1] <= _MOST_COLUMNS or len(table) > _MOST_ROWS:
         raise ValueError(
             f"draw: '{name}' has rows of 2 to {_MOST_COLUMNS} numbers, at most {_MOST_ROWS} of "

@@ -13,6 +13,11 @@ from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace,
 from crowdbot.core.planning.containment.declared import needs_of_class, needs_of_kind
 from crowdbot.core.planning.description import described, role_of
 from crowdbot.core.planning.external import external_choice, is_external
+from crowdbot.core.planning.files_of_spec import (
+    files_of_spec,
+    with_absolute_files,
+    with_files,
+)
 from crowdbot.core.planning.fleet_choice import fleet_choice
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.half_choice import choice_with_half
@@ -102,10 +107,20 @@ def kinds_of_role(role: PlannerRole, registry: Registry) -> list[str]:
 
 
 class _Origin(NamedTuple):
-    """The place of a planner's document: start of messages, and the file, if there is one."""
+    """The place of a planner's document: start of messages, and the file, if there is one.
+
+    Attributes:
+        written: parameters that the document has; files that they name are beside it.
+    """
 
     where: str
     path: Path | None
+    written: tuple[str, ...] = ()
+
+    @property
+    def folders(self) -> dict[str, Path]:
+        """Return the folder of the files that each parameter names."""
+        return {} if self.path is None else dict.fromkeys(self.written, self.path.parent)
 
 
 def _from_document(
@@ -122,7 +137,8 @@ def _from_document(
     kind = parameters.pop("kind", None)
     if not isinstance(kind, str):
         raise InputError(f"{origin.where}'kind' is missing: which planner is it?")
-    return _from_kind(kind, parameters, registry, origin, place)
+    written = tuple(name for name in document if name not in given)
+    return _from_kind(kind, parameters, registry, origin._replace(written=written), place)
 
 
 # ------------------------------------------------------------------ registered kinds
@@ -135,6 +151,8 @@ def _from_kind(
 ) -> PlannerChoice:
     component = find_kind(kind, registry, origin.where)
     spec = spec_of_kind(component, parameters, origin.where)
+    spec = with_files(spec, origin.folders, place.kept)
+    files = files_of_spec(spec)
     owner = registry.owner(component)
     as_given = _is_default(component, spec)
     in_process = place.in_process
@@ -165,12 +183,12 @@ def _from_kind(
                 "name": kind,
                 "origin": owner.distribution,
                 "kind": kind,
-                "parameters": dict(parameters),
+                "parameters": {**parameters, **with_absolute_files(spec)},
                 "plugins": registry.source,
             },
             memory=place.memory,
             contained=place.contained,
-            needs=needs_of_kind(component, registry),
+            needs=needs_of_kind(component, registry, files.values()),
         )
         _, build = describe(plan, lenient=place.lenient)
     return PlannerChoice(
@@ -185,6 +203,7 @@ def _from_kind(
         role=description.role if as_given else "candidate",
         in_process=in_process,
         memory=place.own_memory(in_process),
+        files=files,
     )
 
 

@@ -30,6 +30,7 @@ from crowdbot.core.runs.identity import (
 )
 from crowdbot.core.runs.make_record import make_record, write_scenario
 from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.planner_files_kept import keep_planner_files
 from crowdbot.core.runs.read_and_score import (
     SeenRun,
     read_robots,
@@ -234,6 +235,7 @@ def _record_run(
         _write_files(request, builts, folder, seen, shown, scores, record)
         record = _finish(folder, record, outcome.written)
         files.publish(folder, final)
+    keep_planner_files(request.out, request.choice.all_files)
     return record
 
 

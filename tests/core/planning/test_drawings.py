@@ -29,6 +29,11 @@ class Draws:
 SCENARIO = "challenge-2026", "counter-d020-attentive-n01"
 
 
+def test_no_rows_have_the_columns_of_their_name() -> None:
+    assert named_drawing("tracks", [])[1].shape == (0, 5)
+    assert named_drawing("path", [])[1].shape == (0, 2)
+
+
 def run(tmp_path: Path, planner: object, **more: object) -> crowdbot.Run:
     changes = {"robots.robot.task.time_limit": "3 s", "crowd.seed.root": 9}
     scenario = crowdbot.load(SCENARIO[0], SCENARIO[1] + "*", set=changes)

@@ -240,8 +240,10 @@ def _make_reruns(
     from crowdbot.cli.shared.one_run import end_hung_process, import_simulate, interruptible
     from crowdbot.cli.shared.progress import show_progress
     from crowdbot.core.bundle.fresh_verdict import with_fresh
+    from crowdbot.core.bundle.planner_files import planner_files_of
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict, verdict_of
 
+    text, place = planner
     import_simulate()  # reports what is missing if Drake cannot be imported
     from crowdbot.core.campaign.verify import (
         NotRunnable,
@@ -252,11 +254,11 @@ def _make_reruns(
         make_reruns,
     )
 
-    try:
-        choice = choose_planner(archive.manifest, registry, *planner)
-    except NotRunnable as error:
-        return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
-    with interruptible() as stop, show_progress() as progress:
+    with planner_files_of(archive) as kept, interruptible() as stop, show_progress() as progress:
+        try:
+            choice = choose_planner(archive.manifest, registry, text, replace(place, kept=kept))
+        except NotRunnable as error:
+            return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
         setup = RerunSetup(
             expansion=expansion, registry=registry, choice=choice, progress=progress, stop=stop,
             on_hang=end_hung_process,

@@ -29,13 +29,19 @@ def needs_of_class(path: Path, name: str) -> Needs:
         return needs
 
 
-def needs_of_kind(component: Component[Any], registry: Registry) -> Needs:
-    """Return the needs of a planner of a plugin: its data, and plugins that are not installed."""
+def needs_of_kind(
+    component: Component[Any], registry: Registry, read: Iterable[Path] = ()
+) -> Needs:
+    """Return the needs of a planner of a plugin: its data, and plugins that are not installed.
+
+    Args:
+        read: files that its parameters name.
+    """
     given = registry.source.extra if registry.source is not None else ()
     folders = {str(p if p.is_dir() else p.parent) for p in given}
     files = {str(f) for p in given for f in ([p] if p.is_dir() else source_files(p))}
     module = Path(inspect.getfile(component.spec))
-    files |= {str(f.resolve()) for f in files_of_data(component).values()}
+    files |= {str(f.resolve()) for f in (*files_of_data(component).values(), *read)}
     package = [str(p) for p in (module, *module.parents) if (p / "__init__.py").is_file()]
     return Needs(files=sorted({*files, *package}), folders=sorted(folders | {str(module.parent)}))
 

@@ -1,0 +1,1 @@
+"""Weights of learned planners, read from files that may be hostile."""

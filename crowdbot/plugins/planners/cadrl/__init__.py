@@ -1,0 +1,1 @@
+"""Collision avoidance with deep reinforcement learning: a value network of pairs."""

@@ -1,0 +1,1 @@
+"""Socially attentive reinforcement learning: a value network with attention."""

@@ -1,0 +1,21 @@
+"""SARL: the action after which a network with attention values the crowd most."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from crowdbot.plugin import Component
+from crowdbot.plugins.planners.shared.learned import ValueSearchSpec
+
+
+class SarlSpec(ValueSearchSpec):
+    """Runs weights that the user names; crowdbot ships none."""
+
+    kind: Literal["sarl"] = "sarl"
+
+
+SARL = Component(
+    spec=SarlSpec,
+    build="crowdbot.plugins.planners.sarl.sarl_build:build",
+    summary="value network with attention among people, weights from a file (Chen et al. 2019)",
+)
