@@ -13,7 +13,7 @@ from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
 from crowdbot.core.bundle.verification import JUDGED
-from crowdbot.core.results.rows import processes
+from crowdbot.core.results.rows import place_of, processes
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main
 from crowdbot.core.statistics import OUTCOMES
@@ -126,7 +126,7 @@ def _entry(table: Standings, entry: LeaderboardEntry, here: Path) -> dict[str, A
         "unranked": "this round ranks sealed planners only" if entry.wrong_form else "",
         "late": entry.late,
         "pinned": manifest.pinned,
-        "process": processes(run.record for run in entry.runs),
+        "process": processes(place_of(run.record) for run in entry.runs),
         "state": _state(entry),
         "hash": entry.sha256[:12],
         "file": entry.path.name,

@@ -16,6 +16,7 @@ from crowdbot.core.report.figures import Figures, figures
 from crowdbot.core.report.series import Series, all_series
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow, named_metrics
+from crowdbot.core.results.score_columns import metrics_of
 from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import (
     FloorCheck,
@@ -131,7 +132,7 @@ class Contents:
 
 def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
     """Return the realism of the people in some runs; runs without people are skipped."""
-    told = [(r.axes.get(AXIS, ""), r.record.crowd or "") for r in runs]
+    told = [(r.axes.get(AXIS, ""), r.crowd) for r in runs]
     return lines_of((name, like) for name, like in told if name or like)
 
 
@@ -157,7 +158,7 @@ def gather(
         raise InputError("there is no run to report about")
     results = replace(results, scales=score_scales(registry))
     axes = axes_of(results)
-    found = cards(registry, dict.fromkeys(s.metric for s in results.scores))
+    found = cards(registry, sorted(metrics_of(results.scores)))
     table = Table(results)
     series = all_series(table, named_metrics(results.runs))
     worked_out = figures(results, table, series, axes)

@@ -13,6 +13,7 @@ from crowdbot.core.report.series import Series
 from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import WITHOUT_RUN, RunRow
+from crowdbot.core.results.score_columns import ScoreColumns
 from crowdbot.core.types.ending import ATTEMPTED, Ending, has_failed
 
 #: Code of a score that a run does not have.
@@ -57,7 +58,7 @@ def axes_of(results: Results) -> list[dict[str, Any]]:
     found: dict[str, dict[str, set[tuple[str, str]]]] = {}
     tried: list[Attempt] = [*results.runs, *results.failures]
     for one in tried:
-        told = one.record.axis_words if isinstance(one, RunRow) else {}
+        told = one.axis_words if isinstance(one, RunRow) else {}
         for name, label in one.axes.items():
             said = found.setdefault(name, {}).setdefault(label, set())
             if words := told.get(name):
@@ -106,7 +107,7 @@ def encode_runs(
         "time": [None if r is None else round(r.sim_time, 3) for r in runs],
         "density": [None if r is None else r.density for r in runs],
         "replay": [None if r is None else replays.get(r.run_id) for r in runs],
-        "moment": [None if r is None else _moment(r) for r in runs],
+        "moment": [None if r is None else r.moment for r in runs],
         "traceback": {
             i: _excerpt(a.traceback) for i, a in enumerate(tried) if isinstance(a, Failure)
         },
@@ -114,15 +115,6 @@ def encode_runs(
     names = {"scenarios": scenarios.texts, "statuses": statuses.texts, "reasons": reasons.texts}
     endings = {ending: {"past": ending.past, "failed": ending.failed} for ending in ATTEMPTED}
     return {"runs": columns, **names, "endings": endings}
-
-
-def _moment(run: RunRow) -> list[Any] | None:
-    """Return the time (s) and description of the run's most interesting moment."""
-    found = run.record.worst_moment
-    if found is None:
-        return None
-    known = "" if found.clearance is None else f", {found.clearance:.2f} m"
-    return [round(found.t, 2), f"{found.what}{known}"]
 
 
 def _excerpt(traceback: str) -> str:
@@ -150,26 +142,37 @@ def encode_scores(
 
     A run whose planner failed shows its existing values; the others are ``failed``.
     """
-    rows = {(s.run_id, s.metric, s.variant): s for s in results.scores}
+    scores = ScoreColumns.of(results.scores)
+    place_of = {name: i for i, name in enumerate(scores.run_ids)}
+    ids = ["" if isinstance(a, Failure) else a.run_id for a in tried]
+    columns = np.array([place_of.get(name, -1) for name in ids], np.intp)
     shape = (len(series), len(tried))
     values, lower, upper = (np.full(shape, np.nan) for _ in range(3))
     codes = np.full(shape, ABSENT, np.uint16)
     states: dict[tuple[str, str], int] = {OK: 0}
-    for r, attempt in enumerate(tried):
-        failed = ("failed", status_of(attempt))
-        for s, one in enumerate(series):
-            if isinstance(attempt, Failure):
-                value = WITHOUT_RUN.get(one.metric)
-                codes[s, r] = states.setdefault(failed if value is None else OK, len(states))
-                values[s, r] = _number(value)
-                continue
-            row = rows.get((attempt.run_id, one.metric, one.variant))
-            if has_failed(attempt.status) and (row is None or row.status != "ok"):
-                codes[s, r] = states.setdefault(failed, len(states))
-            elif row is not None:
-                codes[s, r] = states.setdefault((row.status, row.reason), len(states))
-                ends = (row.value, row.lower, row.upper)
-                values[s, r], lower[s, r], upper[s, r] = map(_number, ends)
+    failed = {
+        r: states.setdefault(("failed", status_of(a)), len(states))
+        for r, a in enumerate(tried)
+        if isinstance(a, Failure) or has_failed(a.status)
+    }
+    known = [states.setdefault((s.status, s.reason), len(states)) for s in scores.states]
+    is_ok = np.array([s.status == "ok" for s in scores.states], np.bool_)
+    for s, one in enumerate(series):
+        of_run = np.full(len(place_of) + 1, -1, np.intp)
+        if (rows := scores.by_name.get(one.name)) is not None:
+            of_run[scores.run[rows]] = rows
+        place = of_run[columns]
+        here = np.flatnonzero(place >= 0)
+        state = scores.state[place[here]]
+        codes[s, here] = np.asarray(known, np.uint16)[state]
+        for blob, numbers in ((values, scores.value), (lower, scores.lower), (upper, scores.upper)):
+            blob[s, here] = numbers[place[here]]
+        shown = dict(zip(here.tolist(), is_ok[state].tolist(), strict=True))
+        for r, code in failed.items():
+            value = WITHOUT_RUN.get(one.metric) if isinstance(tried[r], Failure) else None
+            if not shown.get(r, False):
+                codes[s, r] = code if value is None else 0
+                values[s, r], lower[s, r], upper[s, r] = _number(value), np.nan, np.nan
     return list(states), {
         "values": pack(values),
         "lower": pack(lower),

@@ -16,9 +16,8 @@ from crowdbot.core.report.markdown import alike, chance, family, markdown
 from crowdbot.core.report.methods import methods
 from crowdbot.core.report.packing import pack, pack_document, pack_whole
 from crowdbot.core.results.rows import RunRow, processes
-from crowdbot.core.scoring.scores_csv import write_table
 from crowdbot.core.statistics.estimate_text import joined_text
-from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.atomic_write import atomic_lines, atomic_write
 from crowdbot.core.support.html_page import render_page
 from crowdbot.core.types.ending import ATTEMPTED, ending_style
 
@@ -44,7 +43,7 @@ def write_report(path: Path, contents: Contents) -> dict[str, Path]:
     """
     paths = {"html": path, "csv": path.with_suffix(".csv"), "md": path.with_suffix(".md")}
     page = render(contents)
-    write_table(paths["csv"], tables.csv_rows(contents))
+    atomic_lines(paths["csv"], tables.csv_lines(contents))
     atomic_write(paths["md"], markdown(contents))
     atomic_write(path, page)
     return paths
@@ -87,7 +86,7 @@ def _planner(contents: Contents, planner: str) -> dict[str, Any]:
         "counts": contents.counts(tried),
         "privileged": contents.is_privileged(planner),
         "pinned": contents.is_pinned(planner),
-        "process": processes(a.record for a in tried if isinstance(a, RunRow)),
+        "process": processes(a.provenance["process"] for a in tried if isinstance(a, RunRow)),
         "reference": planner in contents.heading.references,
         "role": contents.role(planner),
         "facts": provenance.planner_facts([a for a in tried if isinstance(a, RunRow)]),

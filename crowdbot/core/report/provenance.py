@@ -4,29 +4,26 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from crowdbot.core.results.rows import RunRow
-from crowdbot.core.runs.record_parts import PluginPart
 
 
 def facts(runs: Sequence[RunRow]) -> dict[str, dict[str, str]]:
     """Return groups of facts: name -> text, with counts if the runs differ."""
-    records = [run.record for run in runs]
     groups = {
-        "software": _merged(r.versions for r in records),
-        "machine": _merged(r.machine for r in records),
-        "plugins": _merged(_plugins(r.plugins) for r in records),
-        "conditions": _merged(_conditions(run, metrics=False) for run in runs),
-        "metrics": _merged(_conditions(run, metrics=True) for run in runs),
+        "software": _merged(run.provenance["versions"] for run in runs),
+        "machine": _merged(run.provenance["machine"] for run in runs),
+        "plugins": _merged(run.provenance["plugins"] for run in runs),
+        "conditions": _merged((run.conditions for run in runs), _plain_conditions),
+        "metrics": _merged((run.conditions for run in runs), _metrics),
     }
     return {name: found for name, found in groups.items() if found}
 
 
 def hashes(runs: Sequence[RunRow]) -> dict[str, str]:
     """Return hashes of the data: the number of each, and one hash over all."""
-    everything = sorted(f"{run.record.run_id} {run.trajectory_hash}" for run in runs)
+    everything = sorted(f"{run.run_id.rpartition(chr(0))[2]} {run.trajectory_hash}" for run in runs)
     digest = hashlib.sha256("\n".join(everything).encode()).hexdigest()
     return {
         "scenarios": str(len({run.spec_hash for run in runs})),
@@ -53,42 +50,39 @@ def short(hash_: str) -> str:
 
 def planner_facts(runs: Sequence[RunRow]) -> dict[str, str]:
     """Kind and parameters of one planner, from its runs."""
-    return _merged(_texts(run.record.planner.document()) for run in runs)
+    return _merged(run.provenance["planner"] for run in runs)
 
 
-def _conditions(run: RunRow, *, metrics: bool) -> dict[str, str]:
-    """Return the parameters of metrics, or the other conditions without software and machine."""
-    if metrics:
-        names = {n: n.removeprefix("metrics.") for n in run.conditions if n.startswith("metrics.")}
-    else:
-        told = ("metrics.", "versions.", "processor")
-        names = {n: n for n in run.conditions if not n.startswith(told)}
-    return {name: run.conditions[n] for n, name in names.items()}
+def _metrics(conditions: Mapping[str, str]) -> dict[str, str]:
+    """Return the parameters of metrics."""
+    mine = "metrics."
+    return {n.removeprefix(mine): text for n, text in conditions.items() if n.startswith(mine)}
 
 
-def _texts(value: Any) -> dict[str, str]:
-    if not isinstance(value, Mapping):
-        return {}
-    found: dict[str, str] = {}
-    for name, inner in value.items():
-        if isinstance(inner, Mapping):
-            found |= {f"{name}.{k}": text for k, text in _texts(inner).items()}
-        else:
-            found[str(name)] = str(inner)
-    return found
+def _plain_conditions(conditions: Mapping[str, str]) -> dict[str, str]:
+    """Return the conditions without metrics, software and machine."""
+    told = ("metrics.", "versions.", "processor")
+    return {n: text for n, text in conditions.items() if not n.startswith(told)}
 
 
-def _plugins(plugins: Sequence[PluginPart]) -> dict[str, str]:
-    """Plugin -> distribution."""
-    return {p.name: p.distribution + ("" if p.pinned else ", not pinned") for p in plugins}
+def _merged(
+    documents: Iterable[Mapping[str, str]],
+    part: Callable[[Mapping[str, str]], Mapping[str, str]] = lambda document: document,
+) -> dict[str, str]:
+    """Return one text per name; different texts are given with their number of runs.
 
-
-def _merged(documents: Iterable[Mapping[str, str]]) -> dict[str, str]:
-    """Return one text per name; different texts are given with their number of runs."""
-    counts: dict[str, Counter[str]] = {}
+    Args:
+        documents: many of which are the same object.
+        part: the part of each that is wanted.
+    """
+    alike: dict[int, tuple[Mapping[str, str], int]] = {}
     for document in documents:
-        for name, text in document.items():
-            counts.setdefault(name, Counter())[text] += 1
+        _, times = alike.get(id(document), (document, 0))
+        alike[id(document)] = document, times + 1
+    counts: dict[str, Counter[str]] = {}
+    for document, times in alike.values():
+        for name, text in part(document).items():
+            counts.setdefault(name, Counter())[text] += times
     return {
         name: next(iter(found)) if len(found) == 1 else _different(found)
         for name, found in counts.items()

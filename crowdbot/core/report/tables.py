@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from operator import attrgetter
+import math
+from collections.abc import Iterator
+
+import numpy as np
 
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
 from crowdbot.core.report.provenance import short
 from crowdbot.core.results.failure import Failure
-from crowdbot.core.results.rows import RunRow, ScoreRow
+from crowdbot.core.results.rows import RunRow
+from crowdbot.core.results.score_columns import ScoreColumns
+from crowdbot.core.scoring.scores_csv import csv_cells
 
 _RUN = ("suite", "scenario", "planner", "seed", "run_status", "run_id", "realisation", "density")
 _SCORE = (
@@ -17,24 +21,37 @@ _SCORE = (
     "lower", "upper",
 )  # fmt: skip
 
-_cells = attrgetter(*_SCORE)
+_END = "\r\n"
 
 
-def csv_rows(contents: Contents) -> Iterator[Sequence[str]]:
-    """Yield the header, then one row per score; an attempt without scores has one row."""
+def csv_lines(contents: Contents) -> Iterator[str]:
+    """Yield the header, then one line per score; an attempt without scores has one line.
+
+    Texts that many lines share are quoted once.
+    """
     axes = [axis["name"] for axis in contents.axes]
-    scores: dict[str, list[ScoreRow]] = {}
-    for row in contents.results.scores:
-        scores.setdefault(row.run_id, []).append(row)
-    yield (*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)
+    scores = ScoreColumns.of(contents.results.scores)
+    order = np.argsort(scores.run, kind="stable")
+    ends = np.searchsorted(scores.run[order], np.arange(len(scores.run_ids) + 1))
+    place_of = {name: i for i, name in enumerate(scores.run_ids)}
+    labels_texts = [(csv_cells(x[:4]), csv_cells(x[4:])) for x in scores.labels]
+    states = [csv_cells(state) for state in scores.states]
+    yield csv_cells((*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)) + _END
     for attempt in contents.attempts:
         labels = [attempt.axes.get(name, "") for name in axes]
-        head = (*_run_cells(attempt), *labels)
-        found = scores.get(attempt.run_id, []) if isinstance(attempt, RunRow) else []
-        for row in found:
-            yield (*head, *map(_cell, _cells(row)))
+        head = csv_cells((*_run_cells(attempt), *labels))
+        place = place_of.get(attempt.run_id) if isinstance(attempt, RunRow) else None
+        found = [] if place is None else order[ends[place] : ends[place + 1]].tolist()
+        for i in found:
+            (name, unit), state = labels_texts[scores.label[i]], states[scores.state[i]]
+            value, low, high = (_plain(x[i]) for x in (scores.value, scores.lower, scores.upper))
+            yield f"{head},{name},{value},{unit},{state},{low},{high}{_END}"
         if not found:
-            yield (*head, *_without_scores(attempt))
+            yield f"{head},{csv_cells(_without_scores(attempt))}{_END}"
+
+
+def _plain(number: float) -> str:
+    return "" if math.isnan(number) else repr(float(number))
 
 
 def _run_cells(attempt: Attempt) -> tuple[str, ...]:

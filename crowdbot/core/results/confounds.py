@@ -120,7 +120,7 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
     for scenario, group in _grouped(runs, lambda r: f"{r.suite}/{r.scenario}"):
         yield _finding("scenario", scenario, group, lambda r: _short(r.spec_hash))
         yield _finding("crowd", scenario, group, lambda r: _short(r.realisation_hash))
-        yield _finding("agents", scenario, group, lambda r: r.record.agents)
+        yield _finding("agents", scenario, group, lambda r: r.agents)
     yield from _conditions(runs)
     # A ceiling is meant for comparison and is marked as one.
     yield _finding("privileged", "planners", [r for r in runs if r.role != "ceiling"], _class)
@@ -133,7 +133,9 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
 
 def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
     all_conditions = {r.run_id: r.conditions for r in runs}
-    names = dict.fromkeys(n for found in all_conditions.values() for n in found)
+    different = {id(found): found for found in all_conditions.values()}
+    names = dict.fromkeys(n for found in different.values() for n in found)
+    scored = {key: {_head(n) for n in found} for key, found in different.items()}
     for name in sorted(names):
         kind = _CONDITIONS.get(name.partition(".")[0], "condition")
         groups = [("", runs)] if kind in _EVERYWHERE else _grouped(runs, _scenario)
@@ -141,7 +143,7 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
             subject = f"{name}, {scenario}" if scenario else name
 
             if kind == "metrics":  # unscored runs are not compared
-                group = [r for r in group if _has_metric(all_conditions[r.run_id], name)]
+                group = [r for r in group if _head(name) in scored[id(all_conditions[r.run_id])]]
 
             def value(r: RunRow, name: str = name) -> str:
                 return all_conditions[r.run_id].get(name, "")
@@ -149,10 +151,9 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
             yield _finding(kind, subject, group, value)
 
 
-def _has_metric(conditions: Mapping[str, str], name: str) -> bool:
-    """Return True if a run has the metric of a condition such as ``metrics.risk.risk_horizon``."""
-    head = ".".join(name.split(".")[:2])
-    return any(n == head or n.startswith(f"{head}.") for n in conditions)
+def _head(name: str) -> str:
+    """Return the metric of a condition such as ``metrics.risk.risk_horizon``."""
+    return ".".join(name.split(".", 2)[:2])
 
 
 def _unpaired(runs: Sequence[RunRow]) -> Iterator[Finding]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.rows import DamagedRun, RunRow, ScoreRow
+from crowdbot.core.results.score_columns import of_runs
 from crowdbot.core.results.tables import run_lines, score_lines
 from crowdbot.core.scoring.score_scale import Scales
 from crowdbot.core.support.arguments import path_of
@@ -34,15 +36,16 @@ class Results:
 
     runs: tuple[RunRow, ...] = ()
     damaged: tuple[DamagedRun, ...] = ()
-    scores: tuple[ScoreRow, ...] = ()
+    scores: Sequence[ScoreRow] = ()
     failures: tuple[Failure, ...] = ()
     scales: Scales = field(default_factory=dict, repr=False)
 
     @classmethod
     def open(cls, root: str | Path = "runs") -> Results:
-        """Read all runs, scores and failures below a folder, without writing.
+        """Read all runs, scores and failures below a folder.
 
-        A damaged run is left out, with a warning.
+        Nothing is written but the index, if many runs are new to it. A damaged run is left out,
+        with a warning.
 
         Args:
             root: root of the run directories.
@@ -66,7 +69,7 @@ class Results:
         return replace(
             self,
             runs=runs,
-            scores=tuple(s for s in self.scores if s.run_id in ids),
+            scores=of_runs(self.scores, ids),
             failures=tuple(f for f in self.failures if not altered_digest(f.scenario)),
         )
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.dsl.suite.suite_entry import altered_digest, altered_suffix
@@ -134,6 +135,52 @@ class RunRow:
         """Mean number of people in the crowd's area, 1/m²; None without people."""
         return self.record.density
 
+    @property
+    def agents(self) -> str:
+        """Source of its people: ``locked``, ``drawn``, or ``none``."""
+        return self.record.agents
+
+    @property
+    def crowd(self) -> str:
+        """Fingerprint of what its people do; empty without people."""
+        return self.record.crowd or ""
+
+    @property
+    def suite_metrics(self) -> Sequence[str]:
+        """Metrics that its suite names, in order."""
+        return self.record.suite_metrics
+
+    @property
+    def axis_words(self) -> Mapping[str, Sequence[str]]:
+        """Axis -> its title, and its label in words."""
+        return self.record.axis_words
+
+    @property
+    def moment(self) -> Sequence[Any] | None:
+        """Time (s) and description of its most interesting moment."""
+        found = self.record.worst_moment
+        if found is None:
+            return None
+        known = "" if found.clearance is None else f", {found.clearance:.2f} m"
+        return [round(found.t, 2), f"{found.what}{known}"]
+
+    @cached_property
+    def provenance(self) -> Mapping[str, Any]:
+        """Where it comes from: ``versions``, ``machine``, ``plugins``, ``planner``, ``process``.
+
+        Each is a mapping of names to texts but ``process``, which says where the planner ran.
+        """
+        record = self.record
+        plugins = {p.name: p.distribution + ("" if p.pinned else ", not pinned")
+                   for p in record.plugins}  # fmt: skip
+        return {
+            "versions": dict(record.versions),
+            "machine": dict(record.machine),
+            "plugins": plugins,
+            "planner": flat_texts(record.planner.document()),
+            "process": place_of(record),
+        }
+
     @cached_property
     def conditions(self) -> Mapping[str, str]:
         """Conditions that must be equal in runs that are compared, name -> text."""
@@ -165,15 +212,29 @@ RUN_COLUMNS: Mapping[str, str] = {
 
 def named_metrics(runs: Iterable[RunRow]) -> list[str]:
     """Return metrics that the suites of some runs name, in order and without duplicates."""
-    return list(dict.fromkeys(name for run in runs for name in run.record.suite_metrics))
+    return list(dict.fromkeys(name for run in runs for name in run.suite_metrics))
 
 
-def processes(records: Iterable[RunRecord]) -> str:
+def processes(places: Iterable[str]) -> str:
     """Describe where the planners of some runs ran, and what they could reach there."""
-    return " or ".join(sorted({_place(record) for record in records}))
+    return " or ".join(sorted(set(places)))
 
 
-def _place(record: RunRecord) -> str:
+def flat_texts(value: Any) -> dict[str, str]:
+    """Return the values of nested mappings as texts, under names joined by dots."""
+    if not isinstance(value, Mapping):
+        return {}
+    found: dict[str, str] = {}
+    for name, inner in value.items():
+        if isinstance(inner, Mapping):
+            found |= {f"{name}.{k}": text for k, text in flat_texts(inner).items()}
+        else:
+            found[str(name)] = str(inner)
+    return found
+
+
+def place_of(record: RunRecord) -> str:
+    """Describe where the planner of a run ran."""
     place, reached = _PLACES[record.planner_process], record.uncontained
     if not reached:
         return place

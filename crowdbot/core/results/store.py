@@ -10,13 +10,14 @@ import json
 import logging
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
-from operator import attrgetter
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from crowdbot.core.results.failure import SUFFIX, Failure, read_failure
+from crowdbot.core.results.indexed_rows import Texts, columns_of_table, read_all, row_of
 from crowdbot.core.results.rows import RUN_COLUMNS, DamagedRun, RunRow, ScoreRow
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.run_record import RunRecord
@@ -27,21 +28,18 @@ from crowdbot.errors import InputError
 _LOG = logging.getLogger("crowdbot")
 INDEX, LOCK = "results.sqlite", "results.lock"
 #: Version of the tables; an index of another version is rebuilt.
-VERSION = 4
+VERSION = 5
 
-#: Columns of a run besides `RUN_COLUMNS`; ``axes``, ``conditions`` and ``record`` are JSON.
-_BESIDE = {
-    "stamp": "TEXT", "position": "INTEGER", "axes": "TEXT", "conditions": "TEXT", "record": "TEXT",
-}  # fmt: skip
-_RUNS = ", ".join(f"{name} {kind}" for name, kind in {**RUN_COLUMNS, **_BESIDE}.items())
+#: Number of new or changed runs from which on a reader renews the index, if it may.
+RENEWED_FROM = 200
+
+_RUNS = ", ".join(f"{name} {kind}" for name, kind in (*RUN_COLUMNS.items(), *columns_of_table()))
 _TABLES = f"""
 CREATE TABLE IF NOT EXISTS runs ({_RUNS}, PRIMARY KEY (directory));
-CREATE TABLE IF NOT EXISTS scores (
-    directory TEXT NOT NULL REFERENCES runs ON DELETE CASCADE, row INTEGER NOT NULL,
-    category TEXT NOT NULL, metric TEXT NOT NULL, symbol TEXT NOT NULL, variant TEXT NOT NULL,
-    value REAL, unit TEXT NOT NULL, better TEXT NOT NULL, status TEXT NOT NULL,
-    reason TEXT NOT NULL, lower REAL, upper REAL, PRIMARY KEY (directory, row)
-) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS texts (id INTEGER PRIMARY KEY, text TEXT NOT NULL UNIQUE);
+CREATE TABLE IF NOT EXISTS damaged (
+    directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, reason TEXT NOT NULL
+);
 CREATE TABLE IF NOT EXISTS failures (
     directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, suite TEXT NOT NULL, scenario TEXT NOT NULL,
     position INTEGER NOT NULL, planner TEXT NOT NULL, seed INTEGER NOT NULL,
@@ -50,31 +48,86 @@ CREATE TABLE IF NOT EXISTS failures (
 """
 
 
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """What lies below a root.
+
+    Attributes:
+        there: directory of a run, or file of a failure -> its stamp.
+        missing: runs that have lost their records.
+    """
+
+    there: dict[str, str]
+    missing: tuple[DamagedRun, ...]
+
+    @staticmethod
+    def of(root: Path) -> Scan:
+        """Look at all files, without opening them."""
+        found = list(_scan(root))
+        reason = f"{files.RECORD} is missing"
+        lost = (DamagedRun(directory=d, reason=reason) for d, stamp in found if not stamp)
+        return Scan({d: stamp for d, stamp in found if stamp}, tuple(lost))
+
+
 class StoredRows(NamedTuple):
     """Everything below a root: runs in the documented order, scores by run, and failures."""
 
     runs: tuple[RunRow, ...]
-    scores: tuple[ScoreRow, ...]
+    scores: Sequence[ScoreRow]
     failures: tuple[Failure, ...]
     damaged: tuple[DamagedRun, ...]
 
 
 def read_rows(root: Path) -> StoredRows:
-    """Return all current runs, scores and failures below a root, without writing.
+    """Return all current runs, scores and failures below a root.
 
-    A damaged run is left out, with a warning.
+    The index is renewed if many runs are new to it and nothing prevents that; nothing else is
+    written. A damaged run is left out, with a warning.
 
     Raises:
         InputError: there is no such folder.
     """
     if not root.is_dir():
         raise InputError(f"{root}: no folder of results; 'crowdbot campaign' makes one")
-    with _copy(root) as store:
-        store.synchronise()
-        found = store.rows()
+    scan = Scan.of(root)
+    found = _as_it_is(root, scan) or _renewed(root, scan) or _in_memory(root, scan)
     for run in found.damaged:
         _LOG.warning("warning: %s is left out: %s", root / run.directory, run.reason)
     return found
+
+
+def _as_it_is(root: Path, scan: Scan) -> StoredRows | None:
+    """Return the rows of the index if it has every run as it is now."""
+    file = root / INDEX
+    if not file.is_file() or file.with_name(f"{file.name}-wal").exists():
+        return None
+    address = f"{file.resolve().as_uri()}?immutable=1"
+    with suppress(sqlite3.Error, OSError), closing(sqlite3.connect(address, uri=True)) as database:
+        if database.execute("PRAGMA user_version").fetchone()[0] == VERSION:
+            store = Store(root, database)
+            return store.rows(scan) if store.changed(scan) == 0 else None
+    return None
+
+
+def _renewed(root: Path, scan: Scan) -> StoredRows | None:
+    """Return the rows of the index after renewing it; None if that is not possible or worth it."""
+    with _copy(root) as store:
+        if store.changed(scan) < RENEWED_FROM:
+            return None
+    if not os.access(root, os.W_OK):
+        return None
+    try:
+        with index(root) as store:
+            store.synchronise(scan)
+            return store.rows(scan)
+    except InputError:  # another process is writing it, or there is no space
+        return None
+
+
+def _in_memory(root: Path, scan: Scan) -> StoredRows:
+    with _copy(root) as store:
+        store.synchronise(scan)
+        return store.rows(scan)
 
 
 @contextmanager
@@ -180,25 +233,39 @@ class Store:
     def __init__(self, root: Path, database: sqlite3.Connection) -> None:
         self._root, self._database = root, database
         self._file = root / INDEX
-        self._damaged: list[DamagedRun] = []
-        database.row_factory = sqlite3.Row
+        self._texts = Texts(database)
 
-    def synchronise(self) -> None:
+    def changed(self, scan: Scan) -> int:
+        """Return the number of runs and failures that are new, changed or gone."""
+        there, known = scan.there, self._known()
+        return sum(known.get(d) != s for d, s in there.items()) + len(known.keys() - there.keys())
+
+    def synchronise(self, scan: Scan | None = None) -> None:
         """Add new or changed runs and remove deleted ones; unchanged runs are not read.
 
         A damaged run is removed, and reported with the results.
+
+        Args:
+            scan: what is there, if that is known.
         """
-        self._damaged = []
-        found = dict(self._whole(_scan(self._root)))
-        for table in ("runs", "failures"):
-            there = {d: s for d, s in found.items() if d.endswith(SUFFIX) == (table == "failures")}
-            known = dict(self._database.execute(f"SELECT directory, stamp FROM {table}").fetchall())
-            with self._writing():
-                for directory in known.keys() - there.keys():
-                    self._database.execute(f"DELETE FROM {table} WHERE directory = ?", [directory])
-                for directory, stamp in there.items():
-                    if known.get(directory) != stamp:
-                        self._insert(directory, stamp)
+        there, known = (scan or Scan.of(self._root)).there, self._known()
+        with self._writing():
+            for directory in known.keys() - there.keys():
+                self._forget(directory)
+            for directory, stamp in there.items():
+                if known.get(directory) != stamp:
+                    self._insert(directory, stamp)
+
+    def _known(self) -> dict[str, str]:
+        """Return the runs and failures of the index, with their stamps."""
+        found: dict[str, str] = {}
+        for table in ("runs", "failures", "damaged"):
+            found |= dict(self._database.execute(f"SELECT directory, stamp FROM {table}"))
+        return found
+
+    def _forget(self, directory: str) -> None:
+        for table in ("runs", "failures", "damaged"):
+            self._database.execute(f"DELETE FROM {table} WHERE directory = ?", [directory])
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
@@ -210,15 +277,17 @@ class Store:
         try:
             with self._database:
                 yield
-        except sqlite3.OperationalError as error:
-            raise unwritable(self._file, error) from error
+        except BaseException as error:
+            self._texts = Texts(self._database)  # what it added last is gone
+            if isinstance(error, sqlite3.OperationalError):
+                raise unwritable(self._file, error) from error
+            raise
 
     def add(self, directory: str) -> None:
         """Add a new run and remove its failure, if any."""
         stamp = _stamp_of_run(self._root / directory)
         with self._writing():
-            failure = directory + SUFFIX
-            self._database.execute("DELETE FROM failures WHERE directory = ?", [failure])
+            self._forget(directory + SUFFIX)
             self._insert(directory, stamp)
 
     def add_failure(self, directory: str) -> None:
@@ -226,58 +295,42 @@ class Store:
         with self._writing():
             self._insert(directory + SUFFIX, _stamp(self._root / (directory + SUFFIX)))
 
-    def rows(self) -> StoredRows:
-        """Return everything, in the documented order."""
+    def rows(self, scan: Scan | None = None) -> StoredRows:
+        """Return everything, in the documented order; with what ``scan`` has found missing."""
         order = "ORDER BY suite, position, scenario, planner, seed"
-        runs = self._database.execute(f"SELECT * FROM runs {order}").fetchall()
-        ids = {row["directory"]: row["run_id"] for row in runs}
-        scores: dict[str, list[ScoreRow]] = {d: [] for d in ids}
-        query = f"SELECT directory, {', '.join(_SCORE)} FROM scores"
-        for row in self._database.execute(f"{query} ORDER BY directory, metric, variant, row"):
-            directory, *cells = row  # by position: there are hundreds of thousands
-            named = dict(zip(_SCORE, cells, strict=True))
-            scores[directory].append(ScoreRow(run_id=ids[directory], **named))
-        failures = self._database.execute(f"SELECT * FROM failures {order}").fetchall()
+        runs, scores = read_all(self._database, order)
+        columns = ", ".join(_FAILURE)
+        failures = self._database.execute(f"SELECT {columns} FROM failures {order}").fetchall()
+        damaged = self._database.execute("SELECT directory, reason FROM damaged").fetchall()
+        left_out = [DamagedRun(directory=d, reason=why) for d, why in damaged]
+        left_out += scan.missing if scan else ()
         return StoredRows(
-            runs=tuple(_run(row) for row in runs),
-            scores=tuple(s for directory in ids for s in scores[directory]),
+            runs=runs,
+            scores=scores,
             failures=tuple(_failure(row) for row in failures),
-            damaged=tuple(self._damaged),
+            damaged=tuple(sorted(left_out, key=lambda d: d.directory)),
         )
 
-    def _whole(self, found: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-        """Yield the found runs without those that lack a file."""
-        for directory, stamp in found:
-            if stamp:
-                yield directory, stamp
-            else:
-                reason = f"{files.RECORD} is missing"
-                self._damaged.append(DamagedRun(directory=directory, reason=reason))
-
     def _insert(self, directory: str, stamp: str) -> None:
+        self._forget(directory)
         if directory.endswith(SUFFIX):
             self._insert_failure(directory, stamp)
             return
         run = self._root / directory
-        self._database.execute("DELETE FROM runs WHERE directory = ?", [directory])
-        if not (run / files.RECORD).exists():
+        if not os.path.lexists(run / files.RECORD):
             return  # replaced at this moment; the next scan finds it
         try:
             row, rows = _read_row(run, directory), read_scores_csv(run / files.SCORES)
             _check_rows(run / files.SCORES, row, rows)
         except InputError as error:
             reason = str(error).removeprefix(f"{run}/")
-            self._damaged.append(DamagedRun(directory=directory, reason=reason))
+            self._put("damaged", {"directory": directory, "stamp": stamp, "reason": reason})
             return
-        self._put("runs", {"stamp": stamp, **_columns(row)})
-        self._database.executemany(
-            _INSERT_SCORE,
-            ((directory, number, *_cells(row.score)) for number, row in enumerate(rows)),
-        )
+        columns = row_of(row, [one.score for one in rows], self._texts)
+        self._put("runs", {"stamp": stamp, **columns})
 
     def _insert_failure(self, directory: str, stamp: str) -> None:
         failure = read_failure(self._root / directory)
-        self._database.execute("DELETE FROM failures WHERE directory = ?", [directory])
         if failure is not None:
             values = {n: getattr(failure, n) for n in _FAILURE}
             values["axes"] = json.dumps(values["axes"])
@@ -291,33 +344,25 @@ class Store:
         )
 
 
-_SCORE = (
-    "category", "metric", "symbol", "variant", "value", "unit", "better", "status", "reason",
-    "lower", "upper",
-)  # fmt: skip
-_INSERT_SCORE = (
-    f"INSERT INTO scores (directory, row, {', '.join(_SCORE)}) "
-    f"VALUES ({', '.join('?' * (2 + len(_SCORE)))})"
-)
-_cells = attrgetter(*_SCORE)
 _FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error", "traceback")
 
 
 def _scan(root: Path) -> Iterator[tuple[str, str]]:
     """Yield runs and failures below a root with their stamps, without calibration runs."""
+    top = len(str(root)) + 1
     for folder, below, names in os.walk(root):
-        here = Path(folder)
+        here, place = Path(folder), folder[top:].replace(os.sep, "/") or "."
         if files.RECORD in names:
             below.clear()
             try:
-                yield here.relative_to(root).as_posix(), _stamp_of_run(here)
+                yield place, _stamp_of_run(folder)
             except OSError:  # replaced at this moment, or a broken link
                 if (here / files.RECORD).is_symlink():
-                    yield here.relative_to(root).as_posix(), ""
+                    yield place, ""
             continue
         if files.RECORDING in names or files.SCORES in names:
             below.clear()
-            yield here.relative_to(root).as_posix(), ""
+            yield place, ""
             continue
         if here == root:
             below[:] = [b for b in below if b != "references"]
@@ -329,17 +374,17 @@ def _scan(root: Path) -> Iterator[tuple[str, str]]:
                     yield (here / name).relative_to(root).as_posix(), _stamp(here / name)
 
 
-def _stamp(file: Path) -> str:
-    about = file.stat()
-    return f"{about.st_mtime_ns} {about.st_size} {about.st_ino}"
+def _stamp(file: str | Path) -> str:
+    about = os.stat(file)  # noqa: PTH116  many files: a Path takes longer
+    return f"{about.st_mtime_ns} {about.st_size} {about.st_ino} {about.st_ctime_ns}"
 
 
-def _stamp_of_run(run: Path) -> str:
+def _stamp_of_run(run: str | Path) -> str:
     """Return a stamp that changes with each of its files; the time of a change cannot be set."""
-    parts = [_stamp(run / files.RECORD)]
+    parts = [_stamp(f"{run}/{files.RECORD}")]
     for name in (files.RECORDING, files.SCORES, files.SCENARIO):
         try:
-            about = (run / name).stat()
+            about = os.stat(f"{run}/{name}")  # noqa: PTH116
             parts.append(f"{about.st_size} {about.st_ctime_ns}")
         except OSError:
             parts.append("-")
@@ -355,17 +400,6 @@ def _read_row(run: Path, directory: str) -> RunRow:
     document = files.checked_record(run)
     files.check_whole(run, document)
     return RunRow(record=RunRecord.parse(document, files.RECORD), directory=directory)
-
-
-def _columns(row: RunRow) -> dict[str, Any]:
-    """The columns of a run."""
-    return {
-        **{name: getattr(row, name) for name in RUN_COLUMNS},
-        "position": row.record.position,
-        "axes": json.dumps(row.axes),
-        "conditions": json.dumps(row.conditions),
-        "record": json.dumps(row.record.document()),
-    }
 
 
 def _check_rows(file: Path, run: RunRow, rows: Sequence[RunScore]) -> None:
@@ -386,11 +420,7 @@ def _check_rows(file: Path, run: RunRow, rows: Sequence[RunScore]) -> None:
         seen.add(name)
 
 
-def _run(row: sqlite3.Row) -> RunRow:
-    record = RunRecord.model_validate_json(row["record"])
-    return RunRow(record=record, directory=row["directory"])
-
-
-def _failure(row: sqlite3.Row) -> Failure:
-    values = {name: row[name] for name in _FAILURE if name != "position"}
-    return Failure(**{**values, "axes": json.loads(row["axes"])})
+def _failure(row: Sequence[Any]) -> Failure:
+    values = dict(zip(_FAILURE, row, strict=True))
+    del values["position"]
+    return Failure(**{**values, "axes": json.loads(values["axes"])})

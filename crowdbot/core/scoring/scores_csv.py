@@ -81,6 +81,13 @@ def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
     atomic_write(path, text.getvalue())
 
 
+def csv_cells(cells: Sequence[str]) -> str:
+    """Return cells as a part of a line of CSV, safe for spreadsheets."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="").writerow([safe_cell(cell) for cell in cells])
+    return text.getvalue()
+
+
 def safe_cell(cell: str) -> str:
     """Return a cell that no spreadsheet treats as a formula.
 

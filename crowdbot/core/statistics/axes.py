@@ -62,16 +62,10 @@ class DensityLevel:
 
 def axis_effects(table: Table, name: Name, planner: str) -> list[AxisEffect]:
     """Return the effects of all axes on one score of one planner; missing values are counted."""
-    column = table.column(name, planner)
-    runs = [table.runs.get((planner, key)) for key in table.keys]
-    there = [(i, run) for i, run in enumerate(runs) if run is not None]
-    values = np.array([column.low[i] if column.known[i] else np.nan for i, _ in there])
-    found = []
-    for axis in dict.fromkeys(a for _, run in there for a in run.axes):
-        effect = _effect([run.axes.get(axis, "") for _, run in there], values)
-        found.append((axis, *effect))
-    density = np.array([np.nan if r.density is None else r.density for _, r in there])
-    found.append((REALISED_DENSITY, (), *_line(density, values)))
+    column, labels = table.column(name, planner), table.axis_labels(planner)
+    values = np.where(column.known[labels.rows], column.low[labels.rows], np.nan)
+    found = [(axis, *_effect(*of_axis, values)) for axis, of_axis in labels.axes.items()]
+    found.append((REALISED_DENSITY, (), *_line(labels.density, values)))
     return [
         AxisEffect(
             planner=planner, metric=name[0], variant=name[1], axis=axis, levels=levels,
@@ -99,14 +93,13 @@ def densities(table: Table) -> tuple[DensityLevel, ...]:
 _Effect = tuple[tuple[Level, ...], float | None, float | None, str]
 
 
-def _effect(labels: Sequence[str], values: Floats) -> _Effect:
-    order = list(dict.fromkeys(labels))
-    index = np.array([order.index(label) for label in labels], dtype=np.intp)
+def _effect(order: Sequence[str], index: NDArray[np.intp], values: Floats) -> _Effect:
     known = np.isfinite(values)
     count = np.bincount(index[known], minlength=len(order))
     total = np.bincount(index[known], weights=values[known], minlength=len(order))
+    runs = np.bincount(index, minlength=len(order))
     levels = tuple(
-        Level(label=label, runs=int(np.count_nonzero(index == i)),
+        Level(label=label, runs=int(runs[i]),
               mean=float(total[i] / count[i]) if count[i] else None)
         for i, label in enumerate(order)
     )  # fmt: skip

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.realism.crowds import realism_by_name
 from crowdbot.core.results.results import Results
+from crowdbot.core.results.score_columns import metrics_of
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.floors import PRIMARY
 from crowdbot.core.statistics.summary import headline_names
@@ -178,7 +179,7 @@ def kendall(x: Sequence[float], y: Sequence[float]) -> float:
 
 
 def _primary(results: Results) -> str:
-    there = {s.metric for s in results.scores}
+    there = metrics_of(results.scores)
     return next((m for m in PRIMARY if m in there), "")
 
 

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,42 +55,69 @@ class GroupSummary:
     median: float | None
 
 
-def by_group(
-    results: Results, metric: str, by: Sequence[str], variant: str | None = None
-) -> list[GroupSummary]:
-    """Return scores by groups of runs.
+class Grouped:
+    """Results in groups of runs, for questions about several metrics.
 
     Args:
         results: the results.
-        metric: pattern of names.
         by: axes, or ``planner``, ``suite``, ``scenario``, ``seed``, ``status``.
-        variant: None: the metric's headline variant (`headline_names`).
 
     Raises:
         UnknownNameError: no such axis.
-        InputError: no run was scored by the metric.
     """
-    _check_names(results, metric, by)
-    table = Table(results)
-    groups = _groups(table, results, by)
-    failed = Counter(
-        tuple(_label(one, axis) for axis in by)
-        for one in _tried(table, results)
-        if isinstance(one, Failure) or has_failed(one.status)
-    )
-    return [
-        _summary(table, name, dict(zip(by, group, strict=True)), rows, failed[group])
-        for name in _names(table, metric, variant)
-        for group, rows in groups.items()
-    ]
+
+    def __init__(self, results: Results, by: Sequence[str]) -> None:
+        known = [*axes_of(results.runs), "planner", "suite", "scenario", "seed", "status"]
+        for name in by:
+            if name not in known:
+                raise UnknownNameError("axis", name, known)
+        self._by = by
+        self._table = Table(results)
+        self._groups = _groups(self._table, results, by)
+        self._failed = Counter(
+            tuple(_label(one, axis) for axis in by)
+            for one in _tried(self._table, results)
+            if isinstance(one, Failure) or has_failed(one.status)
+        )
+
+    def summaries(self, metric: str, variant: str | None = None) -> list[GroupSummary]:
+        """Return scores by groups.
+
+        Args:
+            metric: pattern of names.
+            variant: None: the metric's headline variant (`headline_names`).
+
+        Raises:
+            InputError: no run was scored by the metric.
+        """
+        _check_metric(self._table, metric)
+        return [
+            _summary(
+                self._table, name, dict(zip(self._by, group, strict=True)), rows,
+                self._failed[group],
+            )
+            for name in self._names(metric, variant)
+            for group, rows in self._groups.items()
+        ]  # fmt: skip
+
+    @cached_property
+    def _usual(self) -> Mapping[str, Name]:
+        """Metric -> the variant that stands for it."""
+        first = {name[0]: name for name in reversed(self._table.names)}
+        return {**first, **{name[0]: name for name in headline_names(self._table)}}
+
+    def _names(self, metric: str, variant: str | None) -> Iterator[Name]:
+        for name in self._table.names:
+            usual = self._usual[name[0]][1]
+            if fnmatchcase(name[0], metric) and name == (name[0], variant or usual):
+                yield name
 
 
-def _names(table: Table, metric: str, variant: str | None) -> Iterator[Name]:
-    first = {name[0]: name for name in reversed(table.names)}
-    usual = {**first, **{name[0]: name for name in headline_names(table)}}
-    for name in table.names:
-        if fnmatchcase(name[0], metric) and name == (name[0], variant or usual[name[0]][1]):
-            yield name
+def by_group(
+    results: Results, metric: str, by: Sequence[str], variant: str | None = None
+) -> list[GroupSummary]:
+    """Return scores of one metric by groups of runs; arguments and errors as in `Grouped`."""
+    return Grouped(results, by).summaries(metric, variant)
 
 
 def _groups(table: Table, results: Results, by: Sequence[str]) -> Mapping[_Group, _Rows]:
@@ -144,13 +172,9 @@ def _label(run: RunRow | Failure, name: str) -> str:
     return run.axes[name] if name in run.axes else str(getattr(run, name, ""))
 
 
-def _check_names(results: Results, metric: str, by: Sequence[str]) -> None:
-    known = [*axes_of(results.runs), "planner", "suite", "scenario", "seed", "status"]
-    for name in by:
-        if name not in known:
-            raise UnknownNameError("axis", name, known)
-    metrics = {s.metric for s in results.scores}
-    if results.scores and not any(fnmatchcase(m, metric) for m in metrics):
+def _check_metric(table: Table, metric: str) -> None:
+    metrics = {name[0] for name in table.names}
+    if metrics and not any(fnmatchcase(m, metric) for m in metrics):
         near = did_you_mean(nearest(metric, metrics))
         raise InputError(
             f"metric '{metric}' was not scored in these runs{near}; 'crowdbot evaluate RUNS "

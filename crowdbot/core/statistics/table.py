@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import WITHOUT_RUN, RunRow, ScoreRow
+from crowdbot.core.results.score_columns import Numbered, ScoreColumns, State
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
@@ -23,8 +24,6 @@ from crowdbot.dsl.suite.matrix import DRAW
 Key = tuple[str, str, int]
 #: Metric and variant.
 Name = tuple[str, str]
-
-_Read = tuple[int, str, tuple[float, float]]
 
 OK, CENSORED, UNDEFINED, FAILED, MISSING = range(len(OUTCOMES))
 
@@ -76,18 +75,20 @@ class Table:
         self.keys: tuple[Key, ...] = tuple(dict.fromkeys(key for _, key in places))
         self.planners = tuple(sorted({planner for planner, _ in places}))
         self.scales = results.scales
-        self._rows = _by_score(results.scores)
+        self._scores = ScoreColumns.of(results.scores)
         self._columns: dict[tuple[Name, str], Column] = {}
-        self._attempts: dict[str, list[tuple[RunRow | None, bool]]] = {}
+        self._attempts: dict[str, _Attempts] = {}
+        self._labels: dict[str, AxisLabels] = {}
+        self._place_of = {name: i for i, name in enumerate(self._scores.run_ids)}
 
     @cached_property
     def names(self) -> tuple[Name, ...]:
         """All scores, sorted."""
-        return tuple(sorted(self._rows))
+        return tuple(sorted(self._scores.by_name))
 
     def label(self, name: Name) -> ScoreRow:
         """Return a row with unit, category and direction of a score."""
-        return next(iter(self._rows[name].values()))
+        return self._scores[int(self._scores.by_name[name][0])]
 
     @cached_property
     def draws(self) -> tuple[str, ...]:
@@ -122,7 +123,7 @@ class Table:
         None if not a rate or missing in the runs.
         """
         over = name[0], self.scale(name).rate_over
-        return over if over[1] and over in self._rows else None
+        return over if over[1] and over in self._scores.by_name else None
 
     def exposure(self, name: Name, planner: str) -> Floats | None:
         """Return the exposure of one planner's rate in each row, (n,); NaN if unknown.
@@ -141,17 +142,22 @@ class Table:
         These are all scenarios of a suite with the run seeds that it has in any of them. Floors and
         ceilings are measures: they run in part of a suite, and lack nothing.
         """
-        tried = np.array([run is not None or lost for run, lost in self._tried(planner)], np.bool_)
-        roles = {run.role for run, _ in self._tried(planner) if run is not None}
-        if roles & {"floor", "ceiling"}:
+        attempts = self._tried(planner)
+        tried = attempts.run | attempts.lost
+        if attempts.roles & {"floor", "ceiling"}:
             return np.zeros_like(tried)
         seeds = {key[::2] for key, here in zip(self.keys, tried, strict=True) if here}
         return ~tried & np.array([key[::2] in seeds for key in self.keys], np.bool_)
 
     def arrived(self, planner: str) -> NDArray[np.bool_]:
         """Return a mask (n,) of rows in which a planner's robot arrived."""
-        runs = (run for run, _ in self._tried(planner))
-        return np.array([run is not None and run.status == Ending.ARRIVED for run in runs], bool)
+        return self._tried(planner).arrived
+
+    def axis_labels(self, planner: str) -> AxisLabels:
+        """Return the labels of one planner's runs on all axes."""
+        if planner not in self._labels:
+            self._labels[planner] = AxisLabels.of([self.runs.get((planner, k)) for k in self.keys])
+        return self._labels[planner]
 
     def column(self, name: Name, planner: str) -> Column:
         """Return one score of one planner."""
@@ -160,26 +166,117 @@ class Table:
         return self._columns[name, planner]
 
     def _column(self, name: Name, planner: str) -> Column:
-        rows, tried = self._rows.get(name, {}), self._tried(planner)
-        found = [
-            _without_run(name[0]) if lost else _read(run, rows.get(run.run_id) if run else None)
-            for run, lost in tried
-        ]
-        outcome = np.array([kind for kind, _, _ in found], dtype=np.int8)
-        low, high = np.array([bounds for *_, bounds in found], dtype=np.float64).reshape(-1, 2).T
-        failed = [lost or (run is not None and has_failed(run.status)) for run, lost in tried]
-        reasons = Counter(why for _, why, _ in found if why)
-        return Column(
-            outcome, low.copy(), high.copy(), np.array(failed, np.bool_),
-            dict(sorted(reasons.items())),
-        )  # fmt: skip
+        tried, scores = self._tried(planner), self._scores
+        place = self._places(name, tried)
+        scored = place >= 0
+        state = np.where(scored, scores.state[place], -1) if len(scores) else place
+        value, lower, upper = (
+            np.where(scored, numbers[place], np.nan) if len(scores) else np.full(len(place), np.nan)
+            for numbers in (scores.value, scores.lower, scores.upper)
+        )
+        kinds = np.array([*map(_kind, scores.states), UNDEFINED], np.int8)[state]
+        outcome = np.where(tried.run, kinds, MISSING).astype(np.int8)
+        outcome[tried.run & tried.failed & (kinds != OK)] = FAILED
+        infinite = (outcome == OK) & ~np.isfinite(value)
+        outcome[infinite] = UNDEFINED
+        low, high = np.full(len(outcome), -math.inf), np.full(len(outcome), math.inf)
+        for ends, bounds in ((low, lower), (high, upper)):
+            ends[outcome == OK] = value[outcome == OK]
+            bounded = (outcome == CENSORED) & ~np.isnan(bounds)
+            ends[bounded] = bounds[bounded]
+        reasons = Counter({"not_finite": int(infinite.sum())})
+        reasons.update(tried.status[i] for i in np.flatnonzero(outcome == FAILED).tolist())
+        unknown = ((outcome == UNDEFINED) | (outcome == CENSORED)) & ~infinite
+        for number, times in Counter(state[unknown].tolist()).items():
+            reasons[_reason(scores.states[number]) if number >= 0 else "not_scored"] += times
+        if tried.lost.any():
+            kind, reason, (low[tried.lost], high[tried.lost]) = _without_run(name[0])
+            outcome[tried.lost] = kind
+            reasons[reason] += int(tried.lost.sum())
+        counted = {why: n for why, n in sorted(reasons.items()) if why and n}
+        return Column(outcome, low, high, tried.failed.copy(), counted)
 
-    def _tried(self, planner: str) -> list[tuple[RunRow | None, bool]]:
-        """Return a planner's run for each row, and True if it could not be made."""
+    def _places(self, name: Name, tried: _Attempts) -> NDArray[np.intp]:
+        """Return the place of a score in each row among all scores, (n,); -1 without it."""
+        of_run = np.full(len(self._place_of) + 1, -1, np.intp)
+        rows = self._scores.by_name.get(name)
+        if rows is not None:
+            of_run[self._scores.run[rows]] = rows
+        return of_run[tried.place]
+
+    def _tried(self, planner: str) -> _Attempts:
         if planner not in self._attempts:
             places = [(planner, key) for key in self.keys]
-            self._attempts[planner] = [(self.runs.get(p), p in self.failures) for p in places]
+            runs = [self.runs.get(place) for place in places]
+            lost = np.array([place in self.failures for place in places], np.bool_)
+            self._attempts[planner] = _Attempts.of(runs, lost, self._place_of)
         return self._attempts[planner]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class AxisLabels:
+    """Labels of the r runs of a planner.
+
+    Attributes:
+        rows: (r,) their rows in the table.
+        axes: axis -> its labels in order of appearance, and (r,) the place of each run's.
+        density: (r,) realised density, 1/m²; NaN without people.
+    """
+
+    rows: NDArray[np.intp]
+    axes: Mapping[str, tuple[tuple[str, ...], NDArray[np.intp]]]
+    density: Floats
+
+    @staticmethod
+    def of(runs: Sequence[RunRow | None]) -> AxisLabels:
+        """Collect them from the runs of all rows, None where there is none."""
+        there = [(i, run) for i, run in enumerate(runs) if run is not None]
+        axes = {}
+        for axis in dict.fromkeys(a for _, run in there for a in run.axes):
+            order = Numbered[str]()
+            index = [order.place(run.axes.get(axis, "")) for _, run in there]
+            axes[axis] = tuple(order), np.array(index, np.intp)
+        density = [math.nan if run.density is None else run.density for _, run in there]
+        rows = np.array([i for i, _ in there], np.intp)
+        return AxisLabels(rows=rows, axes=axes, density=np.array(density, np.float64))
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Attempts:
+    """A planner's attempts, row by row.
+
+    Attributes:
+        run: (n,) True if there is a run; ``lost``: if it could not be made.
+        failed: (n,) True if it was lost, or the planner failed; ``arrived``: if the robot arrived.
+        place: (n,) place of the run among those with scores; -1 without.
+        status: status of each run, empty without.
+        roles: roles of the runs.
+    """
+
+    run: NDArray[np.bool_]
+    lost: NDArray[np.bool_]
+    failed: NDArray[np.bool_]
+    arrived: NDArray[np.bool_]
+    place: NDArray[np.intp]
+    status: Sequence[str]
+    roles: frozenset[str]
+
+    @staticmethod
+    def of(
+        runs: Sequence[RunRow | None], lost: NDArray[np.bool_], place_of: Mapping[str, int]
+    ) -> _Attempts:
+        status = ["" if run is None else run.status for run in runs]
+        bad = {word for word in set(status) if word and has_failed(word)}
+        places = [-1 if run is None else place_of.get(run.run_id, -1) for run in runs]
+        return _Attempts(
+            run=np.array([run is not None for run in runs], np.bool_),
+            lost=lost,
+            failed=lost | np.array([word in bad for word in status], np.bool_),
+            arrived=np.array([word == Ending.ARRIVED for word in status], np.bool_),
+            place=np.array(places, np.intp),
+            status=status,
+            roles=frozenset(run.role for run in runs if run is not None),
+        )
 
 
 def counts_of(outcome: NDArray[np.int8]) -> Counts:
@@ -188,20 +285,13 @@ def counts_of(outcome: NDArray[np.int8]) -> Counts:
     return Counts(**dict(zip(OUTCOMES, map(int, found), strict=True)))
 
 
-def _by_score(scores: Sequence[ScoreRow]) -> dict[Name, dict[str, ScoreRow]]:
-    found: dict[Name, dict[str, ScoreRow]] = {}
-    for row in scores:
-        found.setdefault((row.metric, row.variant), {})[row.run_id] = row
-    return found
-
-
 def _key(run: RunRow) -> Key:
     return run.suite, run.scenario, run.seed
 
 
 def _draw(run: RunRow) -> str:
     """Return the name of the crowd draw; the scenario itself without known people."""
-    nobody = run.density is None and run.record.agents == "none"
+    nobody = run.density is None and run.agents == "none"
     return f"{run.suite}/{run.scenario}" if nobody else run.realisation_hash
 
 
@@ -211,31 +301,16 @@ def _condition(key: Key, axes: Mapping[str, str]) -> str:
     return "/".join([key[0], *(labels or ([] if DRAW in axes else [key[1]]))])
 
 
-def _without_run(metric: str) -> _Read:
+def _without_run(metric: str) -> tuple[int, str, tuple[float, float]]:
     """Return outcome, reason and bounds of a score of an attempt without a run."""
     if metric in WITHOUT_RUN:
         return OK, "", (WITHOUT_RUN[metric], WITHOUT_RUN[metric])
     return FAILED, "no_run", (-math.inf, math.inf)
 
 
-def _read(run: RunRow | None, score: ScoreRow | None) -> _Read:
-    """Return outcome, reason and bounds of one score of one run."""
-    nothing = (-math.inf, math.inf)
-    if run is None:
-        return MISSING, "", nothing
-    has_value = score is not None and score.status == "ok" and score.value is not None
-    if has_failed(run.status) and not has_value:
-        return FAILED, run.status, nothing
-    if score is None:
-        return UNDEFINED, "not_scored", nothing
-    if score.status == "censored":
-        return CENSORED, score.reason, (_end(score.lower, -1.0), _end(score.upper, 1.0))
-    if score.status != "ok" or score.value is None:
-        return UNDEFINED, score.reason or "no_value", nothing
-    if not math.isfinite(score.value):
-        return UNDEFINED, "not_finite", nothing
-    return OK, "", (score.value, score.value)
+def _kind(state: State) -> int:
+    return {"ok": OK, "censored": CENSORED}.get(state.status, UNDEFINED)
 
 
-def _end(bound: float | None, side: float) -> float:
-    return side * math.inf if bound is None or math.isnan(bound) else bound
+def _reason(state: State) -> str:
+    return state.reason or ("" if state.status == "censored" else "no_value")

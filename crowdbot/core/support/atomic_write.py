@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -42,3 +42,13 @@ def atomic_write(path: Path, content: str | bytes) -> None:
     data = content.encode() if isinstance(content, str) else content
     with atomic_path(path) as part:
         part.write_bytes(data)
+
+
+def atomic_lines(path: Path, lines: Iterable[str]) -> None:
+    """Write lines with their ends as `atomic_write` does, without keeping them in memory.
+
+    Raises:
+        InputError: the path cannot be written.
+    """
+    with atomic_path(path) as part, part.open("w", encoding="utf-8", newline="") as file:
+        file.writelines(lines)

@@ -127,6 +127,8 @@ def _seeing_floors(registry: Registry) -> list[str]:
 
 def _of(results: Results, plan: Plan) -> Results:
     """Return the runs and failures of a plan, among all below its root."""
+    from crowdbot.core.results.score_columns import of_runs
+
     keys = {run.key for run in plan.runs}
     folders = {run.directory.relative_to(plan.out).as_posix() for run in plan.runs}
     runs = tuple(r for r in results.runs if r.run_id in keys)
@@ -137,7 +139,7 @@ def _of(results: Results, plan: Plan) -> Results:
         if f"{f.suite}/{f.scenario}/{f.planner}/seed-{f.seed}" in folders
         and (f.suite, f.scenario, f.planner, f.seed) not in places
     )
-    scores = tuple(s for s in results.scores if s.run_id in keys)
+    scores = of_runs(results.scores, keys)
     return replace(results, runs=runs, scores=scores, failures=failures)
 
 

@@ -141,12 +141,14 @@ def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: 
 
 
 def _only(results: Results, suite: str, planners: set[str]) -> Results:
+    from crowdbot.core.results.score_columns import of_runs
+
     runs = tuple(r for r in results.runs if r.suite == suite and r.planner in planners)
     ids = {r.run_id for r in runs}
     return replace(
         results,
         runs=runs,
-        scores=tuple(s for s in results.scores if s.run_id in ids),
+        scores=of_runs(results.scores, ids),
         failures=tuple(f for f in results.failures if f.suite == suite and f.planner in planners),
     )
 

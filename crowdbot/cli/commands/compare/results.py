@@ -89,7 +89,8 @@ def show(
     if context.invoked_subcommand is not None:
         return
     from crowdbot.core.results.rows import named_metrics
-    from crowdbot.core.statistics.groups import by_group
+    from crowdbot.core.results.score_columns import metrics_of
+    from crowdbot.core.statistics.groups import Grouped
     from crowdbot.errors import UsageError
 
     found = _with_scales(_only(open_results(out, altered), planner, status))
@@ -99,10 +100,11 @@ def show(
         print_lines(_worst(found, metric[0], variant, worst), as_csv=as_csv, as_json=as_json)
         return
     groups = [name.strip() for name in by.split(",") if name.strip()]
-    known = {s.metric for s in found.scores}
+    known = metrics_of(found.scores)
     first = [*named_metrics(found.runs), *_HEADLINES]
     wanted = metric or [m for m in dict.fromkeys(first) if m in known]
-    summaries = [s for m in wanted for s in by_group(found, m, groups, variant)]
+    grouped = Grouped(found, groups)
+    summaries = [s for m in wanted for s in grouped.summaries(m, variant)]
     lines = [line_of(s) for s in summaries]
     once = {tuple(sorted(line.items(), key=lambda cell: cell[0])): line for line in lines}
     shown = [*once.values()]  # patterns may overlap
@@ -272,6 +274,7 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
     Raises:
         UnknownNameError: no run has such a planner or status.
     """
+    from crowdbot.core.results.score_columns import of_runs
     from crowdbot.core.types.ending import ATTEMPTED, Ending
     from crowdbot.errors import UnknownNameError
 
@@ -290,7 +293,7 @@ def _only(found: Results, planners: list[str] | None, status: str | None) -> Res
     return replace(
         found,
         runs=runs,
-        scores=tuple(s for s in found.scores if s.run_id in ids),
+        scores=of_runs(found.scores, ids),
         failures=tuple(
             f
             for f in found.failures

@@ -1,0 +1,210 @@
+"""Runs and scores in the rows of ``results.sqlite``: packed when written, columns when read.
+
+Texts that many runs share are stored once. A record is kept compressed and parsed when asked for:
+most questions need only the columns beside it.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import zlib
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.results.rows import RUN_COLUMNS, RunRow
+from crowdbot.core.results.score_columns import Numbered, ScoreColumns, ScoreLabel, State
+from crowdbot.core.runs.run_record import RunRecord
+from crowdbot.core.types.score import Score
+
+#: Columns with texts that runs share, by their number in the table ``texts``.
+_SHARED = ("axes", "conditions", "provenance", "more", "labels", "states")
+_MORE = ("changes", "role", "agents", "crowd", "suite_metrics", "axis_words")
+_PLAIN = tuple(RUN_COLUMNS)
+_SELECTED = (*_PLAIN, "moment", *_SHARED, "record", "scores")
+_BYTES = 3 * 8 + 2  # of a score: value, bounds, state
+
+
+class _ParsedRecord:
+    """The record of an indexed run, parsed each time: thousands of them would fill memory."""
+
+    def __get__(self, run: IndexedRun | None, owner: type) -> Any:
+        if run is None:  # dataclasses ask for a default
+            raise AttributeError("record")
+        return RunRecord.model_validate_json(zlib.decompress(run._packed))
+
+
+class IndexedRun(RunRow):
+    """A run from the index, whose record is parsed when asked for."""
+
+    _packed: bytes = b""
+    _known: Mapping[str, Any] = {}  # both are empty unless it comes from the index
+    _more: Mapping[str, Any] = {}
+
+    @staticmethod
+    def of(known: Mapping[str, Any], more: Mapping[str, Any], packed: bytes) -> IndexedRun:
+        """Return a run from its own columns, shared ones, and its compressed record."""
+        run = object.__new__(IndexedRun)
+        run.__dict__.update(
+            directory=known["directory"], entry="", _known=known, _more=more, _packed=packed
+        )
+        return run
+
+    record: RunRecord = cast(RunRecord, _ParsedRecord())
+
+    def __repr__(self) -> str:
+        return f"IndexedRun(directory={self.directory!r}, entry={self.entry!r})"
+
+
+def _column(name: str) -> property:
+    """Return a property that takes its value from the index, else from the record."""
+    plain: Any = vars(RunRow)[name]
+
+    def value(self: IndexedRun) -> Any:
+        if name in self._known:
+            return self._known[name]
+        if name in self._more:
+            return self._more[name]
+        return plain.func(self) if isinstance(plain, cached_property) else plain.fget(self)
+
+    value.__doc__ = plain.__doc__
+    return property(value)
+
+
+for _name in (*_PLAIN, "moment", "axes", "conditions", "provenance", *_MORE):
+    if _name != "directory":
+        setattr(IndexedRun, _name, _column(_name))
+
+
+class Texts:
+    """The table of shared texts."""
+
+    def __init__(self, database: sqlite3.Connection) -> None:
+        self._database = database
+        self._values: dict[int, Any] = {}
+        self._numbers: dict[str, int] = {}
+
+    def number(self, value: Any) -> int:
+        """Return the number of a value of JSON, which is added if it is new."""
+        text = json.dumps(value)
+        if text not in self._numbers:
+            self._database.execute("INSERT OR IGNORE INTO texts (text) VALUES (?)", [text])
+            (number,) = self._database.execute(
+                "SELECT id FROM texts WHERE text = ?", [text]
+            ).fetchone()
+            self._numbers[text] = number
+        return self._numbers[text]
+
+    def value(self, number: int) -> Any:
+        """Return the value of a number, the same object each time."""
+        if not self._values:
+            found = self._database.execute("SELECT id, text FROM texts")
+            self._values = {i: json.loads(text) for i, text in found}
+        return self._values[number]
+
+
+def row_of(run: RunRow, scores: Sequence[Score], texts: Texts) -> dict[str, Any]:
+    """Return the columns of a run with its scores."""
+    ordered = sorted(scores, key=lambda s: (s.metric, s.variant))
+    states = Numbered[tuple[str, str]]()
+    state = np.array([states.place((s.status, s.reason)) for s in ordered], "<u2")
+    numbers = [
+        np.array([np.nan if x is None else x for x in column], "<f8")
+        for column in zip(*((s.value, s.lower, s.upper) for s in ordered), strict=True)
+    ] or [np.empty(0, "<f8")] * 3
+    labels = [(s.category, s.metric, s.symbol, s.variant, s.unit, s.better) for s in ordered]
+    shared = {
+        "axes": dict(run.axes),
+        "conditions": dict(run.conditions),
+        "provenance": dict(run.provenance),
+        "more": {name: getattr(run, name) for name in _MORE},
+        "labels": labels,
+        "states": list(states),
+    }
+    return {
+        **{name: getattr(run, name) for name in _PLAIN},
+        "position": run.record.position,
+        "moment": None if run.moment is None else json.dumps(run.moment),
+        **{name: texts.number(value) for name, value in shared.items()},
+        "record": zlib.compress(json.dumps(run.record.document()).encode(), 1),
+        "scores": b"".join(a.tobytes() for a in (*numbers, state)),
+    }
+
+
+def read_all(database: sqlite3.Connection, order: str) -> tuple[tuple[RunRow, ...], ScoreColumns]:
+    """Return all runs in some order, and their scores by run, metric and variant."""
+    texts, runs, found = Texts(database), list[RunRow](), list[tuple[str, int, int, bytes]]()
+    query = f"SELECT {', '.join(_SELECTED)} FROM runs {order}"  # noqa: S608  names of ours
+    for row in database.execute(query):
+        known = dict(zip(_PLAIN, row, strict=False))
+        known["privileged"], known["pinned"] = bool(known["privileged"]), bool(known["pinned"])
+        moment, *shared, labels, states, record, scores = row[len(_PLAIN) :]
+        axes, conditions, provenance, more = map(texts.value, shared)
+        known |= {"axes": axes, "conditions": conditions, "provenance": provenance}
+        known["moment"] = None if moment is None else json.loads(moment)
+        runs.append(IndexedRun.of(known, more, record))
+        found.append((known["run_id"], labels, states, scores))
+    return tuple(runs), _columns(found, texts)
+
+
+def _columns(found: Sequence[tuple[str, int, int, bytes]], texts: Texts) -> ScoreColumns:
+    """Return the scores of runs: id, numbers of labels and states, packed values."""
+    ids, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[State]()
+    groups: dict[int, list[int]] = {}
+    for place, (_, number, _, _) in enumerate(found):
+        groups.setdefault(number, []).append(place)
+    parts = [
+        _part([found[i] for i in places], places, (ids, labels, states), texts)
+        for places in groups.values()
+    ]
+    order = np.concatenate([place for place, *_ in parts] or [np.empty(0, np.int32)])
+    by_run = np.argsort(order, kind="stable") if len(parts) > 1 else slice(None)
+    columns = [np.concatenate(some)[by_run] for some in zip(*(p[1:] for p in parts), strict=True)]
+    run, label, state, value, lower, upper = columns or _nothing()
+    return ScoreColumns(
+        run_ids=tuple(ids), labels=tuple(labels), states=tuple(states),
+        run=run, label=label, state=state, value=value, lower=lower, upper=upper,
+    )  # fmt: skip
+
+
+def _nothing() -> list[NDArray[Any]]:
+    return [np.empty(0, kind) for kind in ("i4", "i4", "i4", "f8", "f8", "f8")]
+
+
+def _part(
+    found: Sequence[tuple[str, int, int, bytes]],
+    places: Sequence[int],
+    known: tuple[Numbered[str], Numbered[ScoreLabel], Numbered[State]],
+    texts: Texts,
+) -> tuple[NDArray[Any], ...]:
+    """Return places, then columns, of the scores of runs that have the same labels."""
+    ids, labels, states = known
+    label = np.array([labels.place(ScoreLabel(*one)) for one in texts.value(found[0][1])], "i4")
+    width, count = len(label), len(found)
+    packed = np.frombuffer(b"".join(p for *_, p in found), np.uint8).reshape(count, width * _BYTES)
+    ends = [0, 8 * width, 16 * width, 24 * width, _BYTES * width]
+    cut = [np.ascontiguousarray(packed[:, a:b]) for a, b in pairwise(ends)]
+    value, lower, upper = (one.view("<f8").ravel() for one in cut[:3])
+    state = cut[3].view("<u2").astype("i4")
+    kinds = np.array([number for _, _, number, _ in found])
+    for kind in np.unique(kinds):
+        table = np.array([states.place(State(*one)) for one in texts.value(int(kind))], "i4")
+        here = kinds == kind
+        state[here] = table[state[here]] if len(table) else state[here]
+    run = np.array([ids.place(name) for name, *_ in found], "i4")
+    return (
+        np.repeat(np.asarray(places, "i4"), width), np.repeat(run, width), np.tile(label, count),
+        state.ravel(), value, lower, upper,
+    )  # fmt: skip
+
+
+def columns_of_table() -> Iterable[tuple[str, str]]:
+    """Return names and types of the columns of runs besides `RUN_COLUMNS`."""
+    yield from (("stamp", "TEXT"), ("position", "INTEGER"), ("moment", "TEXT"))
+    yield from ((name, "INTEGER") for name in _SHARED)
+    yield from (("record", "BLOB"), ("scores", "BLOB"))
