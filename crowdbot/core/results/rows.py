@@ -166,7 +166,7 @@ class RunRow:
 
     @cached_property
     def provenance(self) -> Mapping[str, Any]:
-        """Where it comes from: ``versions``, ``machine``, ``plugins``, ``planner``, ``process``.
+        """Its provenance: ``versions``, ``machine``, ``plugins``, ``planner``, ``process``.
 
         Each is a mapping of names to texts but ``process``, which says where the planner ran.
         """

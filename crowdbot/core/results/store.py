@@ -50,7 +50,7 @@ CREATE TABLE IF NOT EXISTS failures (
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """What lies below a root.
+    """Contents of a root.
 
     Attributes:
         there: directory of a run, or file of a failure -> its stamp.
