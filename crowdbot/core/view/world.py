@@ -17,7 +17,7 @@ _MARGIN = 0.6  # m, margin around everything
 
 @dataclass(frozen=True, slots=True)
 class Map:
-    """World x0, y0, x1, y1 (m) at ``scale`` px per metre; its upper left corner is at LEFT, top."""
+    """World x0, y0, x1, y1 (m) at ``scale`` px per metre; its upper left corner is at left, top."""
 
     x0: float
     y0: float
@@ -25,6 +25,7 @@ class Map:
     y1: float
     scale: float
     top: float
+    left: float = LEFT
 
     @classmethod
     def around(cls, points: Iterable[tuple[float, float]], top: float) -> Map:
@@ -40,11 +41,11 @@ class Map:
     def box(self) -> tuple[float, float, float, float]:
         """Return x, y, width and height in the drawing, px."""
         width, height = (self.x1 - self.x0) * self.scale, (self.y1 - self.y0) * self.scale
-        return (LEFT, self.top, width, height)
+        return (self.left, self.top, width, height)
 
     def at(self, x: float, y: float) -> Point:
         """Return the position of a world point in the drawing."""
-        return (LEFT + (x - self.x0) * self.scale, self.top + (self.y1 - y) * self.scale)
+        return (self.left + (x - self.x0) * self.scale, self.top + (self.y1 - y) * self.scale)
 
     def path(
         self, points: Iterable[tuple[float, float]], role: str, *, closed: bool = False

@@ -25,6 +25,10 @@ class ExportFormat(StrEnum):
     parquet = "parquet"
     geojson = "geojson"
     trajnet = "trajnet"
+    gif = "gif"
+    mp4 = "mp4"
+    webm = "webm"
+    png = "png"
 
 
 class TreeChoice(StrEnum):
@@ -38,6 +42,10 @@ _ENDINGS = {
     ExportFormat.rosbag1: ".bag",
     ExportFormat.geojson: ".geojson",
     ExportFormat.trajnet: ".ndjson",
+    ExportFormat.gif: ".gif",
+    ExportFormat.mp4: ".mp4",
+    ExportFormat.webm: ".webm",
+    ExportFormat.png: ".png",
 }
 
 
@@ -69,22 +77,69 @@ def export(
     robot: Annotated[
         str | None, typer.Option(metavar="NAME", help="Tables: which of several robots.")
     ] = None,
+    first: Annotated[
+        float | None,
+        typer.Option("--from", min=0.0, metavar="SECONDS", help="Films: where to begin."),
+    ] = None,
+    last: Annotated[
+        float | None,
+        typer.Option("--until", min=0.0, metavar="SECONDS", help="Films: where to end."),
+    ] = None,
+    at: Annotated[
+        list[float] | None,
+        typer.Option(
+            min=0.0,
+            metavar="SECONDS",
+            help="Pictures: when; repeatable, side by side; default: the decisive moment.",
+        ),
+    ] = None,
+    rate: Annotated[
+        float | None,
+        typer.Option("--fps", min=1.0, max=60.0, metavar="N", help="Films: pictures a second."),
+    ] = None,
+    speed: Annotated[
+        float | None,
+        typer.Option(min=0.1, max=100.0, metavar="N", help="Films: times as fast as real time."),
+    ] = None,
+    width: Annotated[
+        int | None,
+        typer.Option(min=160, max=3840, metavar="PX", help="Films, pictures: how wide."),
+    ] = None,
+    follow: Annotated[
+        bool | None,
+        typer.Option(
+            "--follow/--whole",
+            help="Films, pictures: follow the robot, or show all; default: all if it is small.",
+            show_default=False,
+        ),
+    ] = None,
+    dark: Annotated[bool, typer.Option("--dark", help="Films, pictures: dark colours.")] = False,
 ) -> None:
-    """Write a recording in the format of other tools.
+    """Write a recording in the format of other tools, as a film, or as pictures from above.
 
     Example: crowdbot export runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0 --to rosbag2
+
+    A film: crowdbot export runs/tiny/a/dwa/seed-0 --to gif --from 20 --until 30
     """
+    from crowdbot.cli.output.film import FILMS, PICTURE, FilmOptions, write_film
     from crowdbot.core.recording.export.bag import BagOptions
     from crowdbot.core.runs.run_directory import RECORDING
     from crowdbot.errors import InputError
 
+    film = FilmOptions(
+        first=first, last=last, at=at or (), rate=rate, speed=speed, width=width, follow=follow,
+        dark=dark,
+    )  # fmt: skip
+    film.check(to.value)
     recording = run / RECORDING if run.is_dir() else run
     if not recording.is_file():
         raise InputError(f"{run}: no such run directory or recording")
     target = out or _target(run, to)
     if target.exists():
         raise InputError(f"{target}: exists already; it is not written over")
-    if to in (ExportFormat.rosbag1, ExportFormat.rosbag2):
+    if to.value in (*FILMS, PICTURE):
+        _whole(target, lambda aside: write_film(to.value, recording, aside, film))
+    elif to in (ExportFormat.rosbag1, ExportFormat.rosbag2):
         options = BagOptions(
             offset=offset * 10**9,
             tree=tf.value,
