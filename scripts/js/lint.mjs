@@ -13,7 +13,7 @@ const PAGES = [
   "crowdbot/core/replay/page.py", "crowdbot/core/report/page.py", "crowdbot/core/live/person/page.py",
 ];
 const CONFIG = {
-  languageOptions: { ecmaVersion: 2022, sourceType: "script", globals: globals.browser },
+  languageOptions: { ecmaVersion: 2022, sourceType: "script", globals: { ...globals.browser, THREE: "readonly" } },
   linterOptions: { reportUnusedDisableDirectives: "error" },
   rules: {
     ...js.configs.recommended.rules,
@@ -33,17 +33,21 @@ const CONFIG = {
   },
 };
 
-/** Names of a page's scripts, in the order in which they run. */
+/** A page's scripts, in the order in which they run; `own`: not shared with the replay page. */
 function scriptsOf(page) {
   const text = readFileSync(join(ROOT, page), "utf-8");
-  const names = /^_SCRIPTS = \(([^)]*)\)/m.exec(text);
-  if (!names) throw new Error(`${page} has no _SCRIPTS`);
-  const files = [...names[1].matchAll(/"([^"]+)"/g)].map((m) => m[1].replace(/(\.js)?$/, ".js"));
-  return files.map((name) => {
-    const [place, rest] = name.split(":"); // PACKAGE:NAME is another page's
-    const folder = rest ? place.replaceAll(".", "/") : dirname(page);
-    return { file: join(ROOT, folder, rest ?? name), own: !rest };
-  });
+  const named = (list) => {
+    const names = new RegExp(`^${list} = \\(([^)]*)\\)`, "m").exec(text);
+    return names && [...names[1].matchAll(/"([^"]+)"/g)].map((m) => m[1].replace(/(\.js)?$/, ".js"));
+  };
+  const all = named("_SCRIPTS");
+  if (all) return all.map((name) => ({ file: join(ROOT, dirname(page), name), own: true }));
+  const [shared, own] = [named("_SHARED"), named("_OWN")];
+  if (!shared || !own) throw new Error(`${page} has neither _SCRIPTS nor _SHARED and _OWN`);
+  return [
+    ...shared.map((name) => ({ file: join(ROOT, "crowdbot/core/replay/script", name), own: false })),
+    ...own.map((name) => ({ file: join(ROOT, dirname(page), "script", name), own: true })),
+  ];
 }
 
 /** What is wrong in one page, with the file and line that each message belongs to. */

@@ -39,6 +39,7 @@ def encode(shown: ShownRun) -> tuple[dict[str, Any], dict[str, str]]:
         "zone": nested(run.goal_zone),
         "people": None,
         **scenery_numbers(_scenery(shown)),
+        "solids": shown.solids,
     }
     if run.agents is not None:
         meta["people"], blobs["people"] = _people(run.t, run.agents)

@@ -9,6 +9,7 @@ from typing import Any
 from crowdbot.core.replay.encode import encode, summary
 from crowdbot.core.replay.scores import compared
 from crowdbot.core.replay.shown_run import ShownRun
+from crowdbot.core.replay.three import three_packed, three_source
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 from crowdbot.core.types.ending import ending_style
@@ -19,6 +20,9 @@ _SCRIPTS = (
     "script/robots.js", "script/sensors.js", "script/ghosts.js", "script/contacts.js",
     "script/thoughts.js",
     "script/canvas.js", "script/views.js", "script/timeline.js", "script/series.js",
+    "script/solid_load.js", "script/solid_place.js", "script/solid_people.js",
+    "script/solid_robots.js", "script/solid_eye.js", "script/solid.js", "script/solid_xr.js",
+    "script/solid_view.js",
     "script/plots.js", "script/cameras.js", "script/events.js", "script/legend.js",
     "script/readout.js",
     "script/pointers.js", "script/follow.js", "script/address.js", "script/player.js",
@@ -49,6 +53,8 @@ def _render(shown: Sequence[ShownRun], title: str) -> str:
         scripts=_SCRIPTS,
         more_style=ending_style(),
         frames=True,
+        later=(three_source(),),
+        three=three_packed(),
         title=title,
         labels=[one.label or one.title for one in shown],
         statuses=[one.status for one in shown],

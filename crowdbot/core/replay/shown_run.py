@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,8 @@ class ShownRun:
         robot: name of the run's robot, if there are others.
         others: the other robots of a fleet.
         scenery: default: the run's walls, which stop robots and people.
+        solids: what the view in three dimensions needs, `crowdbot.core.runs.solids`; without it
+            there is none.
     """
 
     run: Trajectories
@@ -70,6 +73,7 @@ class ShownRun:
     robot: str = "robot"
     others: Sequence[OtherTrack] = ()
     scenery: Scenery | None = None
+    solids: Mapping[str, Any] | None = None
 
     @property
     def status(self) -> str:

@@ -21,16 +21,18 @@ from crowdbot.core.scoring.fleet_scores import fleet_scores
 from crowdbot.core.scoring.metric import References
 from crowdbot.core.support.json_digest import digest
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.errors import InputError
 
 
 @dataclass(frozen=True, slots=True)
 class SeenRun:
-    """One robot's run, the readings of its range sensors, and what its planner drew."""
+    """One robot's run, its sensors, the readings of lidars, and what its planner drew."""
 
     run: Trajectories
     scans: Sequence[ReplayScan]
     drawings: Mapping[str, Sequence[PlannerDrawing]] = field(default_factory=dict)
+    sensors: Mapping[str, SensorInfo] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,14 +74,20 @@ def read_robots(
         if len(robots) == 1:
             return {
                 robots[0]: SeenRun(
-                    recording.trajectories(), recording.scans(), recording.drawings()
+                    recording.trajectories(),
+                    recording.scans(),
+                    recording.drawings(),
+                    recording.robot(None).header.sensors,
                 )
             }
         if missing := [name for name in robots if name not in recording.robots]:
             raise InputError(f"{path}: robot '{missing[0]}' is not in it")
         return {
             name: SeenRun(
-                recording.trajectories(name), recording.scans(robot=name), recording.drawings(name)
+                recording.trajectories(name),
+                recording.scans(robot=name),
+                recording.drawings(name),
+                recording.robot(name).header.sensors,
             )
             for name in robots
         }

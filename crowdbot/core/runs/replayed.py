@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from crowdbot.core.environments.build import build_environment
+from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.recording.reading.images import (
     REPLAY_IMAGE_RATE,
     REPLAY_IMAGE_WIDTH,
@@ -22,7 +23,9 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.read_and_score import SeenRun, read_robots
 from crowdbot.core.runs.run_record import RunRecord
+from crowdbot.core.runs.solids import solid_people, solids_of
 from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.scenarios.lock import population
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
@@ -124,6 +127,7 @@ def shown_run(
     record: RunRecord,
     scores: Sequence[Score],
     images: Sequence[ReplayImages],
+    people: Realisation,
 ) -> ShownRun:
     """Return the page's data of a run with one or several robots.
 
@@ -134,6 +138,7 @@ def shown_run(
         record: of the run.
         scores: of the run.
         images: what cameras saw.
+        people: the agents.
     """
     # People are shown until the last robot has ended.
     last = max(seen, key=lambda name: len(seen[name].run.t))
@@ -164,7 +169,18 @@ def shown_run(
             if name != last
         ],
         scenery=scenery(parts, _height(scenario, models)),
+        solids=solids_of(
+            parts,
+            {name: (models[name], seen[name].sensors) for name in _last_first(last, models)},
+            solid_people(scenario, people),
+        ),
     )
+
+
+def _last_first(last: str, names: Iterable[str]) -> list[str]:
+    """Return the robots in the order of the page."""
+    found = list(names)
+    return [last, *(n for n in found if n != last)] if last in found else found
 
 
 def _height(scenario: Scenario, models: Mapping[str, RobotModel]) -> float:
@@ -185,6 +201,7 @@ def _replayed(folder: Path, record: RunRecord, label: str, registry: Registry) -
         record,
         [row.score for row in read_scores_csv(folder / files.SCORES)],
         images.images(),
+        population(scenario, registry).agents,
     )
     return replace(shown, label=label)
 

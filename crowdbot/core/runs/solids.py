@@ -9,11 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.robots.look import visual_parts
+from crowdbot.core.sensing.appearance_model import heights
+from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.dsl.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,12 +33,25 @@ class SolidPeople:
     look: Sequence[str] = ()
 
 
+def solid_people(scenario: Scenario, people: Realisation) -> SolidPeople | None:
+    """Return the bodies of a scenario's people; None without any."""
+    if scenario.crowd is None or not len(people):
+        return None
+    seen = Appearance(
+        height=np.asarray(people.height),
+        leg_length=np.asarray(people.leg_length),
+        phase=np.asarray(people.phase),
+        look=tuple(people.look),
+    )
+    return SolidPeople(height=heights(seen, scenario.crowd.body.height), look=seen.look)
+
+
 def solids_of(
     parts: EnvironmentParts,
     robots: Mapping[str, tuple[RobotModel, Mapping[str, SensorInfo]]],
     people: SolidPeople | None,
 ) -> dict[str, Any]:
-    """Return the numbers for JSON.
+    """Return the numbers for JSON; walls say what they stop, as in `encode.scenery_numbers`.
 
     Args:
         parts: the environment.
@@ -42,7 +59,8 @@ def solids_of(
         people: their bodies; None without people.
     """
     lines = ~parts.sides()
-    walls = np.column_stack([parts.walls, parts.wall_heights])[lines]
+    whom = parts.stops_robot.astype(int) + 2 * parts.stops_crowd
+    walls = np.column_stack([parts.walls, parts.wall_heights, whom])[lines & (whom > 0)]
     solids = zip(parts.solids, parts.solid_heights.tolist(), strict=True)
     return {
         "walls": _short(walls),

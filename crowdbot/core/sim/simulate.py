@@ -13,7 +13,7 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.choice import NO_ROBOT
 from crowdbot.core.planning.given_planner import GivenPlanner, choose_planner
 from crowdbot.core.recording.container.own_file import Written
-from crowdbot.core.recording.reading.images import ImageCollector, ReplayImages
+from crowdbot.core.recording.reading.images import ImageCollector
 from crowdbot.core.recording.reading.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
@@ -32,7 +32,6 @@ from crowdbot.core.runs.make_record import make_record, write_scenario
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.runs.planner_files_kept import keep_planner_files
 from crowdbot.core.runs.read_and_score import (
-    SeenRun,
     read_robots,
     references_by_robot,
     score_robots,
@@ -41,7 +40,7 @@ from crowdbot.core.runs.replayed import images_of_replay, shown_run
 from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.runs.run_record import RunIdentity, RunRecord
-from crowdbot.core.scoring.evaluate import Scores, metric_specs
+from crowdbot.core.scoring.evaluate import metric_specs
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.gc_freeze import gc_frozen
@@ -232,7 +231,15 @@ def _record_run(
             request, identity, people, references, outcome, runs, scores, parts=parts
         )
         shown = [] if images is None else images.images()
-        _write_files(request, builts, folder, seen, shown, scores, record)
+        write_scenario(folder, request.scenario, request.registry)
+        label = request.choice.label
+        write_scores_csv(folder / files.SCORES, scores, request.scenario.id, label, request.seed)
+        if request.options.replay:
+            page = shown_run(
+                request.scenario, seen, {name: built.model for name, built in builts.items()},
+                parts, record, scores, shown, people.agents,
+            )  # fmt: skip
+            write_replay(folder / files.REPLAY, page)
         record = _finish(folder, record, outcome.written)
         files.publish(folder, final)
     keep_planner_files(request.out, request.choice.all_files)
@@ -256,23 +263,6 @@ def _images(
     return images_of_replay(recording) if shows else None
 
 
-def _write_files(
-    request: Request,
-    builts: Mapping[str, BuiltRun],
-    folder: Path,
-    seen: Mapping[str, SeenRun],
-    images: Sequence[ReplayImages],
-    scores: Scores,
-    record: RunRecord,
-) -> None:
-    """Write everything but the record."""
-    scenario = request.scenario
-    write_scenario(folder, scenario, request.registry)
-    write_scores_csv(folder / files.SCORES, scores, scenario.id, request.choice.label, request.seed)
-    if request.options.replay:
-        _write_replay(request, builts, folder, seen, images, scores, record)
-
-
 def _finish(folder: Path, record: RunRecord, written: Written | None) -> RunRecord:
     """Write the record, with sizes and digests of the other files."""
     ending = files.attach_files(folder, record.document())
@@ -281,27 +271,6 @@ def _finish(folder: Path, record: RunRecord, written: Written | None) -> RunReco
     whole = record.model_copy(update=listed)
     whole.write(folder)
     return whole
-
-
-def _write_replay(
-    request: Request,
-    builts: Mapping[str, BuiltRun],
-    folder: Path,
-    seen: Mapping[str, SeenRun],
-    images: Sequence[ReplayImages],
-    scores: Scores,
-    record: RunRecord,
-) -> None:
-    shown = shown_run(
-        request.scenario,
-        seen,
-        {name: built.model for name, built in builts.items()},
-        _parts(request, builts),
-        record,
-        scores,
-        images,
-    )
-    write_replay(folder / files.REPLAY, shown)
 
 
 def _setup(request: Request, prepared: Prepared, folder: Path, identity: RunIdentity) -> RunSetup:

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import Literal
 
+from crowdbot.core.replay.three import three_packed, three_source
 from crowdbot.core.support.html_page import render_page
 
 #: What the person does: drives a robot, or walks.
 Mode = Literal["drive", "walk"]
-_SCRIPTS = (
-    "crowdbot.core.replay:script/element.js", "crowdbot.core.replay:script/decode.js",
-    "crowdbot.core.replay:script/motion.js", "crowdbot.core.replay:script/gaps.js",
-    "crowdbot.core.replay:script/colours.js",
-    "crowdbot.core.replay:script/canvas.js", "crowdbot.core.replay:script/scenery.js",
-    "crowdbot.core.replay:script/people.js", "crowdbot.core.replay:script/robots.js",
-    "crowdbot.core.replay:script/sensors.js",
-    "script/link.js", "script/latency.js", "script/keys.js", "script/pad.js", "script/gamepad.js",
-    "script/hand.js", "script/live.js", "script/plan.js", "script/hud.js", "script/main.js",
+#: Scripts of the replay page that this page shares, and its own.
+_SHARED = (
+    "element", "decode", "motion", "gaps", "colours", "canvas", "scenery", "people", "robots",
+    "sensors", "pointers", "solid_load", "solid_place", "solid_people", "solid_robots",
+    "solid_eye", "solid", "solid_xr",
+)  # fmt: skip
+_OWN = (
+    "link", "latency", "keys", "pad", "gamepad", "hand", "live", "plan", "eyes", "hud", "main",
 )  # fmt: skip
 
 
@@ -24,8 +24,13 @@ def render_person_page(mode: Mode, scenario: str) -> str:
     """Return the page; it connects only to the server that it came from."""
     return render_page(
         __package__,
-        scripts=_SCRIPTS,
+        scripts=[
+            *(f"crowdbot.core.replay:script/{name}.js" for name in _SHARED),
+            *(f"script/{name}.js" for name in _OWN),
+        ],
         connect="'self'",
+        later=(three_source(),),
+        three=three_packed(),
         mode=mode,
         scenario=scenario,
         verb="Drive" if mode == "drive" else "Walk",

@@ -16,10 +16,8 @@ from crowdbot.core.replay.encode import scenery_numbers
 from crowdbot.core.replay.encode_robot import robot_numbers
 from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs.replayed import scenery
-from crowdbot.core.runs.solids import SolidPeople, solids_of
-from crowdbot.core.sensing.appearance_model import heights
+from crowdbot.core.runs.solids import solid_people, solids_of
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -27,19 +25,6 @@ from crowdbot.dsl.scenario.scenario import Scenario
 _BEAMS = 240
 #: Motion is sent in millimetres and milliradians.
 _FINE = 1000.0
-
-
-def solid_people(scenario: Scenario, people: Realisation) -> SolidPeople | None:
-    """Return the bodies of a scenario's people; None without any."""
-    if scenario.crowd is None or not len(people):
-        return None
-    seen = Appearance(
-        height=np.asarray(people.height),
-        leg_length=np.asarray(people.leg_length),
-        phase=np.asarray(people.phase),
-        look=tuple(people.look),
-    )
-    return SolidPeople(height=heights(seen, scenario.crowd.body.height), look=seen.look)
 
 
 class Picture:

@@ -14,6 +14,7 @@ function readAddress() {
   if (span > 0) state.span = clamp(span, 2, widest());
   for (const name of SWITCHES) if (said.has(name)) state[name] = said.get(name) !== "0";
   state.plots = new Set((said.get("plot") ?? "").split(",").filter(Boolean).map(decodeURIComponent));
+  if (VIEWS.includes(said.get("view"))) state.view = said.get("view");
   if (said.has("follow")) state.follow = said.get("follow") === "0" ? "" : said.get("follow");
   const [x, y] = ["x", "y"].map((name) => Number.parseFloat(said.get(name)));
   if (Number.isFinite(x) && Number.isFinite(y)) state.middle = { x, y };
@@ -27,6 +28,7 @@ function addressNow() {
   put("t", state.time.toFixed(2));
   put("span", Math.abs(state.span - SPAN_AT_FIRST) < 1e-9 ? null : state.span.toFixed(2));
   for (const name of SWITCHES) put(name, state[name] === ON_AT_FIRST[name] ? null : String(Number(state[name])));
+  put("view", state.view === "plan" ? null : state.view);
   put("plot", state.plots.size ? [...state.plots].map(encodeURIComponent).join(",") : null);
   const whom = state.follow || "0";
   put("follow", whom === (shown.hasRobot ? "robot" : "0") ? null : whom);

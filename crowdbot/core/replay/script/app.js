@@ -3,7 +3,7 @@
 const SPAN_AT_FIRST = 12; // m across a close-up
 const shown = { runs: [], panels: [], events: [], wide: { canvas: null }, hasRobot: false };
 const state = {
-  time: 0, playing: false, follow: "", middle: { x: 0, y: 0 }, span: SPAN_AT_FIRST, plots: new Set(),
+  time: 0, playing: false, follow: "", middle: { x: 0, y: 0 }, span: SPAN_AT_FIRST, plots: new Set(), view: "plan",
   ...ON_AT_FIRST,
 };
 
@@ -63,6 +63,7 @@ function arrange() {
   offerEvents();
   offerPlots();
   offerCameras();
+  offerViews();
   showState();
 }
 
@@ -99,6 +100,8 @@ async function start() {
   if (!videoType()) byId("clip-format").selectedIndex = 1;
   bindButtons();
   bindPage();
+  bindViews();
+  await chooseView(state.view).catch(({ message }) => say(message));
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   setPlaying(!paused && !still);
   paint();

@@ -34,7 +34,7 @@ function bindButtons() {
     play, back: () => step(-1), forward: () => step(1), follow: followRobot,
     touch: () => nextEvent(["contact"]), in: () => zoom(1 / 1.4), out: () => zoom(1.4),
     link: copyLink, png: savePicture, clip: saveClip,
-    theme: () => { setTheme(isDark() ? "light" : "dark"); keepAddress(); ask(); },
+    theme: () => { setTheme(isDark() ? "light" : "dark"); paintSolids(); keepAddress(); ask(); },
   };
   for (const [id, act] of Object.entries(acts)) byId(id).onclick = act;
   for (const name of SWITCHES) byId(name).onclick = () => toggle(name);
@@ -59,6 +59,7 @@ const KEYS = {
   p: () => byId("thoughts").click(),
   t: () => byId("trails").click(),
   g: () => byId("ghost").click(),
+  v: () => chooseView(VIEWS[(VIEWS.indexOf(state.view) + 1) % VIEWS.length]).catch(({ message }) => say(message)),
   c: () => nextEvent(["contact"]),
   e: () => nextEvent(["contact", "near miss", "arrival"]),
   "+": () => changeSpeed(1),
@@ -83,8 +84,12 @@ function bindPage() {
   pointers(byId("overview"), { at: (x, y) => look(...toWorld(shown.wide, x, y)) });
   const again = new ResizeObserver(() => shown.onPaper || paint()); // before the browser shows the new size
   for (const id of ["overview", "closeups", "timeline", "plot-figures"]) again.observe(byId(id));
-  wantsDark.addEventListener("change", () => { readColours(); ask(); });
+  wantsDark.addEventListener("change", () => { readColours(); paintSolids(); ask(); });
   addEventListener("beforeprint", toPaper);
   addEventListener("afterprint", fromPaper);
-  addEventListener("hashchange", () => { readAddress(); showState(); });
+  addEventListener("hashchange", () => {
+    readAddress();
+    chooseView(state.view).catch(({ message }) => say(message));
+    showState();
+  });
 }

@@ -24,12 +24,13 @@ function paintPicture(canvas, width, ratio) {
     g.drawImage(view.canvas, x, y, w, h);
   };
   part(0, HEAD, width, layout.wide, (view) => paintWide(view, frames));
-  shown.panels.forEach(({ run, view: { x, y } }, i) => {
+  shown.panels.forEach((panel, i) => {
+    const { run, view: { x, y } } = panel;
     const at = [(i % layout.columns) * layout.cell, HEAD + layout.wide + Math.floor(i / layout.columns) * layout.tall];
     part(...at, layout.cell, layout.tall, (view) => {
       Object.assign(view, { x, y });
       aim(view, run, frames[run.index]);
-      paintPanel({ run, view }, frames);
+      paintPanel({ ...panel, view }, frames);
       if (shown.runs.length > 1) paintLabel(view, run);
     });
   });

@@ -81,7 +81,8 @@ function framesNow() {
 function paint() {
   const frames = framesNow();
   for (const { view, run } of shown.panels) aim(view, run, frames[run.index]);
-  paintWide(shown.wide, frames);
+  const skipped = state.playing && state.view !== "plan" && (shown.panels[0].solid?.frames ?? 0) % 4;
+  if (!skipped) paintWide(shown.wide, frames); // in three dimensions, the time is needed elsewhere
   for (const panel of shown.panels) paintPanel(panel, frames);
   if (shown.onPaper) return;
   drawTimeline(byId("timeline"), state.time);
@@ -102,7 +103,17 @@ function paintWide(view, frames) {
   drawView(run, view, frames[0], optionsFor(run, frames, { grid: 1, sonar: false, thoughts: false, trails: false, frames: boxes }));
 }
 
-function paintPanel({ run, view }, frames) {
+function paintPanel(panel, frames) {
+  const { run, view, solid } = panel;
+  if (paintPanelSolid(panel, frames[run.index])) {
+    if (view.size) { // a picture that is saved
+      const { g, width, height } = prepareCanvas(view);
+      const scale = Math.max(width / solid.canvas.width, height / solid.canvas.height);
+      const [w, h] = [scale * solid.canvas.width, scale * solid.canvas.height];
+      g.drawImage(solid.canvas, (width - w) / 2, (height - h) / 2, w, h);
+    }
+    return;
+  }
   const { g, height } = drawView(run, view, frames[run.index], optionsFor(run, frames, {}));
   drawScaleBar(g, view, height);
 }

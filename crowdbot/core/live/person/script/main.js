@@ -4,17 +4,24 @@ function draw(now) {
   pollHand(now);
   const frame = frameNow(now);
   if (frame) {
-    drawPlan(frame);
+    if (!drawEyes(frame)) drawPlan(frame);
     writeReadout(frame);
   }
   writeControls();
-  requestAnimationFrame(draw);
+  if (!eyes.solid?.renderer.xr.isPresenting) requestAnimationFrame(draw);
 }
 
 function start() {
   readColours();
-  byId("theme").onclick = () => setTheme(isDark() ? "light" : "dark");
-  wantsDark.addEventListener("change", readColours);
+  const recolour = () => eyes.solid && paintSolid(eyes.solid);
+  byId("theme").onclick = () => {
+    setTheme(isDark() ? "light" : "dark");
+    recolour();
+  };
+  wantsDark.addEventListener("change", () => {
+    readColours();
+    recolour();
+  });
   byId("begin").onclick = () => {
     byId("pad").focus({ preventScroll: true });
     startRun();
@@ -22,6 +29,7 @@ function start() {
   byId("sit").onclick = () => send("sit");
   byId("pause").onclick = () => send("pause", { on: words.waits !== "paused" });
   bindHand();
+  bindEyes().catch(({ message }) => { byId("banner").textContent = message; });
   connect({
     open: () => { words.connected = true; hand.last = ""; writeWords(); },
     close: () => { words.connected = words.drives = hand.drives = false; writeWords(); },

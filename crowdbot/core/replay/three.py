@@ -1,0 +1,20 @@
+"""three.js in the pages: packed, and unpacked only when a view in three dimensions is asked for."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import resources
+
+from crowdbot.core.replay.pack import deflate
+
+
+@cache
+def three_source() -> str:
+    """Return the part of three.js that the pages use; ``scripts/js/three`` makes it."""
+    return resources.files(__package__).joinpath("three.min.js").read_text(encoding="utf-8")
+
+
+@cache
+def three_packed() -> str:
+    """Return it compressed, for `solid_load.js`."""
+    return deflate(three_source().encode())
