@@ -96,6 +96,8 @@ def files_to_read() -> Iterator[Path]:
     for name in PLACES:
         place = ROOT / name
         for file in sorted(place.rglob("*")) if place.is_dir() else [place]:
+            if file.name.endswith(".min.js"):
+                continue  # of others
             if file.suffix in EVERYWHERE and file.relative_to(ROOT).as_posix() not in EXEMPT:
                 yield file
 

@@ -162,11 +162,13 @@ class CrowdEngine:
     def decides_by_policies_alone(self) -> bool:
         """True if decisions are those of policies, and evasion of robots; nothing else has a part.
 
-        Ways around walls, steering parts, forces of groups and images across a border are others.
+        Ways around walls, steering parts, forces of groups, images across a border and people who
+        are led are others.
         """
         grouped = self._cohesion is not None and len(self._members) > 0
         border = self.world.periodic_boundary is not None
-        return not (self._router is not None or self._steering or grouped or border)
+        others = self._steering or grouped or border or self._led
+        return not (self._router is not None or others)
 
     def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
         """Return (N,) agents that start with a stay: at their first goal, which is a point."""
