@@ -42,10 +42,7 @@ GALLERY = {
 #: Scripts that draw what needs no run.
 WITHOUT_RUNS = ("write_world_pictures.py", "stream_pictures.py")
 #: Metrics that the README shows, each with its line.
-SHOWN = (
-    "safe_efficiency", "contacts_per_km", "push_work", "intrusion", "effect_on_velocity",
-    "relative_jerk", "relative_path_length", "relative_time_to_goal",
-)  # fmt: skip
+SHOWN = ("safe efficiency", "contacts", "burden", "comfort")  # fmt: skip
 #: Browsers that are installed are used before that of playwright.
 BROWSERS = ("chromium", "google-chrome", "chromium-browser", "google-chrome-stable")
 #: Seconds of the run at which the replay is pictured.
@@ -129,7 +126,7 @@ def with_figures(readme: str, shown: str) -> str:
         SystemExit: the run printed no such line, or the README shows none.
     """
     for metric in SHOWN:
-        pattern = re.compile(rf"^ {metric} .*$", re.MULTILINE)
+        pattern = re.compile(rf"^{metric} .*$", re.MULTILINE)
         line = pattern.search(shown)
         if line is None or not pattern.search(readme):
             raise SystemExit(f"{metric} is not shown by the run, or not in the README")

@@ -69,12 +69,12 @@ def test_the_page_leaves_no_public_member_out(name: str) -> None:
 
 def test_figures_of_a_run_are_written_into_the_readme() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    lines = [f" {m} X corrected 0.123{i} +" for i, m in enumerate(make_pictures.SHOWN)]
+    lines = [f"{m} 0.123{i} higher is better" for i, m in enumerate(make_pictures.SHOWN)]
     ending = f"{make_pictures.ID} · dwa · seed 0: arrived after 12.3 s (4.5 times\nreal time)"
     made = make_pictures.with_figures(readme, "\n".join([*lines, ending]))
     assert all(line in made for line in [*lines, ending])
     assert len(made.splitlines()) == len(readme.splitlines())
-    with pytest.raises(SystemExit, match="safe_efficiency is not shown"):
+    with pytest.raises(SystemExit, match="safe efficiency is not shown"):
         make_pictures.with_figures(readme, ending)
 
 
