@@ -47,6 +47,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("draws reveal", "suite"): (".yaml", "draws", "reveal", "{}"),
     ("draws reveal", "secret"): (".json", "draws", "reveal", SHORT, "--secret", "{}"),
     ("draws check", "suite"): (".yaml", "draws", "check", "{}"),
+    ("edit", "spec"): (".yaml", "edit", "{}", "--no-open"),
     ("evaluate", "runs"): (".mcap", "evaluate", "{}"),
     ("evaluate", "robot_alone"): (".mcap", "evaluate", TABLE, "--robot-alone", "{}"),
     ("evaluate", "crowd_alone"): (".mcap", "evaluate", TABLE, "--crowd-alone", "{}"),
