@@ -11,6 +11,7 @@ import globals from "globals";
 const ROOT = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
 const PAGES = [
   "crowdbot/core/replay/page.py", "crowdbot/core/report/page.py", "crowdbot/core/live/person/page.py",
+  "crowdbot/core/editor/page.py",
 ];
 const CONFIG = {
   languageOptions: { ecmaVersion: 2022, sourceType: "script", globals: { ...globals.browser, THREE: "readonly" } },

@@ -8,8 +8,8 @@ function choose(tool) {
   for (const button of $("tools").children) button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
 }
 
-function pick(key) {
-  state.picked = key;
+function pick(chosen) {
+  state.picked = chosen;
   redraw();
   showPicked();
 }
@@ -65,7 +65,7 @@ function nudge(dx, dy, far) {
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-function key(event) {
+function pressed(event) {
   const command = event.ctrlKey || event.metaKey, letter = event.key.toLowerCase();
   if (command && letter === "s") { event.preventDefault(); save(); return; }
   if (["TEXTAREA", "INPUT"].includes(event.target.tagName)) return;
@@ -92,7 +92,7 @@ choose("select");
 $("plan").addEventListener("pointerdown", down);
 $("plan").addEventListener("pointermove", move);
 $("plan").addEventListener("pointerup", up);
-document.addEventListener("keydown", key);
+document.addEventListener("keydown", pressed);
 $("numbers").addEventListener("submit", (event) => event.preventDefault());
 $("text").addEventListener("input", () => { clearTimeout(wait); wait = setTimeout(typed, 400); });
 $("undo").addEventListener("click", () => step(past, future));

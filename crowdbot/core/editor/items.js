@@ -9,13 +9,13 @@ function itemsOf(data) {
   const each = (map, make) => Object.entries(map || {}).forEach(([name, value]) => { if (value) found.push(make(name, value)); });
   each(env.zones, (n, v) => box("zone", n, [...HERE, "environment", "zones", n], v));
   each(env.portals, (n, v) => box("portal", n, [...HERE, "environment", "portals", n], v));
-  each(crowd.goal_areas, (n, v) => isArea(v.area) && area("goal", n, [...HERE, "crowd", "goal_areas", n], ["area"], v));
-  each(crowd.spawns, (n, v) => isArea(v.area) && area("spawn", n, [...HERE, "crowd", "spawns", n], ["area"], v));
+  each(crowd.goal_areas, (n, v) => isArea(v.area) && areaItem("goal", n, [...HERE, "crowd", "goal_areas", n], ["area"], v));
+  each(crowd.spawns, (n, v) => isArea(v.area) && areaItem("spawn", n, [...HERE, "crowd", "spawns", n], ["area"], v));
   for (const [name, stream] of Object.entries(crowd.streams || {})) {
     for (const field of ["origin", "start", "area", "destination"]) {
       if (!isArea(stream[field])) continue;
       const kind = field === "destination" ? "goal" : "spawn";
-      found.push(area(kind, `${name} ${field}`, [...HERE, "crowd", "streams", name], [field], stream));
+      found.push(areaItem(kind, `${name} ${field}`, [...HERE, "crowd", "streams", name], [field], stream));
     }
   }
   each(env.walls, (n, v) => wall(n, [...HERE, "environment", "walls", n], v));
@@ -69,7 +69,7 @@ function box(kind, name, path, v) {
   };
 }
 
-function area(kind, name, path, inner, v) {
+function areaItem(kind, name, path, inner, v) {
   const at = v[inner[0]], [w, h] = at.size, whole = [...path, ...inner];
   const counts = ["count", "density"].filter((n) => typeof v[n] === "number").map((n) => number(n, [...path, n], v[n]));
   return {

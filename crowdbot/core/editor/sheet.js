@@ -43,7 +43,8 @@ function drawItem(g, item, points) {
   if (item.key !== state.picked) return;
   shape.classList.add("picked");
   const size = 0.012 * Math.max(...extent().slice(2));
-  if (points.length > 1) points.forEach((p, k) => {
+  if (points.length < 2) return;
+  points.forEach((p, k) => {
     const handle = drawn("circle", { cx: p[0], cy: p[1], r: size, class: "handle" }, g);
     handle.dataset.key = item.key;
     handle.dataset.point = k;

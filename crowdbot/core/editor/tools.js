@@ -22,7 +22,7 @@ const inside = ([x, y]) => {
 
 // The place opposite on the floor, where people walk to.
 const opposite = ([x, y]) => {
-  const [x0, y0, w] = extent();
+  const [x0, , w] = extent();
   return inside([2 * x0 + w - x, y]);
 };
 
@@ -36,8 +36,8 @@ const peopleOf = (crowd) => (crowd && crowd.policy ? [] : [
 ]);
 // Zones bound where things may be, so one of them has to be the whole floor.
 const wholeFloor = ({ area, zones }) => {
-  const inside = (z) => z.x[0] <= area.x[0] && z.x[1] >= area.x[1] && z.y[0] <= area.y[0] && z.y[1] >= area.y[1];
-  if (!area || !Array.isArray(area.x) || Object.values(zones || {}).some(inside)) return [];
+  const covers = (z) => z.x[0] <= area.x[0] && z.x[1] >= area.x[1] && z.y[0] <= area.y[0] && z.y[1] >= area.y[1];
+  if (!area || !Array.isArray(area.x) || Object.values(zones || {}).some(covers)) return [];
   return [{ path: [...HERE, "environment", "zones", free(zones, "everywhere")], value: { x: area.x, y: area.y } }];
 };
 const CROWDED = ["person", "spawn", "stream", "group"];

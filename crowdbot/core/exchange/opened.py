@@ -10,10 +10,13 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.source import source_of
 from crowdbot.core.exchange.xml_items import parse_xml
-from crowdbot.dsl.text.diagnostics import Mark, Source
+from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
+from crowdbot.errors import SpecError
 
 _DATA = (".json", ".yaml", ".yml", ".scenario")
 _XML = (".xml", ".svg")
+#: Most characters of JSON and YAML.
+_LARGEST_DATA = 8_000_000
 
 
 @dataclass(slots=True)
@@ -61,5 +64,8 @@ def open_file_of_others(path: Path, report: Report) -> Opened:
             report.odd(mark, note)
         return Opened(path, source, text, "xml", roots)
     if start == "{" or ending in _DATA:
+        if len(text) > _LARGEST_DATA:
+            message = f"is larger than {_LARGEST_DATA // 10**6} MB, which JSON and YAML may have"
+            raise SpecError([Diagnostic("E401", message, Mark(source))])
         return Opened(path, source, text, "data", [parse_data(text, source)])
     return Opened(path, source, text, "text")

@@ -18,9 +18,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: Deepest nesting, and most elements and attributes of one file.
-MOST_DEEP, MOST_ITEMS = 64, 1_000_000
+MOST_DEEP, MOST_ITEMS = 64, 400_000
 #: Most root elements of one file; expat's number of the error that a further one is.
 _MOST_ROOTS, _FURTHER_ROOT = 8, 9
+#: Characters after the beginning of an element within which its attributes are looked for.
+_NEAR = 4000
 
 
 def read_xml(path: Path) -> tuple[list[Item], list[tuple[Mark, str]]]:
@@ -134,7 +136,7 @@ class _Reader:
         """Return the position of an attribute on its element's line, or the element's own."""
         lines = self._source.lines
         line = lines[mark.line] if mark.line < len(lines) else ""
-        at = line.find(f" {name}=", mark.column)
+        at = line.find(f" {name}=", mark.column, mark.column + _NEAR)
         return mark if at < 0 else Mark(mark.source, mark.line, at + 1, len(name))
 
 
@@ -145,7 +147,7 @@ def _bare(name: str) -> str:
 
 def _without_comments(text: str, source: Source) -> tuple[str, list[tuple[Mark, str]]]:
     """Blank out comments that hold ``--``; positions stay as they are."""
-    odd, parts, at = [], [], 0
+    odd, parts, at, line, counted = [], [], 0, 0, 0
     while (start := text.find("<!--", at)) >= 0 and (end := text.find("-->", start + 4)) >= 0:
         inside = text[start + 4 : end]
         cdata = text.rfind("<![CDATA[", at, start)
@@ -153,7 +155,7 @@ def _without_comments(text: str, source: Source) -> tuple[str, list[tuple[Mark, 
             end = max(text.find("]]>", start), start + 1)
             parts.append(text[at:end])
         elif "--" in inside or inside.endswith("-"):
-            line = text.count("\n", 0, start)
+            line, counted = line + text.count("\n", counted, start), start
             mark = Mark(source, line, start - text.rfind("\n", 0, start) - 1)
             odd.append((mark, "a comment with '--' in it, which XML does not allow"))
             end += 3

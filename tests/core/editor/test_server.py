@@ -111,7 +111,11 @@ def test_messages_are_those_of_the_language(tmp_path: Path) -> None:
     desk = Desk(tmp_path / "new.yaml", discover())
     found = desk.check(NEW.format(name="new").replace("kind: floor", "kind: floorr"))
     (one,) = found["errors"]
-    assert (one["line"], one["code"], one["hint"]) == (6, "E120", "did you mean 'floor'?")
+    assert (one["line"], one["code"], one["hint"]) == (
+        6,
+        "E120",
+        "did you mean 'floor' or 'floor_plan'?",
+    )
     assert found["data"]["id"] == "new"  # what can be drawn stays
 
 

@@ -52,6 +52,23 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
         imported(file)
 
 
+def test_many_odd_comments_on_one_line_take_linear_time(tmp_path: Path) -> None:
+    file = tmp_path / "long.xml"
+    file.write_text(f"<Agents>{'<!-- -- -->' * 30_000}<Agent\trad='1'/></Agents>")
+    with pytest.raises(SpecError, match="an Agent without pos"):
+        imported(file)
+
+
+def test_orders_of_too_many_trials_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text("<Trial/>")
+    order = tmp_path / "FileOrder.csv"
+    order.write_text("a.xml\n" * 3000)
+    assert imported(order).ids == ["a"]
+    order.write_text("missing.xml\n")
+    with pytest.raises(SpecError, match=r"FileOrder.csv:1:1: .* not beside"):
+        imported(order)
+
+
 def test_a_file_that_is_named_is_looked_for_beside_the_one_that_names_it(tmp_path: Path) -> None:
     file = tmp_path / "world.xml"
     for name in ("../../etc/passwd", "/etc/passwd"):

@@ -107,16 +107,16 @@ def _agent(name: Item, parameters: Item, policy: str, scene: Scene, report: Repo
     for extra in ("z",):
         if (height := pose.find(extra)) is not None:
             report.left_out(height, MORE.rows[3].note)
-    row["goals"] = _goals(item, report) or [[row["x"], row["y"]]]
+    row["goals"] = _goals(item, parameters, report) or [[row["x"], row["y"]]]
     _behave(item, row, report)
     scene.agent(row, item.mark)
 
 
-def _goals(item: Item, report: Report) -> list[list[float]]:
-    listed = item.find("goals")
+def _goals(item: Item, parameters: Item, report: Report) -> list[list[float]]:
+    listed, shared = item.find("goals"), parameters.find("global_goals")
     found = []
     for name in listed.every() if listed else []:
-        goal = item.need(name.text())
+        goal = (shared.find(name.text()) if shared else None) or item.need(name.text())
         found.append([goal.need("x").number(), goal.need("y").number()])
         report.carried(name, "crowd.agents.goals")
         report.carried(goal, "crowd.agents.goals")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from crowdbot.core.exchange.formats import Context, Format
 from crowdbot.core.exchange.item import Item
@@ -50,10 +51,11 @@ _LEFT_OUT = {"zones": 11, "transitions": 12, "waypoint_routing": 12, "routing": 
 
 @dataclass(slots=True)
 class _Places:
-    """Exits and checkpoints by their names."""
+    """Exits and checkpoints by their names, and the walkable area as a shape."""
 
     exits: dict[str, Data] = field(default_factory=dict)
     checkpoints: dict[str, Data] = field(default_factory=dict)
+    floor: Any = None
 
     def nearest_exit(self, area: Data) -> str:
         x, y = middle(area)
@@ -73,7 +75,7 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return [_scene(file, texts, context.report) for file in decks]
 
 
-def _geometry(text: str, mark: Mark, scene: Scene) -> None:
+def _geometry(text: str, mark: Mark, scene: Scene) -> Any:
     from shapely import GEOSException, from_wkt  # type: ignore[import-untyped,unused-ignore]
 
     try:
@@ -85,6 +87,7 @@ def _geometry(text: str, mark: Mark, scene: Scene) -> None:
         raise SpecError([Diagnostic("E402", "the walkable area has no area", mark)])
     scene.environment = {"kind": "floor_plan", "wkt": " ".join(text.split())}
     scene.origins["environment",] = mark
+    return shape
 
 
 def _bare(file: Opened, report: Report) -> Scene:
@@ -113,12 +116,12 @@ def _bare(file: Opened, report: Report) -> Scene:
 def _scene(file: Opened, texts: Sequence[Opened], report: Report) -> Scene:
     root, scene = file.roots[0], Scene(id_of(file.path.stem))
     scene.notes.append(f"Imported from JuPedSim: {file.path.name}.")
-    _floor(root, file, texts, scene, report)
+    floor = _floor(root, file, texts, scene, report)
     _model(root, scene, report)
-    places = _Places()
+    places = _Places(floor=floor)
     for name, into in (("exits", places.exits), ("checkpoints", places.checkpoints)):
         for item in _entries(root, name):
-            into[item.name], how = rectangle_in(pairs(item.need("coordinates")))
+            into[item.name], how = rectangle_in(pairs(item.need("coordinates")), floor)
             row = SCENARIO.rows[1 if name == "exits" else 7]
             report.interpreted(item, row.ours, how or row.note)
             _rest(item, "exits and checkpoints have no such parameter", report)
@@ -148,25 +151,23 @@ def _rest(item: Item, note: str, report: Report) -> None:
             report.left_out(part, note)
 
 
-def _floor(root: Item, file: Opened, texts: Sequence[Opened], scene: Scene, report: Report) -> None:
+def _floor(root: Item, file: Opened, texts: Sequence[Opened], scene: Scene, report: Report) -> Any:
     inside = root.find("walkable_area_wkt")
     if inside is not None:
-        _geometry(inside.text(), inside.mark, scene)
         report.carried(inside, "environment.wkt")
-        return
+        return _geometry(inside.text(), inside.mark, scene)
     beside = [t for t in texts if t.path.stem == file.path.stem] or list(texts)
     if beside:
-        _geometry(beside[0].text, beside[0].top, scene)
         report.carried(Item("WKT", beside[0].top), "environment.wkt")
-        return
+        return _geometry(beside[0].text, beside[0].top, scene)
     from crowdbot.core.exchange.source import source_of
 
     found = sorted(file.path.parent.glob("*.wkt"))
     if len(found) != 1:
         root.refuse("no walkable area: give its WKT file, too, or put one beside this file")
     source, text = source_of(found[0])
-    _geometry(text, Mark(source), scene)
     report.carried(Item("WKT", Mark(source)), "environment.wkt")
+    return _geometry(text, Mark(source), scene)
 
 
 def _model(root: Item, scene: Scene, report: Report) -> None:
@@ -211,7 +212,7 @@ def _journeys(root: Item, report: Report) -> dict[str, list[str]]:
 def _distribution(
     item: Item, places: _Places, journeys: dict[str, list[str]], scene: Scene, report: Report
 ) -> None:
-    area, how = rectangle_in(pairs(item.need("coordinates")))
+    area, how = rectangle_in(pairs(item.need("coordinates")), places.floor)
     report.interpreted(item, "crowd.streams", how or "people start within it")
     parameters = item.find("parameters") or item
     count = _count(parameters, area)

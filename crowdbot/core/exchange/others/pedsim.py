@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from crowdbot.core.exchange.formats import Context, Format
@@ -55,6 +56,9 @@ def _scene(file: Opened, root: Item, report: Report) -> Scene:
     scene.notes.append(f"Imported from pedsim_ros: {file.path.name}.")
     for item in root.every("obstacle"):
         ends = [[item.need(f"@x{k}").number(), item.need(f"@y{k}").number()] for k in (1, 2)]
+        if math.dist(*ends) < 1e-6:
+            report.left_out(item, "it has no length")
+            continue
         add_wall(scene, item, ends[0], ends[1], _THICK)
         report.interpreted(item, "environment.walls", SCENARIO.rows[0].note)
     for item in root.every("attraction"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.scene import Data
@@ -10,18 +11,28 @@ from crowdbot.core.exchange.scene import Data
 Corners = list[list[float]]
 
 
-def rectangle_in(corners: Sequence[Sequence[float]]) -> tuple[Data, str]:
+def rectangle_in(corners: Sequence[Sequence[float]], floor: Any = None) -> tuple[Data, str]:
     """Return a rectangle along the axes within an outline, and how it was found.
 
     The outline's own bounds, if it is a rectangle along the axes; else the square in the largest
     circle that fits.
+
+    Args:
+        corners: the outline, m.
+        floor: polygon of shapely that the rectangle has to lie in, where the two overlap.
     """
     from shapely import Polygon, maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
 
-    xs, ys = [c[0] for c in corners], [c[1] for c in corners]
-    x0, x1, y0, y1 = min(xs), max(xs), min(ys), max(ys)
     polygon = Polygon([(c[0], c[1]) for c in corners]).buffer(0)
-    if polygon.is_empty or polygon.area >= 0.999 * (x1 - x0) * (y1 - y0):
+    if floor is not None:
+        common = polygon.intersection(floor)
+        parts = [part for part in getattr(common, "geoms", [common]) if part.area > 1e-6]
+        polygon = max(parts, key=lambda part: part.area, default=polygon)
+    if polygon.is_empty:
+        xs, ys = [c[0] for c in corners], [c[1] for c in corners]
+        return box(min(xs), max(xs), min(ys), max(ys)), ""
+    x0, y0, x1, y1 = polygon.bounds
+    if polygon.area >= 0.999 * (x1 - x0) * (y1 - y0):
         return box(x0, x1, y0, y1), ""
     circle = maximum_inscribed_circle(polygon, tolerance=0.01)
     (x, y), half = circle.coords[0], 0.7071 * circle.length

@@ -270,9 +270,9 @@ def _interval(item: Item, report: Report) -> tuple[float, bool]:
     """Return the mean time between spawns, s, and True if it is regular."""
     kind = item.find("interSpawnTimeDistribution") or item.find("distribution")
     given = item.find("distributionParameters")
-    numbers = [part for part in (given.walk() if given else ()) if part.value is not None]
-    values = [part.number(1e-6) for part in numbers]
-    text = kind.text().lower() if kind and not kind.children else "constant"
+    parts = [part for whole in (kind, given) if whole for part in whole.walk()]
+    values = [part.number(1e-6) for part in parts if isinstance(part.value, int | float)]
+    text = " ".join(part.text().lower() for part in parts if isinstance(part.value, str))
     for part in filter(None, (kind, given)):
         note = "arrivals with the same mean time between them, single persons"
         report.interpreted(part, "crowd.streams.arrivals", note)

@@ -26,6 +26,10 @@ CONFIG = Table(
 )
 
 
+#: Most trials of one import.
+_MOST = 500
+
+
 @dataclass(slots=True)
 class Trials:
     """Trial files, each once, and words in paths."""
@@ -35,8 +39,12 @@ class Trials:
 
     def add(self, file: Opened) -> None:
         """Add a trial unless it is there already."""
-        if file.path.resolve() not in {f.path.resolve() for f in self.files}:
+        if not self.has(file.path):
             self.files.append(file)
+
+    def has(self, path: Path) -> bool:
+        """Return True if a file is there."""
+        return path.resolve() in {file.path.resolve() for file in self.files}
 
 
 def find_trials(files: Sequence[Opened], context: Context) -> Trials:
@@ -94,10 +102,14 @@ def _order(file: Opened, found: Trials, report: Report) -> None:
             continue
         item = Item("FileOrder", Mark(file.source, number, 0, max(1, len(line))), line)
         path: Path = companion(item, file.path, _replaced(line, found))
+        report.carried(item, "suite.matrix.trial")
+        if found.has(path):
+            continue
+        if len(found.files) == _MOST:
+            item.refuse(f"more than {_MOST} trials")
         trial = open_file_of_others(path, report)
         if "Trial" not in trial.tags:
             item.refuse(f"{path.name} is not a trial")
-        report.carried(item, "suite.matrix.trial")
         found.add(trial)
 
 

@@ -32,6 +32,7 @@ TRIAL = Table(
     (
         Row("screenRecorder", "", "crowdbot view and replay make pictures and films of a run"),
         Row("config", "", "crowdbot has its own settings"),
+        Row("spawners", "", "they are the generator's: the people that it placed are here"),
     ),
 )
 
