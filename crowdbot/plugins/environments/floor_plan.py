@@ -1,4 +1,4 @@
-"""Floor plans from files: GeoJSON, JuPedSim's WKT, and ROS occupancy grids."""
+"""Floor plans from files: GeoJSON, JuPedSim's WKT, DXF, and ROS occupancy grids."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class FloorPlanSpec(FloorPlanFields):
 FLOOR_PLAN = Component(
     spec=FloorPlanSpec,
     build="crowdbot.plugins.environments.place_build:build",
-    summary="floor plan from GeoJSON, WKT or an occupancy grid of ROS",
+    summary="floor plan from GeoJSON, WKT, DXF or an occupancy grid of ROS",
     examples=(
         {
             "wkt": "POLYGON ((0 0, 12 0, 12 4, 8 4, 8 9, 0 9, 0 0), "

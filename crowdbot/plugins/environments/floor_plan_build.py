@@ -17,7 +17,11 @@ from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_grid_build import read_grid
 from crowdbot.plugins.environments.floor_plan_solids_build import around_floor, as_solid
 from crowdbot.plugins.environments.floor_plan_units_build import check_place
-from crowdbot.plugins.environments.floor_plan_vector_build import ImportedPlan, read_vector
+from crowdbot.plugins.environments.floor_plan_vector_build import (
+    ImportedPlan,
+    read_vector,
+    sorted_plan,
+)
 
 _LOG = logging.getLogger(__name__)
 #: Largest file of a vector plan, bytes.
@@ -89,6 +93,12 @@ def _read(
     if spec.read_as == "ros_map":
         assert file is not None  # the document's validation checked this
         return ImportedPlan(walkable=read_grid(spec, file, image))
+    if spec.read_as == "dxf":
+        from crowdbot.plugins.environments.floor_plan_dxf_build import read_dxf
+
+        assert file is not None
+        found, spec = read_dxf(spec, file, _LARGEST, told_unit)
+        return sorted_plan(found, spec, name, "", told_unit)
     text = spec.wkt or "" if file is None else input_text(file, _LARGEST, name)
     return read_vector(spec, text.removeprefix("\ufeff"), name, told_unit)
 

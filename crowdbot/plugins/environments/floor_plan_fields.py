@@ -17,10 +17,12 @@ from crowdbot.plugin import (
     Quantity,
 )
 
-Format = Literal["auto", "geojson", "wkt", "ros_map"]
+Format = Literal["auto", "geojson", "wkt", "dxf", "ros_map"]
+#: Meaning of a layer of DXF.
+Layer = Literal["floor", "walls", "obstacles", "ignore"]
 _SUFFIXES: dict[str, Format] = {
     ".geojson": "geojson", ".json": "geojson", ".wkt": "wkt", ".txt": "wkt",
-    ".yaml": "ros_map", ".yml": "ros_map",
+    ".yaml": "ros_map", ".yml": "ros_map", ".dxf": "dxf",
 }  # fmt: skip
 
 
@@ -36,7 +38,8 @@ class FloorPlanFields(EnvironmentSpec):
     kind: Literal["floor_plan"] = "floor_plan"
     file: Asset | None = Field(
         default=None,
-        description="GeoJSON, WKT, or the `map.yaml` of an occupancy grid of ROS; this or `wkt`.",
+        description="GeoJSON, WKT, DXF, or the `map.yaml` of an occupancy grid of ROS; this or "
+        "`wkt`.",
     )
     image: Asset | None = Field(
         default=None,
@@ -54,7 +57,8 @@ class FloorPlanFields(EnvironmentSpec):
     )
     unit: Literal["m", "cm", "mm", "ft", "in", "deg"] = Field(
         default="m",
-        description="Of the numbers in GeoJSON and WKT; `deg`: longitude and latitude.",
+        description="Of the numbers in GeoJSON, WKT and DXF; `deg`: longitude and latitude. DXF "
+        "without it: what the drawing declares.",
     )
     origin: tuple[_FarLength, _FarLength] = Field(
         default=(0.0, 0.0),
@@ -64,6 +68,13 @@ class FloorPlanFields(EnvironmentSpec):
     )
     rotation: Angle = Field(
         default=0.0, description="The plan is turned about its (0, 0) by this angle, rad."
+    )
+    layers: dict[str, Layer] = Field(
+        default={},
+        exclude_if=lambda layers: not layers,
+        description="Meaning of the layers of DXF by patterns of their names, the first that fits; "
+        "layers that fit none are left out. Without it all layers are read: closed outlines as "
+        "`polygons` says, lines as walls. Outside the hash while it is empty.",
     )
     unknown: Literal["solid", "free"] = Field(
         default="solid", description="What cells of a grid are that are neither free nor occupied."
@@ -92,6 +103,8 @@ class FloorPlanFields(EnvironmentSpec):
             raise ValueError("write one of 'file' and 'wkt'")
         if self.wkt is not None and self.format not in ("auto", "wkt"):
             raise ValueError(f"format '{self.format}' belongs to a file")
+        if self.layers and (self.file is None or self.read_as != "dxf"):
+            raise ValueError("'layers' belongs to DXF")
         if self.file is not None and self.format == "auto" and self._suffix not in _SUFFIXES:
             known = ", ".join(sorted(_SUFFIXES))
             raise ValueError(f"the name of file ends in none of {known}; write its 'format'")

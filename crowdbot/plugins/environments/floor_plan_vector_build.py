@@ -69,6 +69,27 @@ def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) ->
     else:
         content = _from_json(text, name)
         found, crs = list(_features(content, name, aside)), declared_crs(content)
+    return sorted_plan(found, spec, name, crs, told_unit, aside)
+
+
+def sorted_plan(
+    found: list[_Found], spec: FloorPlanFields, name: str, crs: str, told_unit: bool,
+    aside: Counter[str] | None = None,
+) -> ImportedPlan:  # fmt: skip
+    """Return the floor and the solids among geometries.
+
+    Args:
+        found: geometries with their properties.
+        spec: says how numbers become metres, and which storey is read.
+        name: the file's name, for messages.
+        crs: reference system that the file declares, or "".
+        told_unit: True if the document gives the unit.
+        aside: what was left out already.
+
+    Raises:
+        InputError: it is not a plan, or one of several storeys.
+    """
+    aside = Counter() if aside is None else aside
     if all(shape.is_empty for shape, _ in found):
         raise InputError(f"{name}: the plan is empty")
     found = [one for one in found if _is_of_place(*one, name, aside)]

@@ -188,7 +188,7 @@ def test_too_many_corners(tmp_path: Path) -> None:
         ({}, "write one of 'file' and 'wkt'"),
         ({"file": "x.geojson", "wkt": L_SHAPE}, "write one of"),
         ({"wkt": L_SHAPE, "format": "ros_map"}, "belongs to a file"),
-        ({"file": "x.dxf"}, "write its 'format'"),
+        ({"file": "x.dwg"}, "write its 'format'"),
     ],
 )
 def test_words_that_make_no_sense(fields: dict[str, Any], message: str) -> None:
