@@ -45,7 +45,7 @@ def read_dxf(
         told_unit: True if the document gives the unit.
 
     Raises:
-        InputError: it is no drawing, ezdxf is not installed, or a named layer is not there.
+        InputError: it is not a drawing, ezdxf is not installed, or a named layer is not there.
     """
     drawing = _opened(file, most)
     spec = _with_unit(drawing, spec, file.name, told_unit)
