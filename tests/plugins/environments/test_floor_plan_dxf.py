@@ -117,7 +117,7 @@ class TestRead:
         assert "1 on layer 'notes', which 'layers' does not name" in caplog.text
 
     def test_a_layer_that_is_not_there_is_an_error(self, tmp_path: Path) -> None:
-        with pytest.raises(InputError, match=r"no layer is called 'FLOORS'; did you mean 'FLOOR'\?"):
+        with pytest.raises(InputError, match=r"called 'FLOORS'; did you mean 'FLOOR'\?"):
             plan(drawing(tmp_path, HALL), layers={"FLOORS": "floor"})
 
     @pytest.mark.parametrize(("code", "scale"), [(4, 1000.0), (5, 100.0), (6, 1.0), (0, 1.0)])
