@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
 from crowdbot.errors import InputError
 
 #: Range of seconds of a stamp in ROS 2.
@@ -28,6 +29,26 @@ def twist(message: Any) -> tuple[Command, int | None]:
         raise InputError("a command is a geometry_msgs/Twist or a geometry_msgs/TwistStamped")
     linear, angular = message.get("linear", {}), message.get("angular", {})
     return Command(_number(linear, "x"), _number(angular, "z"), _number(linear, "y")), stamp
+
+
+def joy(message: Any, limits: RobotLimits) -> Command:
+    """Return a sensor_msgs/Joy as a command: axis 1 is ahead, axis 0 to the left, as of sticks.
+
+    Raises:
+        InputError: it is none, or has fewer axes.
+    """
+    axes = message.get("axes") if isinstance(message, Mapping) else None
+    if not isinstance(axes, Sequence) or isinstance(axes, str) or len(axes) < 2:
+        raise InputError("a joystick is a sensor_msgs/Joy with at least two axes")
+    left, ahead = (_number({"axis": value}, "axis") for value in axes[:2])
+    return stick_command(ahead, left, limits)
+
+
+def stick_command(ahead: float, left: float, limits: RobotLimits) -> Command:
+    """Return the velocities that a stick asks for, deflected from -1 to 1; full is the limit."""
+    ahead, left = min(1.0, max(-1.0, ahead)), min(1.0, max(-1.0, left))
+    v = ahead * limits.v_max if ahead > 0.0 else -ahead * limits.v_min
+    return Command(v + 0.0, left * limits.w_max)
 
 
 def time_ns(message: Any) -> int | None:

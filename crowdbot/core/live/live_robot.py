@@ -6,6 +6,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 
 from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
 
 
 @dataclass
@@ -25,6 +26,7 @@ class LiveRobot:
         pose, twist: x, y, yaw and v, w, vy by odometry.
         driver: the client that drives it.
         asked: the step that waits for its command.
+        limits: of its commands, once they are known.
         latest, fresh: the latest command; True if it has not been read.
     """
 
@@ -35,3 +37,4 @@ class LiveRobot:
     asked: PendingStep | None = None
     latest: Command | None = None
     fresh: bool = False
+    limits: RobotLimits | None = None

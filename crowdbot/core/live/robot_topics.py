@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 
 from crowdbot.core.recording.topics import Topic
 
-STATUS, COMMAND = "/crowdbot/status", str(Topic.COMMAND)
+STATUS, COMMAND, JOY = "/crowdbot/status", str(Topic.COMMAND), "/joy"
 #: Topics that all robots share, as in recordings.
 _SHARED = frozenset(
     {STATUS, Topic.TF, Topic.TF_STATIC, Topic.CLOCK, Topic.MAP, Topic.WALLS}
@@ -26,3 +26,8 @@ def robot_topic(topic: str, namespace: str) -> str:
 def command_topics(names: Iterable[str]) -> dict[str, str]:
     """Return the topics of commands: topic -> namespace of the robot."""
     return {robot_topic(COMMAND, name): name for name in names}
+
+
+def joy_topics(names: Iterable[str]) -> dict[str, str]:
+    """Return the topics of joysticks: topic -> namespace of the robot."""
+    return {robot_topic(JOY, name): name for name in names}

@@ -126,6 +126,8 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     builts = preflight(request)
     scenes |= _scenes(request, builts)
     session.begin(scenario.id, session.seed, robots)
+    for name, space in namespaces(builts).items():
+        session.robots[space].limits = builts[name].model.limits
     state: State = "ended"
     try:
         prepared = prepare(scenario, request.registry, references=request.options.references)

@@ -10,11 +10,12 @@ import threading
 import time
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
+from crowdbot.core.live.commands import joy
 from crowdbot.core.live.counts import LiveCounts
 from crowdbot.core.live.live_robot import LiveRobot, PendingStep
-from crowdbot.core.live.robot_topics import command_topics, namespaces
+from crowdbot.core.live.robot_topics import command_topics, joy_topics, namespaces
 from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.motion import Command
 
@@ -170,6 +171,23 @@ class LiveSession:
     def commands(self) -> dict[str, str]:
         """Return the topics of commands: topic -> namespace of the robot."""
         return command_topics(self.robots)
+
+    @property
+    def joysticks(self) -> dict[str, str]:
+        """Return the topics of joysticks: topic -> namespace of the robot."""
+        return joy_topics(self.robots)
+
+    def joystick(self, who: Hashable, message: Any, robot: str) -> str:
+        """Take a client's sensor_msgs/Joy; return why it is refused, empty if accepted.
+
+        Raises:
+            InputError: it is none.
+        """
+        limits = self.robots[robot].limits
+        if limits is None:
+            self.refuse()
+            return "the run has not begun, so the robot's limits are not known"
+        return self.command(who, joy(message, limits), None, robot)
 
     def drive(self, who: Hashable, robot: str = "") -> bool:
         """Return True if this client may drive a robot; the first one does until it leaves."""

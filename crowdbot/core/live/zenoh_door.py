@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
@@ -34,6 +35,7 @@ from crowdbot.errors import InputError
 
 CLOCK = "/clock"
 TWIST, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+JOY = "sensor_msgs/msg/Joy"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 _NODE = "crowdbot"
 
@@ -105,6 +107,8 @@ class ZenohDoor:
         for name, robot in session.commands.items():
             self._hear(name, TWIST, partial(self._on_twist, robot))
             self._hear(name, STAMPED, partial(self._on_stamped, robot))
+        for name, robot in session.joysticks.items():
+            self._hear(name, JOY, partial(self._on_joy, robot))
         if external_clock:
             self._hear(CLOCK, _CLOCK_TYPE, self._on_clock)
             fits = drivers_of(network.domain, CLOCK)
@@ -113,7 +117,7 @@ class ZenohDoor:
         for name, service in services.items():
             topic = self._servers.serve(name, service, network.domain, network.distro)
             self._say_there(topic, SERVER)
-        for name, robot in session.commands.items():
+        for name, robot in {**session.commands, **session.joysticks}.items():
             fits, came = drivers_of(network.domain, name), partial(self._on_driver, robot)
             self._kept.append(live.declare_subscriber(fits, came, history=True))
 
@@ -220,6 +224,13 @@ class ZenohDoor:
         if message is not None:
             stamp = message.header.stamp
             self._command(robot, sample, message.twist, stamp.sec * 10**9 + stamp.nanosec)
+
+    def _on_joy(self, robot: str, sample: Any) -> None:
+        message = _read(sample, JOY)
+        if message is None or not self._drivers[robot].may(sample):
+            return
+        with suppress(InputError):
+            self._session.joystick(self, {"axes": message.axes.tolist()}, robot)
 
     def _command(self, robot: str, sample: Any, twist: Any, stamp: int | None) -> None:
         if not self._drivers[robot].may(sample):

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from crowdbot.core.live.commands import stick_command
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.errors import InputError
@@ -50,8 +51,8 @@ def stick_of(message: Mapping[str, Any]) -> Stick:
 
 def command_of(stick: Stick, limits: RobotLimits) -> Command:
     """Return the velocities that a stick asks a robot for: full deflection is its limit."""
-    v = stick.ahead * limits.v_max if stick.ahead > 0.0 else -stick.ahead * limits.v_min
-    return Command(v + 0.0, stick.left * limits.w_max, stick.aside * limits.vy_max)
+    v, w, _ = stick_command(stick.ahead, stick.left, limits)
+    return Command(v, w, stick.aside * limits.vy_max)
 
 
 def _deflection(message: Mapping[str, Any], name: str) -> float:

@@ -164,6 +164,7 @@ def drive(request: Request, builts: Mapping[str, BuiltRun], seat: Seat, robot: s
     # A robot alone would need the person to drive once more.
     prepared = replace(prepared, alone=None)
     session.begin(request.scenario.id, request.seed, (robot,))
+    session.robots[""].limits = builts[robot].model.limits
     run = make_run(replace(request, stop=lambda: session.must_stop), prepared, builts=builts)
     return with_live_part(run, live_part(seat.log, session.counts.refused))
 

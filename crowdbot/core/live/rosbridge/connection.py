@@ -131,16 +131,21 @@ class Connection:
         topic = _topic(message)
         self._room(self._advertised)
         self._advertised[topic] = self._advertised.get(topic, 0) + 1
-        robot = self._hub.session.commands.get(topic)
+        robot = self._driven_by(topic)
         if robot is not None and not self._hub.session.drive(self, robot):
             self._tell("warning", "another client drives; its commands count until it leaves")
 
     def _unadvertise(self, message: Mapping[str, Any]) -> None:
         topic = _topic(message)
         self._advertised.pop(topic, None)
-        robot = self._hub.session.commands.get(topic)
+        robot = self._driven_by(topic)
         if robot is not None:
             self._hub.session.leave(self, robot)
+
+    def _driven_by(self, topic: str) -> str | None:
+        """Return the robot that a topic drives, by namespace."""
+        session = self._hub.session
+        return session.commands.get(topic, session.joysticks.get(topic))
 
     def _publish(self, message: Mapping[str, Any]) -> None:
         topic = _topic(message)
@@ -148,6 +153,10 @@ class Connection:
         if robot is not None:
             command, stamp = twist(message.get("msg"))
             why = self._hub.session.command(self, command, stamp, robot)
+            if why:
+                self._tell("warning", why, message.get("id"))
+        elif (robot := self._hub.session.joysticks.get(topic)) is not None:
+            why = self._hub.session.joystick(self, message.get("msg"), robot)
             if why:
                 self._tell("warning", why, message.get("id"))
         elif topic == CLOCK and self._hub.external_clock:

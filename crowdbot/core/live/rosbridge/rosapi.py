@@ -13,7 +13,7 @@ from crowdbot.core.recording import messages as ros
 from crowdbot.errors import InputError
 
 NODE = "/crowdbot"
-TWIST = "geometry_msgs/msg/Twist"
+TWIST, JOY = "geometry_msgs/msg/Twist", "sensor_msgs/msg/Joy"
 
 
 @dataclass

@@ -21,7 +21,7 @@ from crowdbot.core.live.rosbridge.connection import Connection
 from crowdbot.core.live.rosbridge.feed import Wishes
 from crowdbot.core.live.rosbridge.frames import Frame, encoded
 from crowdbot.core.live.rosbridge.pace import Pace
-from crowdbot.core.live.rosbridge.rosapi import TWIST, RosapiWorld, rosapi
+from crowdbot.core.live.rosbridge.rosapi import JOY, TWIST, RosapiWorld, rosapi
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.errors import InputError
@@ -85,6 +85,7 @@ class RosbridgeServer:
         self.pace = Pace(_SPECTATORS, _SPECTATORS)
         self._world = RosapiWorld(ros=ros, services=dict(services))
         self._world.taken = dict.fromkeys(session.commands, TWIST)
+        self._world.taken = {**self._world.taken, **dict.fromkeys(session.joysticks, JOY)}
         self._world.services |= rosapi(self._world)
         self._world.now = lambda: self._now
         if external_clock:
