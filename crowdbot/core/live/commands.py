@@ -35,7 +35,7 @@ def joy(message: Any, limits: RobotLimits) -> Command:
     """Return a sensor_msgs/Joy as a command: axis 1 is ahead, axis 0 to the left, as of sticks.
 
     Raises:
-        InputError: it is none, or has fewer axes.
+        InputError: it is not one, or has fewer axes.
     """
     axes = message.get("axes") if isinstance(message, Mapping) else None
     if not isinstance(axes, Sequence) or isinstance(axes, str) or len(axes) < 2:

@@ -181,7 +181,7 @@ class LiveSession:
         """Take a client's sensor_msgs/Joy; return why it is refused, empty if accepted.
 
         Raises:
-            InputError: it is none.
+            InputError: it is not one.
         """
         limits = self.robots[robot].limits
         if limits is None:
