@@ -60,8 +60,13 @@ def changed(text: str, changes: Sequence[Change]) -> str:
 def _make(root: Any, path: list[str | int], value: Any) -> None:
     if not path:
         raise InputError("a change without a path")
-    parent, last = _descend(root, path, create=value is not None)
+    inherits = "extends" in root or "extends" in (root.get("scenario") or {})
+    parent, last = _descend(root, path, create=value is not None or inherits)
     if parent is None:
+        return
+    if value is None and inherits and isinstance(parent, Mapping):
+        kept: Any = parent
+        kept[last] = None  # what another file says is removed by null
         return
     if value is not None:
         if isinstance(parent, list):
@@ -97,6 +102,8 @@ def _descend(root: Any, path: list[str | int], *, create: bool) -> tuple[Any, An
             continue
         if not isinstance(node, Mapping):
             raise InputError(f"'{'.'.join(map(str, path))}' leads through a value, not a map")
+        if isinstance(left[0], int):
+            raise InputError(f"'{_dotted(path)}': these rows are in a table, which is edited there")
         count = next((n for n in range(len(left), 0, -1) if _dotted(left[:n]) in node), 0)
         if count == len(left):
             return node, _dotted(left)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -29,7 +30,7 @@ def drawn(text: str, file: Path, registry: Registry) -> dict[str, Any]:
         file: its file, beside which `extends` and tables lie; it is not read.
         registry: the installed components.
     """
-    aside = file.with_name(f".{file.stem}.crowdbot-edit.yaml")
+    aside = file.with_name(f".{file.stem}.{os.getpid()}.edit.yaml")
     try:
         aside.write_text(text, encoding="utf-8")
         suite = load_document(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -32,7 +33,7 @@ def play(text: str, file: Path, robots: list[str]) -> dict[str, Any]:
     Raises:
         InputError: the simulation failed; with its last lines.
     """
-    aside = file.with_name(f".{file.stem}.crowdbot-play.yaml")
+    aside = file.with_name(f".{file.stem}.{os.getpid()}.play.yaml")
     with tempfile.TemporaryDirectory(prefix="crowdbot-edit-") as folder:
         try:
             aside.write_text(text, encoding="utf-8")

@@ -71,12 +71,20 @@ def test_new_parts_are_added_and_removed() -> None:
         ("a: 1", ["a", "b"]),
         ("a: [1]", ["a", 5]),
         ("a: [1]", ["a", "b"]),
+        ("a: {csv: people.csv}", ["a", 0, "x"]),
         ("a: 1", []),
     ],
 )
 def test_what_cannot_be_changed_is_refused(text: str, path: list[str | int]) -> None:
     with pytest.raises(InputError):
         changed(text, [Change(path, 2)])
+
+
+def test_inherited_parts_are_removed_by_null() -> None:
+    text = changed("crowdbot: 1\nscenario:\n  extends: base.yaml\n",
+                   [Change(["scenario", "environment", "walls", "a"], None)])  # fmt: skip
+    assert "walls:" in text
+    assert text.rstrip().endswith("a:")
 
 
 def test_numbers_have_to_be_finite() -> None:
