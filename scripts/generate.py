@@ -32,6 +32,7 @@ from scripts import (  # noqa: E402
     write_reference,
     write_rosetta_stone,
     write_schemas,
+    write_study_page,
 )
 from scripts.fault_cases import draw as fault_cases  # noqa: E402
 
@@ -60,6 +61,7 @@ GENERATED: dict[str, Callable[[], Texts]] = {
         write_author_surface.PAGE, write_author_surface.author_surface_page()
     ),
     "parameters of planners": write_planner_pages.pages,
+    "fields of studies": lambda: _page(write_study_page.PAGE, write_study_page.page()),
     "metrics by category": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
     "gallery of metrics": make_metric_pictures.pages,
     "words of other simulators": lambda: _page(

@@ -82,6 +82,10 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("serve", "spec"): (".yaml", "serve", "{}"),
     ("simulate", "spec"): (".yaml", "simulate", "{}", "--out", "RUNS"),
     ("simulate", "planner"): (".yaml", "simulate", SHORT, "--out", "RUNS", "--planner", "{}"),
+    ("study plan", "file"): (".yaml", "study", "plan", "{}"),
+    ("study run", "file"): (".yaml", "study", "run", "{}", "--synthetic"),
+    ("study results", "file"): (".yaml", "study", "results", "{}"),
+    ("study report", "file"): (".yaml", "study", "report", "{}"),
     ("teleop", "spec"): (".yaml", "teleop", "{}", "--out", "RUNS"),
     ("teleop", "planner"): (".yaml", "teleop", SHORT, "--out", "RUNS", "--planner", "{}"),
     ("teleop", "replay"): (".mcap", "teleop", SHORT, "--out", "RUNS", "--replay", "{}"),
@@ -105,6 +109,7 @@ NO_FILES = {
     "one", "only", "out", "overrides", "page", "parquet", "planner", "planner_set", "robot",
     "scenario", "search", "secret", "seeds", "suite", "team", "title", "token", "user_topic",
     "variant", "zenoh", "floor", "source", "goal",
+    "data", "orders", "participant", "scores",  # of studies
 }  # fmt: skip
 #: Read after something else that an empty folder lacks, by a reader that the others test.
 NOT_REACHED = {

@@ -25,6 +25,7 @@ def render_page(
     images: str = "",
     frames: bool = False,
     connect: str = "",
+    forms: bool = False,
     later: Sequence[str] = (),
     **values: Any,
 ) -> str:
@@ -37,6 +38,7 @@ def render_page(
         images: sources of generated images, such as ``blob:``.
         frames: True if the page may embed others from its own site or folder.
         connect: addresses that it may connect to.
+        forms: True if its forms go to its own server.
         later: scripts that it may add to itself later.
         values: further variables of the template, besides ``policy``, ``style`` and ``script``.
             Text is escaped.
@@ -44,7 +46,7 @@ def render_page(
     style = "\n".join(filter(None, [_part(package, "page.css"), more_style]))
     script = "\n".join(_part(package, name) for name in scripts)
     return _template(package).render(
-        policy=_policy(style, (script, *later), images, connect, frames=frames),
+        policy=_policy(style, (script, *later), images, connect, frames=frames, forms=forms),
         style=Markup(style),
         script=Markup(script),
         **values,
@@ -60,16 +62,23 @@ def _template(package: str) -> jinja2.Template:
 
 @cache
 def _policy(
-    style: str, scripts: tuple[str, ...], images: str, connect: str, *, frames: bool
+    style: str,
+    scripts: tuple[str, ...],
+    images: str,
+    connect: str,
+    *,
+    frames: bool,
+    forms: bool,
 ) -> str:
     hashes = " ".join(_hash(script) for script in scripts if script)
     allowed = f"script-src {hashes}; " if hashes else ""
     pictures = f"img-src {images}; " if images else ""
     opened = "frame-src 'self'; " if frames else ""
+    answered = "'self'" if forms else "'none'"
     links = f"connect-src {connect}; " if connect else ""
     return (
         f"default-src 'none'; {allowed}style-src {_hash(style)}; {pictures}{opened}{links}"
-        "base-uri 'none'; form-action 'none'"
+        f"base-uri 'none'; form-action {answered}"
     )
 
 

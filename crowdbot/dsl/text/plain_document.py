@@ -53,13 +53,13 @@ def _content(text: str, source: Source, shift: int = 0) -> Any:
     root = parse(text, source, problems, shift)
     if problems:
         raise SpecError(problems)
-    return _plain(root)
+    return plain(root)
 
 
-def _plain(node: Node) -> Any:
+def plain(node: Node) -> Any:
     """Return plain data; maps keep the order of the file."""
     if isinstance(node.value, dict):
-        return {key: _plain(entry.node) for key, entry in node.value.items()}
+        return {key: plain(entry.node) for key, entry in node.value.items()}
     if isinstance(node.value, tuple):
-        return [_plain(item) for item in node.value]
+        return [plain(item) for item in node.value]
     return node.value

@@ -1,0 +1,1 @@
+"""The report of a study: conditions compared, on one offline page."""
