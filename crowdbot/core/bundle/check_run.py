@@ -94,7 +94,7 @@ def _identity_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
         yield f"its step_budget is {str(budget)[:40]}; it lies between 0 and {STEP_LIMIT:g} s"
     if record.pinned != manifest.pinned:
         yield f"the manifest says pinned: {manifest.pinned}, the run does not"
-    if record.knows_truth != (manifest.classed == "privileged"):
+    if record.classed != manifest.classed:
         yield f"the manifest says '{manifest.classed}', the run does not"
 
 

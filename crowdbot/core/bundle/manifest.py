@@ -44,7 +44,7 @@ def _shown_alike(text: str) -> str:
 #: One line of text for a team or contact.
 Name = Annotated[str, Field(max_length=200), AfterValidator(_shown_alike)]
 _NAME: TypeAdapter[str] = TypeAdapter(Name)
-Class = Literal["privileged", "sensors only"]
+Class = Literal["privileged", "sensors only", "driven by a person"]
 
 
 class _Model(BaseModel):
@@ -99,7 +99,7 @@ class Manifest(_Model):
 
     Attributes:
         planner: as in ``run.json``: kind, name, label and every parameter.
-        classed: class of the planner: sensors only, or privileged.
+        classed: class of the planner: sensors only, privileged, or driven by a person.
         versions: software versions, equal in all runs.
         seeds: seeds of the edition; each scenario has a run with each.
         missing: ``ID seed-N`` of runs missing in a partial bundle.

@@ -269,7 +269,7 @@ def _manifest(
             handed_in=held.planners,
         ),
         planner=first.planner.document(),
-        classed="privileged" if first.knows_truth else "sensors only",
+        classed=first.classed,
         pinned=first.pinned,
         versions=first.versions,
         seeds=list(expansion.run_seeds),

@@ -120,6 +120,10 @@ class Contents:
         """Return True if a planner got ground truth in any run."""
         return any(isinstance(a, RunRow) and a.privileged for a in self.of(planner))
 
+    def is_person(self, planner: str) -> bool:
+        """Return True if people drove in any run."""
+        return any(isinstance(a, RunRow) and a.record.by_person for a in self.of(planner))
+
     def role(self, planner: str) -> str:
         """Return a planner's role."""
         roles = (a.role for a in self.of(planner) if isinstance(a, RunRow))

@@ -40,6 +40,7 @@ def _named(contents: Contents, planner: str) -> str:
     """Return a planner's name with the facts that readers need."""
     marks = [
         contents.role(planner) if contents.role(planner) != "candidate" else "",
+        "driven by a person" if contents.is_person(planner) else "",
         "privileged" if contents.is_privileged(planner) else "",
         "reference scores" if planner in contents.heading.references else "",
     ]

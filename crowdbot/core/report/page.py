@@ -85,6 +85,7 @@ def _planner(contents: Contents, planner: str) -> dict[str, Any]:
         "count": len(tried),
         "counts": contents.counts(tried),
         "privileged": contents.is_privileged(planner),
+        "person": contents.is_person(planner),
         "pinned": contents.is_pinned(planner),
         "process": processes(a.provenance["process"] for a in tried if isinstance(a, RunRow)),
         "reference": planner in contents.heading.references,

@@ -102,6 +102,8 @@ def third_parties(registry: Registry) -> dict[str, Any]:
 def remarks(record: RunRecord) -> dict[str, str]:
     """Return warnings about the origin of scores that a reader must know, title -> text."""
     found = {}
+    if record.by_person:
+        found["Driven by a person"] = "the run cannot be repeated, and ranks beside no planner"
     if record.privileged:
         found["Privileged"] = "the planner sees the truth"
     if runs_inside(record):

@@ -30,6 +30,9 @@ from crowdbot.core.runs.record_parts import (
 )
 from crowdbot.errors import InputError
 
+#: Kind of planner of a run in which a person held the stick.
+BY_PERSON = "teleop"
+
 
 class RunIdentity(RecordPart):
     """Everything that decides what happens in a run.
@@ -135,6 +138,18 @@ class RunRecord(_Record, RunIdentity):
     def knows_truth(self) -> bool:
         """True if the planner gets information that no sensor can provide."""
         return self.privileged or self.planner.label.endswith("+privileged")
+
+    @property
+    def by_person(self) -> bool:
+        """True if a person drove, with an assistant or without: the run cannot be repeated."""
+        return self.planner.kind == BY_PERSON
+
+    @property
+    def classed(self) -> Literal["privileged", "sensors only", "driven by a person"]:
+        """Return the class in which runs like this are ranked."""
+        if self.by_person:
+            return "driven by a person"
+        return "privileged" if self.knows_truth else "sensors only"
 
     @property
     def people_alone(self) -> bool:

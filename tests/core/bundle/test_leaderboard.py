@@ -19,6 +19,7 @@ from crowdbot.core.bundle.entries import load_entries, old_metrics
 from crowdbot.core.bundle.signature import own_public_key
 from crowdbot.core.bundle.standings import set_apart, standings
 from crowdbot.core.bundle.verification import content_hash, record_path, save_verification
+from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.statistics.audit import Audit, audit, write_audit
 from crowdbot.errors import InputError
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite
@@ -267,3 +268,21 @@ def test_names_of_two_entries_of_one_team_differ(folder: Path, tmp_path: Path) -
         (own / name).write_bytes((folder / "two.cbz").read_bytes())
     entries, _ = load_entries(own, registry())
     assert [e.name for e in entries] == ["Two · goal_seek (a)", "Two · goal_seek (b)"]
+
+
+def test_people_have_a_table_of_their_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of teleop, as a study or a person leaves them, stand on the page and rank with none."""
+    person = replace(
+        resolve_planner("dwa", registry()),
+        spec_dump={"kind": "teleop"}, name="teleop", label="teleop", repeatable=False,
+    )  # fmt: skip
+    make_bundle(tmp_path, "dwa", "planner.cbz", team="Planner")
+    monkeypatch.setattr("tests.core.bundle.made_up_runs.resolve_planner", lambda *_: person)
+    make_bundle(tmp_path, "teleop", "people.cbz", team="People")
+    entries, left_out = load_entries(tmp_path, registry())
+    assert left_out == {}
+    tables = {t.classed: t for t in standings(entries, "spl", ())}
+    assert set(tables) == {"sensors only", "driven by a person"}
+    assert [e.manifest.team for e in tables["driven by a person"].entries] == ["People"]
+    board(tmp_path, tmp_path / "page.html")
+    assert "driven by a person" in (tmp_path / "page.html").read_text(encoding="utf-8")

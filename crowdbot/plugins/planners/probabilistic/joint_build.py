@@ -11,8 +11,19 @@ from crowdbot.plugin import Array, array_kernel, kernel
 #: Time between the points of a way at which densities are compared, s.
 STEP = 0.25
 #: Indices into the parameter vector.
-HORIZON, AGREEABILITY, USER_SPREAD, ROBOT_SPREAD, PEOPLE_SPREAD, AVOIDANCE, SAFETY, FRONT = range(8)
-PARAMETERS = 8
+(
+    HORIZON,
+    AGREEABILITY,
+    USER_SPREAD,
+    ROBOT_SPREAD,
+    PEOPLE_SPREAD,
+    AVOIDANCE,
+    SAFETY,
+    FRONT,
+    A_MAX,
+    ALPHA_MAX,
+) = range(10)
+PARAMETERS = 10
 
 
 @kernel
@@ -26,9 +37,7 @@ def _advanced(
 
 
 @kernel
-def _apart(
-    one: tuple[float, float, float], other: tuple[float, float, float], front: float
-) -> float:
+def _apart(one: Array, other: Array, front: float) -> float:
     """Return the squared distance of the robot's front at two poses, m^2: turns count, too."""
     dx = one[0] - other[0] + front * (math.cos(one[2]) - math.cos(other[2]))
     dy = one[1] - other[1] + front * (math.sin(one[2]) - math.sin(other[2]))
@@ -40,7 +49,7 @@ def _crowd(
     bodies: Array, robot: Array, x: float, y: float, yaw: float, t: float, p: Array
 ) -> float:
     """Return the log of the interaction of a pose with all bodies, marginal over their spread."""
-    total, safe = 0.0, p[SAFETY] * p[SAFETY]
+    total, nearest, safe = 0.0, 0.0, p[SAFETY] * p[SAFETY]
     c, s = math.cos(yaw), math.sin(yaw)
     for i in range(bodies.shape[0]):
         bx, by = bodies[i, 0] + t * bodies[i, 2], bodies[i, 1] + t * bodies[i, 3]
@@ -54,13 +63,49 @@ def _crowd(
         wide = safe + spread * spread
         if gap * gap < 16.0 * wide:
             touch = safe / wide * math.exp(-0.5 * gap * gap / wide)
-            total += math.log(1.0 - p[AVOIDANCE] * touch)
-    return total
+            if bodies[i, 4] == 0.0:  # of a wall's many points the nearest counts
+                nearest = max(nearest, touch)
+            else:
+                total += math.log(1.0 - p[AVOIDANCE] * touch)
+    return total + math.log(1.0 - p[AVOIDANCE] * nearest)
+
+
+@kernel
+def _slewed(value: float, target: float, change: float) -> float:
+    return min(max(target, value - change), value + change)
+
+
+@array_kernel
+def way(twist: Array, command: Array, p: Array) -> Array:
+    """Return the poses (T, 3) of a robot that takes on a command as fast as it can.
+
+    Args:
+        twist: (3,) v, w, vy at present.
+        command: (3,) the same of the command.
+        p: parameters.
+    """
+    count = max(1, int(p[HORIZON] / STEP + 1e-9))
+    out = np.empty((count, 3))
+    v, w, vy = twist[0], twist[1], twist[2]
+    x, y, yaw = 0.0, 0.0, 0.0
+    for k in range(count):
+        v = _slewed(v, command[0], p[A_MAX] * STEP)
+        w = _slewed(w, command[1], p[ALPHA_MAX] * STEP)
+        vy = _slewed(vy, command[2], p[A_MAX] * STEP)
+        x, y, yaw = _advanced(x, y, yaw, v, w, vy)
+        out[k, 0], out[k, 1], out[k, 2] = x, y, yaw
+    return out
 
 
 @array_kernel
 def log_densities(
-    candidates: Array, user: Array, planner: Array, bodies: Array, robot: Array, p: Array
+    candidates: Array,
+    user: Array,
+    planner: Array,
+    bodies: Array,
+    robot: Array,
+    twist: Array,
+    p: Array,
 ) -> Array:
     """Return the log of the density of each candidate's way, up to a constant; (C,).
 
@@ -69,20 +114,18 @@ def log_densities(
         user, planner: (3,) their commands, the means of their ways.
         bodies: (N, 5) x, y, vx, vy, radius in the base frame; of radius 0: they stand.
         robot: (K, 3) discs that hold the robot, m.
+        twist: (3,) v, w, vy of the robot at present, from which all ways begin.
         p: parameters.
     """
     out = np.empty(candidates.shape[0])
+    wanted, planned = way(twist, user, p), way(twist, planner, p)
     agree = p[AGREEABILITY] * p[AGREEABILITY]
     for k in range(candidates.shape[0]):
-        f = h = r = (0.0, 0.0, 0.0)
-        total, t = 0.0, 0.0
-        while t < p[HORIZON] - 1e-9:
-            f = _advanced(*f, candidates[k, 0], candidates[k, 1], candidates[k, 2])
-            h = _advanced(*h, user[0], user[1], user[2])
-            r = _advanced(*r, planner[0], planner[1], planner[2])
-            t += STEP
-            total -= 0.5 * _apart(f, h, p[FRONT]) / (agree + (p[USER_SPREAD] * t) ** 2)
-            total -= 0.5 * _apart(f, r, p[FRONT]) / (p[ROBOT_SPREAD] * t) ** 2
-            total += _crowd(bodies, robot, f[0], f[1], f[2], t, p)
+        total, own = 0.0, way(twist, candidates[k], p)
+        for i in range(own.shape[0]):
+            t = (i + 1) * STEP
+            total -= 0.5 * _apart(own[i], wanted[i], p[FRONT]) / (agree + (p[USER_SPREAD] * t) ** 2)
+            total -= 0.5 * _apart(own[i], planned[i], p[FRONT]) / (p[ROBOT_SPREAD] * t) ** 2
+            total += _crowd(bodies, robot, own[i, 0], own[i, 1], own[i, 2], t, p)
         out[k] = total
     return out

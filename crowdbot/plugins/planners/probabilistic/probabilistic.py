@@ -31,22 +31,22 @@ class ProbabilisticSpec(LadderSpec):
     )
     horizon: PositiveDuration = Field(default=2.0, le=5.0, description="Length of the ways, s.")
     agreeability: PositiveLength = Field(
-        default=0.15, description="Distance of the robot's way from the user's that agrees, m."
+        default=0.3, description="Distance of the robot's way from the user's that agrees, m."
     )
     user_spread: PositiveSpeed = Field(
-        default=0.2, description="Spread of the user's way, growing with time, m/s."
+        default=0.5, description="Spread of the user's way, growing with time, m/s."
     )
     robot_spread: PositiveSpeed = Field(
-        default=0.5, description="Spread of the planner's way, growing with time, m/s."
+        default=0.8, description="Spread of the planner's way, growing with time, m/s."
     )
     people_spread: PositiveSpeed = Field(
         default=0.15, description="Spread of people's ways, growing with time, m/s."
     )
     avoidance: Annotated[float, Gt(0), Lt(1)] = Field(
-        default=0.999, description="Strength of the interaction with people and walls."
+        default=0.9999, description="Strength of the interaction with people and walls."
     )
     safety: PositiveLength = Field(
-        default=0.2, description="Gap at which that interaction has fallen to 61 %, m."
+        default=0.3, description="Gap at which that interaction has fallen to 61 %, m."
     )
     window: PositiveDuration = Field(
         default=0.5, description="Candidates are reachable in this time, s."

@@ -50,11 +50,12 @@ class Probabilistic:
         _, front = half_width_and_front(spec.robot_radius, task.robot)
         self._p = np.array(
             [spec.horizon, spec.agreeability, spec.user_spread, spec.robot_spread,
-             spec.people_spread, spec.avoidance, spec.safety, front]
+             spec.people_spread, spec.avoidance, spec.safety, front, limits.a_max,
+             limits.alpha_max]
         )  # fmt: skip
         one = np.ones(3)
         candidates(0.0, 1.0, 2, -1.0, 1.0, 2, 0.0)
-        joint.log_densities(np.ones((1, 3)), one, one, np.ones((1, 5)), self._robot, self._p)
+        joint.log_densities(np.ones((1, 3)), one, one, np.ones((1, 5)), self._robot, one, self._p)
         self._half.reset(task, limits, sensors, seed)
 
     def step(self, obs: Observation) -> Command:
@@ -63,7 +64,13 @@ class Probabilistic:
         scene = self._surroundings.see(obs)
         ways = self._candidates(scene.twist, user, planner)
         density = joint.log_densities(
-            ways, user, planner, bodies_in_base(scene), self._robot, self._p
+            ways,
+            user,
+            planner,
+            bodies_in_base(scene),
+            self._robot,
+            np.array(scene.twist, np.float64),
+            self._p,
         )
         best = int(np.argmax(density))
         obs.log("probabilistic/log_density", float(density[best]))
