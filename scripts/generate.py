@@ -29,6 +29,7 @@ from scripts import (  # noqa: E402
     write_endings,
     write_metric_index,
     write_planner_pages,
+    write_planner_table,
     write_reference,
     write_rosetta_stone,
     write_schemas,
@@ -62,6 +63,7 @@ GENERATED: dict[str, Callable[[], Texts]] = {
     ),
     "parameters of planners": write_planner_pages.pages,
     "fields of studies": lambda: _page(write_study_page.PAGE, write_study_page.page()),
+    "how planners did": lambda: _page(write_planner_table.PAGE, write_planner_table.page()),
     "metrics by category": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
     "gallery of metrics": make_metric_pictures.pages,
     "words of other simulators": lambda: _page(

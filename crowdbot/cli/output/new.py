@@ -23,13 +23,16 @@ _PACKAGE = "package"
 _HIDDEN = "dot_"
 
 
-def write_package(name: str, out: Path | None, registry: Registry) -> Path:
+def write_package(
+    name: str, out: Path | None, registry: Registry, template: str = "plugin"
+) -> Path:
     """Write a plugin package atomically.
 
     Args:
         name: name of the plugin.
         out: the new folder; default: ``crowdbot-NAME`` here.
         registry: the installed plugins, whose names are taken.
+        template: folder of the template: ``plugin``, or ``planner`` for one planner alone.
 
     Returns:
         The folder.
@@ -43,7 +46,7 @@ def write_package(name: str, out: Path | None, registry: Registry) -> Path:
         raise InputError(f"{folder} exists already; name another folder with --out")
     partial = folder.with_name(f".{folder.name}.{os.getpid()}.part")
     try:
-        _write(name, partial)
+        _write(name, partial, template)
         partial.rename(folder)
     except OSError as error:
         raise InputError(f"{folder}: cannot be written: {error.strerror}") from error
@@ -67,17 +70,17 @@ def _check_name(name: str, registry: Registry) -> None:
         raise InputError(f"'{name}' is the name of a plugin of {taken[name].distribution} already")
 
 
-def _write(name: str, folder: Path) -> None:
+def _write(name: str, folder: Path, template: str) -> None:
     words = {
         "name": name,
         "dashed": name.replace("_", "-"),
         "version": metadata.version("crowdbot"),
     }
-    for path, template in _templates(files("crowdbot") / "templates" / "plugin"):
+    for path, text in _templates(files("crowdbot") / "templates" / template):
         parts = [f"crowdbot_{name}" if p == _PACKAGE else _shown(p) for p in path]
         file = folder.joinpath(*parts)
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(Template(template).substitute(words), encoding="utf-8")
+        file.write_text(Template(text).substitute(words), encoding="utf-8")
 
 
 def _shown(part: str) -> str:

@@ -19,6 +19,13 @@ Altered = Annotated[
     bool,
     typer.Option("--altered", help="Include runs of scenarios that --set changed, as own suites."),
 ]
+Reference = Annotated[
+    str | None,
+    typer.Option(
+        metavar="crowdbot|FILE|ROOT",
+        help="Reference scores beside them: those that come with crowdbot, a file, or runs.",
+    ),
+]
 #: Number of changes that are named.
 _SHOWN = 3
 

@@ -43,14 +43,15 @@ def kept_file(root: Path, digest: str) -> Path:
     return root / FOLDER / f"{digest}{KEPT}"
 
 
-def digests_of_files(planner: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def digests_of_files(planner: Mapping[str, Any], depth: int = 4) -> Iterator[tuple[str, str]]:
     """Yield name and SHA-256 of each file that a planner of a record, or its fleet, reads.
 
     Args:
         planner: as in ``run.json``: parameters that name files are mappings with both.
+        depth: levels of planners within planners.
     """
     for value in planner.values():
         if isinstance(value, Mapping) and set(value) == {"path", "sha256"}:
             yield str(value["path"]), str(value["sha256"])
-        elif isinstance(value, Mapping):  # the planner of a robot, or one that it uses
-            yield from digests_of_files(value)
+        elif isinstance(value, Mapping) and depth:  # of a robot, or one that it uses
+            yield from digests_of_files(value, depth - 1)

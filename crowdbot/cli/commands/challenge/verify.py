@@ -21,6 +21,7 @@ from crowdbot.cli.shared.options import (
     installed,
     planner_place,
 )
+from crowdbot.cli.shared.verify_references import said_of, verify_references
 
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
@@ -46,7 +47,10 @@ _SAYS = {
 
 def verify(
     bundle: Annotated[
-        Path, typer.Argument(metavar="BUNDLE", help="A bundle, made by crowdbot bundle.")
+        Path,
+        typer.Argument(
+            metavar="BUNDLE", help="A bundle; or reference scores: 'references', or a .json.xz."
+        ),
     ],
     sample: Annotated[
         int, typer.Option(min=0, metavar="N", help="How many runs to make again; 0: none.")
@@ -103,6 +107,10 @@ def verify(
 
     place = planner_place(in_process, planner_memory, contained=not not_contained)
     registry = installed(plugin, no_plugins)
+    size = None if everything else sample
+    if (document := verify_references(str(bundle), registry, size, seed)) is not None:
+        say(json.dumps(document, indent=2) if as_json else "\n".join(said_of(document)))
+        raise typer.Exit(0 if document["ok"] else 1)
     asked = Asked(
         size=None if everything else sample, seed=seed, trusted=tuple(trust or ()),
         fresh=fresh_draws,

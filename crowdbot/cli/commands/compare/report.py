@@ -18,7 +18,7 @@ from urllib.parse import quote
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.open_results import Altered, open_results, suite_id
+from crowdbot.cli.shared.open_results import Altered, Reference, open_results, suite_id
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from crowdbot.core.results.results import Results
     from crowdbot.core.statistics.audit import Audit
 
-_REFERENCE = " (reference)"
 #: Number of damaged runs that are named.
 _SHOWN = 3
 
@@ -46,10 +45,7 @@ def report(
         list[str] | None,
         typer.Option(metavar="GLOB", help="Only planners with such labels; repeatable."),
     ] = None,
-    reference: Annotated[
-        Path | None,
-        typer.Option(metavar="ROOT", help="Results of others, shown as reference scores."),
-    ] = None,
+    reference: Reference = None,
     out: Annotated[
         Path,
         typer.Option(metavar="FILE", help="File to write, .html; .csv and .md lie beside it."),
@@ -81,14 +77,15 @@ def report(
     """
     from crowdbot.core.report import Heading, gather, write_report
     from crowdbot.core.results.confounds import check_comparable, confounds
-    from crowdbot.core.results.results import Results
+    from crowdbot.core.results.with_reference import reference_results, with_reference
 
     check_ending(out, ".html")
     registry = installed(plugin, no_plugins)
     wanted = None if suite is None else suite_id(suite, registry)
     results = _chosen(open_results(root, altered), wanted, planner or [], root)
     links = {} if no_replay_links else _replays(results, root, out)
-    results, known = _with_reference(results, Results.open(reference) if reference else None)
+    given = None if reference is None else reference_results(reference)
+    results, known = with_reference(results, given)
     findings = confounds(results, accept or ())
     check_comparable(findings)
     heading = Heading(
@@ -151,25 +148,6 @@ def _only(results: Results, suite: str, planners: set[str]) -> Results:
         scores=of_runs(results.scores, ids),
         failures=tuple(f for f in results.failures if f.suite == suite and f.planner in planners),
     )
-
-
-def _with_reference(results: Results, given: Results | None) -> tuple[Results, tuple[str, ...]]:
-    """Return results with reference results for the same scenarios, under separate names."""
-    if given is None:
-        return results, ()
-    suite = results.runs[0].suite
-    scenarios = {r.scenario for r in results.runs}
-    runs = [
-        replace(r, entry=r.planner + _REFERENCE)
-        for r in given.runs
-        if r.suite == suite and r.scenario in scenarios
-    ]
-    if not runs:
-        raise InputError(f"--reference: no run of a scenario of {suite} that is reported here")
-    ids = {r.record.run_id: r.run_id for r in runs}
-    scores = [replace(s, run_id=ids[s.run_id]) for s in given.scores if s.run_id in ids]
-    both = replace(results, runs=(*results.runs, *runs), scores=(*results.scores, *scores))
-    return both, tuple(sorted({r.planner for r in runs}))
 
 
 def _audit(given: Path | None, folder: Path) -> Audit | None:

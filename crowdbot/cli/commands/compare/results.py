@@ -13,7 +13,7 @@ from typer.core import TyperGroup
 from crowdbot.cli.output.results_by_planner import print_by_planner
 from crowdbot.cli.output.results_lines import line_of, print_lines
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.open_results import Altered, open_results
+from crowdbot.cli.shared.open_results import Altered, Reference, open_results
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.text import plural
 
@@ -72,6 +72,7 @@ def show(
     status: Annotated[
         str | None, typer.Option(metavar="STATUS", help="Only runs that ended like this.")
     ] = None,
+    reference: Reference = None,
     worst: Annotated[
         int, typer.Option(min=0, metavar="N", help="The N worst runs by --metric instead.")
     ] = 0,
@@ -90,10 +91,18 @@ def show(
         return
     from crowdbot.core.results.rows import named_metrics
     from crowdbot.core.results.score_columns import metrics_of
+    from crowdbot.core.results.with_reference import (
+        among_references,
+        reference_results,
+        with_reference,
+    )
     from crowdbot.core.statistics.groups import Grouped
     from crowdbot.errors import UsageError
 
-    found = _with_scales(_only(open_results(out, altered), planner, status))
+    found = _only(open_results(out, altered), planner, status)
+    given = reference_results(reference) if reference else None
+    found, references = with_reference(found, given)
+    found = _with_scales(found)
     if worst:
         if metric is None or len(metric) != 1:
             raise UsageError("--worst needs one --metric NAME")
@@ -115,7 +124,7 @@ def show(
     if not (as_csv or as_json):
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
         runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")
-        say(f"{runs}, {failures}{damaged}")
+        say("\n".join([f"{runs}, {failures}{damaged}", *among_references(found, references)]))
 
 
 @results.command()

@@ -116,6 +116,10 @@ def new(
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder to write; default: crowdbot-NAME.")
     ] = None,
+    planner: Annotated[
+        bool,
+        typer.Option("--planner", help="One planner alone, which sees people with the tracker."),
+    ] = False,
 ) -> None:
     """Write a starter package with one component of each kind, a suite and tests.
 
@@ -123,9 +127,13 @@ def new(
     """
     from crowdbot.cli.output.new import write_package
 
-    folder = write_package(name, out, installed(None))
+    folder = write_package(name, out, installed(None), "planner" if planner else "plugin")
     say(f"{folder}: plugin '{name}'; next:", err=True)
     say(f"  pip install -e {folder}", err=True)
     say(f"  crowdbot plugins check {name}", err=True)
-    say(f"  crowdbot simulate {name}:first strolling --planner {name}.wander", err=True)
+    first = "social-guidelines frontal_approach" if planner else f"{name}:first strolling"
+    say(
+        f"  crowdbot simulate {first} --planner {name}.{'give_way' if planner else 'wander'}",
+        err=True,
+    )
     say(str(folder))

@@ -11,6 +11,7 @@ from crowdbot.plugin import (
     Component,
     NonNegativeLength,
     NonNegativeSpeed,
+    PositiveAngle,
     PositiveDuration,
     PositiveLength,
 )
@@ -33,6 +34,11 @@ class PeopleMpcSpec(RungSpec):
     yaw_rates: Annotated[int, Ge(3), Le(32)] = Field(default=11, description="First yaw rates.")
     horizon: PositiveDuration = Field(default=4.0, le=10.0, description="Length of a plan, s.")
     turn_time: PositiveDuration = Field(default=0.8, description="Length of its first stretch, s.")
+    swerve: PositiveAngle = Field(
+        default=1.3,
+        description="Largest angle to the goal, or to the way past what stands, of a robot that "
+        "drives, rad; if it faces further away it turns on the spot.",
+    )
     margin: NonNegativeLength = Field(
         default=0.05, description="Clearance below which a plan counts as a hit, m."
     )

@@ -122,7 +122,7 @@ def _parameters(spec: PeopleMpcSpec, limits: RobotLimits) -> Array:
     p[plans.CLEARANCE], p[plans.IMPACT] = spec.clearance, spec.impact
     p[plans.SMOOTHNESS], p[plans.HEADING] = spec.smoothness, spec.heading
     p[plans.SIDEWAYS] = 1.0 if limits.vy_max > 0.0 else 0.0
-    p[plans.ASIDE_COST] = 0.5 * spec.smoothness
+    p[plans.ASIDE_COST], p[plans.SWERVE] = 0.5 * spec.smoothness, spec.swerve
     return p
 
 

@@ -25,8 +25,8 @@ _SLACK = 1e-3
 V, W, VY = range(3)
 #: Indices into the parameter vector.
 A_MAX, ALPHA_MAX, V_MAX, W_MAX, HORIZON, TURN_TIME, MARGIN, COMFORT, GROWTH = range(9)
-PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, SIDEWAYS, ASIDE_COST, HEADING = range(9, 16)
-PARAMETERS = 16
+PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, SIDEWAYS, ASIDE_COST, HEADING, SWERVE = range(9, 17)
+PARAMETERS = 17
 
 
 class PlanWorld(NamedTuple):
@@ -203,6 +203,7 @@ def best_plan(
     away = math.sqrt(gx * gx + gy * gy)
     going = math.sqrt(state[3] ** 2 + state[5] ** 2)
     outlined = world.robot.shape[0] > 1
+    turned = abs(_wrapped(math.atan2(gy, gx) - state[2]))
     for k in range(firsts.shape[0] - 1, -1, -1):  # fast ones first, which are seldom worse
         first = firsts[k, V], firsts[k, W], firsts[k, VY]
         speed = math.sqrt(first[0] ** 2 + first[2] ** 2)
@@ -224,6 +225,8 @@ def best_plan(
                     continue
                 if moves and end.hit < stop:
                     continue
+                if end.aside > p[SWERVE] and (speed > 0.0 or end.aside > turned):
+                    continue  # those who turn round flee with the people who come towards them
                 made = (away - end.mean) / (0.5 * p[V_MAX] * p[HORIZON])  # earlier is better
                 blow = (1.0 - end.hit / p[HORIZON]) * (_STANDING + end.speed / p[V_MAX])
                 cost = turn + p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * end.close

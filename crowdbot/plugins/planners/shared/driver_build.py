@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Array, Command, Observation, RobotBody, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.shared.follow_velocity_build import follow
 from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius, swept_half_width
@@ -29,7 +29,7 @@ class VelocityPlanner(ABC):
     """A planner that chooses a velocity in each step; subclasses say which.
 
     Attributes:
-        limits: of the robot.
+        limits, body: of the robot.
         radius: of the disc that holds the robot, m.
     """
 
@@ -38,6 +38,7 @@ class VelocityPlanner(ABC):
         self._surroundings = PlannerSurroundings(spec)
         self._way = Way(1.0)
         self.limits: RobotLimits | None = None
+        self.body: RobotBody | None = None
         self.radius = disc_radius(spec.robot_radius, None)
 
     def reset(
@@ -45,7 +46,7 @@ class VelocityPlanner(ABC):
     ) -> None:
         """Store limits, outline and mounts; compile kernels that are not compiled yet."""
         del seed
-        self.limits = limits
+        self.limits, self.body = limits, task.robot
         self.radius = disc_radius(self._rungs.robot_radius, task.robot)
         self._surroundings.reset(sensors)
         self._way = Way(swept_half_width(self._rungs.robot_radius, task.robot) + _BESIDE)
@@ -63,6 +64,16 @@ class VelocityPlanner(ABC):
         top = min(self._rungs.speed * self.limits.v_max, braking_speed(distance, self.limits.a_max))
         ahead = scene.pose.yaw + error
         wish = np.array([top * math.cos(ahead), top * math.sin(ahead)])
+        return self.drive(obs, scene, wish, error)
+
+    def drive(self, obs: Observation, scene: PlannerScene, wish: Array, error: float) -> Command:
+        """Return the command with which the drive follows the chosen velocity.
+
+        Args:
+            obs, scene, wish: as for `velocity`.
+            error: angle from the heading to the wish, rad.
+        """
+        assert self.limits is not None
         chosen = self.velocity(obs, scene, wish)
         here = np.array([scene.pose.x, scene.pose.y])
         obs.draw("velocity", in_base(scene.pose, np.array([here, here + chosen])))

@@ -32,14 +32,26 @@ def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> 
     Returns:
         (N', 2) points seen now, and those hidden, out of range or still there; one point per cell.
     """
+    kept = kept_points(memory, seen, x, y, reach)
+    return thinned(np.concatenate([seen, kept]))  # a new point replaces an old one
+
+
+def kept_points(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
+    """Return the remembered points that are hidden, out of range or still there.
+
+    Arguments as for `remembered`.
+    """
     view = np.full(_SECTORS, reach)
     at, gap = _polar(seen, x, y)
     np.minimum.at(view, at, gap)
     # Some rays always pass a body's outline: only a wide gap shows that the body is gone.
     view = np.min([np.roll(view, k) for k in range(-3, 4)], axis=0)
     at, gap = _polar(memory, x, y)
-    kept = memory[(gap + _BEHIND > view[at]) | (gap > reach)]
-    points: Array = np.concatenate([seen, kept])  # a new point replaces an old one
+    return np.asarray(memory[(gap + _BEHIND > view[at]) | (gap > reach)])
+
+
+def thinned(points: Array) -> Array:
+    """Return the first of the points (N, 2) in each cell."""
     _, first = np.unique(np.round(points / CELL), axis=0, return_index=True)
     return points[first]
 

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections import deque
+from collections.abc import Iterable
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, kernel
-from crowdbot.plugins.planners.shared.local_map_build import remembered, way_out
+from crowdbot.plugin import Array, Indices, Pose, kernel
+from crowdbot.plugins.planners.shared.local_map_build import kept_points, thinned, way_out
 
 #: Period at which the map is renewed, s; what stands is remembered in this range, m.
 _PERIOD, _REACH = 0.5, 6.0
+#: What stands was seen at its place in so many renewals in a row; people who are no tracks move on.
+_TIMES, _CELL = 3, 0.15
 #: On a way around something the robot heads for a point at most this far along, m.
 _AHEAD = 1.2
 #: Points this near to the goal do not block the line to it, m.
 _AT_GOAL = 0.3
+#: Steps to a cell itself and its neighbours.
+_BESIDE = np.array([[i, j] for i in (-1, 0, 1) for j in (-1, 0, 1)])
 
 
 class Way:
@@ -27,6 +33,7 @@ class Way:
     def __init__(self, radius: float) -> None:
         self.radius = radius
         self._memory = np.empty((0, 2))
+        self._lately: deque[Array] = deque(maxlen=_TIMES - 1)
         self._renewed = -math.inf
         self._bearing: float | None = None
         is_blocked(np.ones((1, 2)), 0.0, 0.0, 1.0, 0.0, 1.0)
@@ -55,7 +62,10 @@ class Way:
         )
 
     def _renew(self, pose: Pose, seen: Array, goal: tuple[float, float]) -> None:
-        self._memory = remembered(self._memory, seen, pose.x, pose.y, _REACH)
+        stands = _still_there(seen, self._lately) if len(self._lately) == _TIMES - 1 else seen[:0]
+        self._lately.append(seen)
+        kept = kept_points(self._memory, seen, pose.x, pose.y, _REACH)
+        self._memory = thinned(np.concatenate([stands, kept]))
         away = np.hypot(*(self._memory - (pose.x, pose.y)).T)
         self._memory = self._memory[away < 2.0 * _REACH]
         self._bearing = None
@@ -66,6 +76,21 @@ class Way:
             if found:
                 self._bearing = bearing
                 return
+
+
+def _still_there(seen: Array, before: Iterable[Array]) -> Array:
+    """Return the points (K, 2) of which each earlier scan has one in the same cell or beside it."""
+    cells = np.floor(seen / _CELL).astype(np.int64)
+    for points in before:
+        old = np.floor(points / _CELL).astype(np.int64)
+        around = (old[:, None] + _BESIDE).reshape(-1, 2)
+        kept = np.isin(_key(cells), _key(around))
+        cells, seen = cells[kept], seen[kept]
+    return seen
+
+
+def _key(cells: Indices) -> Indices:
+    return np.asarray(cells[:, 0] * 1_000_003 + cells[:, 1])
 
 
 @kernel

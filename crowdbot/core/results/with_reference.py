@@ -1,0 +1,88 @@
+"""Results beside reference scores, and the place of planners among these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from statistics import fmean
+
+from crowdbot.core.results.reference_file import open_references
+from crowdbot.core.results.results import Results
+from crowdbot.core.scoring.four_scores import PRIMARY
+from crowdbot.core.support.text import plural
+from crowdbot.errors import InputError
+
+_REFERENCE = " (reference)"
+
+
+def reference_results(text: str) -> Results:
+    """Return reference results.
+
+    Args:
+        text: ``crowdbot`` for those that come with it, a file of them, or a folder of runs.
+
+    Raises:
+        InputError: there is nothing like that.
+    """
+    found = open_references(text)
+    return Results.open(Path(text)) if found is None else found.results
+
+
+def with_reference(results: Results, given: Results | None) -> tuple[Results, tuple[str, ...]]:
+    """Return results with reference results for the same scenarios, under separate names.
+
+    Returns:
+        both; names of the reference planners.
+
+    Raises:
+        InputError: no scenario of the results has a reference run.
+    """
+    if given is None:
+        return results, ()
+    scenarios = {(r.suite, r.scenario) for r in results.runs}
+    runs = [
+        replace(r, entry=r.planner + _REFERENCE)
+        for r in given.runs
+        if (r.suite, r.scenario) in scenarios
+    ]
+    if not runs:
+        there = ", ".join(sorted({s for s, _ in scenarios})) or "no suite"
+        raise InputError(f"--reference: no run of a scenario of {there} that is reported here")
+    ids = {r.record.run_id: r.run_id for r in runs}
+    scores = [replace(s, run_id=ids[s.run_id]) for s in given.scores if s.run_id in ids]
+    both = replace(results, runs=(*results.runs, *runs), scores=(*results.scores, *scores))
+    return both, tuple(sorted({r.planner for r in runs}))
+
+
+def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
+    """Yield a line for each own planner: its place among the references, by the primary score.
+
+    Compared are means over the scenarios that all of them have run; a mean alone is no proof.
+
+    Args:
+        results: from `with_reference`.
+        known: names of the references.
+    """
+    runs = {r.run_id: r for r in results.runs}
+    values: dict[str, dict[tuple[str, str], list[float]]] = {}
+    for score in results.scores:
+        if (score.metric, score.variant) == (PRIMARY.metric, PRIMARY.variant):
+            run = runs[score.run_id]
+            value = 0.0 if score.value is None else score.value
+            own = values.setdefault(run.planner, {})
+            own.setdefault((run.suite, run.scenario), []).append(value)
+    for planner in sorted(set(values) - set(known)):
+        shared = set(values[planner])
+        others = [k for k in known if shared & set(values.get(k, {}))]
+        for name in others:
+            shared &= set(values[name]) or shared
+        if not shared or not others:
+            continue
+        means = {n: fmean(fmean(values[n][s]) for s in shared) for n in (planner, *others)}
+        order = sorted(means, key=lambda n: -means[n])
+        said = ", ".join(f"{n.removesuffix(_REFERENCE)} {means[n]:.2f}" for n in order)
+        yield (
+            f"{planner}: number {order.index(planner) + 1} of {len(order)} by {PRIMARY.role} in "
+            f"{plural(len(shared), 'scenario')}: {said}"
+        )

@@ -1,0 +1,1 @@
+"""Reactive driving support: half-planes for robots that are long and cannot go sideways."""

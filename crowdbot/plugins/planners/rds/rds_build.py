@@ -1,0 +1,169 @@
+"""RDS: half-planes of velocities of a point ahead of the axle, one for each thing around.
+
+Gonon, Paez-Granados, Billard, "Reactive navigation in crowds for non-holonomic robots with convex
+bounding shape", IEEE Robotics and Automation Letters 6(3), 2021. The velocity of any point of the
+robot is a linear function of that of a reference point ahead of the axle. For each thing, the point
+of the capsule around the robot that is nearest to it gets a half-plane of velocities, which becomes
+one of the reference point; the velocity nearest to the wanted one in all of them is driven.
+Half-planes are those around rest, as in the authors' last version, so that rest is allowed in all.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.plugin import Array, Command, Observation, kernel
+from crowdbot.plugins.planners.rds.rds import RdsSpec
+from crowdbot.plugins.planners.shared.cover_build import covering_discs
+from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner
+from crowdbot.plugins.planners.shared.half_planes_build import avoid, best_velocity
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
+
+#: Things farther than this do not count, m; size of a lidar point, m.
+_NEAR, _POINT = 4.0, 0.03
+#: Time in which touching things part, s; yaw rate per heading error, 1/s.
+_STEP, _GAIN = 0.25, 2.5
+#: A half-plane whose normal is shorter says nothing.
+_LEAST = 1e-6
+_MOST = 500
+
+
+class Rds(VelocityPlanner):
+    """Chooses in each step from what it sees; remembers nothing else."""
+
+    def __init__(self, spec: RdsSpec) -> None:
+        super().__init__(spec)
+        self._spec = spec
+        self._ends, self._round = np.zeros((2, 2)), self.radius
+        self._lines, self._scratch = np.zeros((_MOST, 4)), np.zeros((_MOST, 4))
+
+    def forget(self) -> None:
+        """Take the capsule around the robot; compile what is not compiled yet."""
+        discs = covering_discs(self._spec.robot_radius, self.body)
+        self._ends = np.ascontiguousarray(discs[[0, -1], :2])
+        self._round = float(discs[:, 2].max())
+        things = np.array([[3.0, 0.0, 0.0, 0.0, 0.3]])
+        self._choose(things, (0.5, 0.0), np.zeros((0, 4)))
+
+    def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
+        """Return the velocity of the reference point, in the robot's own axes, m/s."""
+        assert self.limits is not None
+        limits, reach = self.limits, self._spec.reference_point
+        top = float(np.hypot(*wish))
+        error = math.remainder(math.atan2(wish[1], wish[0]) - scene.pose.yaw, 2.0 * math.pi)
+        if limits.vy_max > 0.0:
+            wanted = top * math.cos(error), top * math.sin(error)
+            aside = limits.vy_max
+        else:
+            turn = max(-limits.w_max, min(limits.w_max, _GAIN * error))
+            wanted, aside = (top * max(0.0, math.cos(error)), turn * reach), limits.w_max * reach
+        bounds = _bounds(min(0.0, limits.v_min), limits.v_max, aside)
+        chosen = self._choose(_things(scene), wanted, bounds)
+        obs.log("rds/change", math.hypot(chosen[0] - wanted[0], chosen[1] - wanted[1]))
+        return chosen
+
+    def drive(self, obs: Observation, scene: PlannerScene, wish: Array, error: float) -> Command:
+        """Return the command that gives the reference point its velocity."""
+        assert self.limits is not None
+        along, aside = self.velocity(obs, scene, wish)
+        ahead = np.array([self._spec.reference_point, 0.0])
+        obs.draw("velocity", np.array([ahead, ahead + np.array([along, aside])]))
+        if self.limits.vy_max > 0.0:
+            turn = max(-self.limits.w_max, min(self.limits.w_max, _GAIN * error))
+            return Command(along, turn if along or aside else 0.0, aside)
+        return Command(along, aside / self._spec.reference_point)
+
+    def _choose(
+        self, things: Array, wanted: tuple[float, float], bounds: Array
+    ) -> tuple[float, float]:
+        spec = self._spec
+        sideways = self.limits is not None and self.limits.vy_max > 0.0
+        count = len(bounds)
+        self._lines[:count] = bounds
+        count = half_planes(
+            things, self._ends, (self._round, spec.margin),
+            (spec.time_horizon, 0.0 if sideways else spec.reference_point), count, self._lines,
+        )  # fmt: skip
+        fastest = 10.0  # the bounds limit more
+        return best_velocity(self._lines, count, 0, fastest, wanted, self._scratch)
+
+
+def _things(scene: PlannerScene) -> Array:
+    """Return people and points (T, 5) x, y, vx, vy, radius in the robot's frame, nearest first."""
+    people = scene.people
+    places = np.vstack([people[:, :2], scene.points])
+    c, s = math.cos(scene.pose.yaw), math.sin(scene.pose.yaw)
+    found = np.zeros((len(places), 5))
+    found[:, :2] = in_base(scene.pose, places)
+    found[: len(people), 2:4] = people[:, 2:4] @ np.array([[c, -s], [s, c]])
+    found[: len(people), 4], found[len(people) :, 4] = people[:, 4], _POINT
+    away = np.hypot(found[:, 0], found[:, 1])
+    order = np.argsort(away, kind="stable")
+    return np.ascontiguousarray(found[order[away[order] < _NEAR]][: _MOST - 4])
+
+
+def _bounds(slowest: float, fastest: float, aside: float) -> Array:
+    """Return the half-planes (4, 4) of the drive's limits, m/s."""
+    return np.array(
+        [
+            [slowest, 0.0, 0.0, -1.0], [fastest, 0.0, 0.0, 1.0],
+            [0.0, -aside, 1.0, 0.0], [0.0, aside, -1.0, 0.0],
+        ]
+    )  # fmt: skip
+
+
+@kernel
+def half_planes(
+    things: Array,
+    ends: Array,
+    sizes: tuple[float, float],
+    scales: tuple[float, float],
+    count: int,
+    out: Array,
+) -> int:
+    """Write a half-plane of velocities of the reference point for each thing.
+
+    Args:
+        things: (T, 5) x, y, vx, vy, radius, in the robot's frame.
+        ends: (2, 2) ends of the capsule's segment, m.
+        sizes: radius of the capsule, and margin, m.
+        scales: time horizon, s; distance of the reference point, m, 0 for a robot that goes
+            sideways.
+        count: rows of ``out`` that are in use.
+        out: (L, 4), as in `half_planes_build`.
+
+    Returns:
+        rows in use.
+    """
+    time, reach = scales
+    sx, sy = ends[1, 0] - ends[0, 0], ends[1, 1] - ends[0, 1]
+    long = sx * sx + sy * sy
+    for i in range(things.shape[0]):
+        if count >= out.shape[0]:
+            break
+        dx, dy = things[i, 0] - ends[0, 0], things[i, 1] - ends[0, 1]
+        share = 0.0 if long == 0.0 else min(1.0, max(0.0, (dx * sx + dy * sy) / long))
+        x, y = ends[0, 0] + share * sx, ends[0, 1] + share * sy
+        line = out[count]
+        place = things[i, 0] - x, things[i, 1] - y
+        both = sizes[0] + sizes[1] + things[i, 4]
+        avoid(place, (0.0, 0.0), (things[i, 2], things[i, 3]), both, time, _STEP, 1.0, line)
+        nx, ny = -line[3], line[2]
+        least = min(0.0, nx * line[0] + ny * line[1])  # rest stays allowed
+        if reach > 0.0:
+            nx, ny = nx, (ny * x - nx * y) / reach
+        size = math.sqrt(nx * nx + ny * ny)
+        if size < _LEAST:
+            continue
+        nx, ny, least = nx / size, ny / size, least / size
+        line[0], line[1] = nx * least, ny * least
+        line[2], line[3] = ny, -nx
+        count += 1
+    return count
+
+
+def build(spec: RdsSpec) -> Rds:
+    """Build a planner from its spec."""
+    return Rds(spec)

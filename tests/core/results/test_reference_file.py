@@ -1,0 +1,139 @@
+"""Reference scores: there and back, beside own results, and made again bit by bit."""
+
+from __future__ import annotations
+
+import json
+import lzma
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import crowdbot
+from crowdbot.cli import main
+from crowdbot.core.campaign.remake import RemakeSetup, remake, sample_of
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.results.reference_file import (
+    LARGEST,
+    METRICS,
+    open_references,
+    read_references,
+    shipped_file,
+    write_references,
+)
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.with_reference import among_references, with_reference
+from crowdbot.errors import InputError
+
+SUITE, SCENARIO = "social-guidelines", "frontal_approach"
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs")
+    scenario = crowdbot.load(SUITE, SCENARIO)
+    for planner in ("goal_seek", "stand_still"):
+        crowdbot.simulate(
+            scenario, planner=planner, out=folder, suite=SUITE, references=False, replay=False,
+            record="none", metrics=["safe_efficiency", "success", "fluency"],
+        )  # fmt: skip
+    return folder
+
+
+@pytest.fixture(scope="module")
+def file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("references") / "r.json.xz"
+    write_references(out, Results.open(root), "by hand")
+    return out
+
+
+def test_what_is_written_is_read_again(root: Path, file: Path) -> None:
+    wanted, found = Results.open(root), read_references(file)
+    assert found.command == "by hand"
+    assert [r.run_id for r in found.results.runs] == [r.run_id for r in wanted.runs]
+    for one, other in zip(found.results.runs, wanted.runs, strict=True):
+        assert one.trajectory_hash == other.trajectory_hash
+        assert (one.status, one.goal_time, one.axes) == (other.status, other.goal_time, other.axes)
+    kept = {(s.run_id, s.metric, s.variant): s for s in wanted.scores if s.metric in METRICS}
+    there = {(s.run_id, s.metric, s.variant): s.value for s in found.results.scores}
+    assert set(there) == set(kept)
+    for key, value in there.items():
+        assert value == pytest.approx(kept[key].value, rel=1e-5)
+    assert "fluency" not in {s.metric for s in found.results.scores}
+    assert found.held == (f"{SUITE}: 2 runs, 1 scenarios, seeds 0; goal_seek, stand_still",)
+
+
+def test_equal_results_give_equal_bytes(root: Path, file: Path, tmp_path: Path) -> None:
+    write_references(tmp_path / "r.json.xz", Results.open(root), "by hand")
+    assert (tmp_path / "r.json.xz").read_bytes() == file.read_bytes()
+
+
+def test_own_planners_stand_among_the_references(root: Path, file: Path) -> None:
+    own = Results.open(root)
+    own = replace(own, runs=tuple(r for r in own.runs if r.planner == "goal_seek"))
+    own = replace(own, scores=tuple(s for s in own.scores if s.run_id == own.runs[0].run_id))
+    both, known = with_reference(own, read_references(file).results)
+    assert known == ("goal_seek (reference)", "stand_still (reference)")
+    (line,) = among_references(both, known)
+    assert line.startswith("goal_seek: number 1 of 3 by safe efficiency in 1 scenario: goal_seek ")
+    assert line.endswith("stand_still 0.00")
+
+
+def test_results_show_them_in_one_word(
+    root: Path, file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["results", "--runs", str(root), "--reference", str(file)]) == 0
+    told = capsys.readouterr().out
+    assert "goal_seek: number" in told
+    assert "(reference)" in told
+
+
+def test_other_platforms_and_changed_runs_are_told_apart(file: Path) -> None:
+    (run, _) = read_references(file).results.runs
+    setup = RemakeSetup(registry=discover())
+    assert remake(setup, run) == "identical"
+    hashes = run.record.hashes.model_copy(update={"trajectory": "cb1-sha256:0"})
+    edited = run.record.model_copy(update={"hashes": hashes})
+    assert remake(setup, replace(run, record=edited)) == "different"
+    elsewhere = edited.model_copy(update={"machine": {"processor": "another"}})
+    assert remake(setup, replace(run, record=elsewhere)) == "different_platform"
+    scenario = edited.hashes.model_copy(update={"spec": "cb1-sha256:0"})
+    changed = edited.model_copy(update={"hashes": scenario})
+    assert remake(setup, replace(run, record=changed)) == "changed"
+
+
+def test_damaged_files_end_as_one_line(file: Path, tmp_path: Path) -> None:
+    document = json.loads(lzma.decompress(file.read_bytes()))
+    for number, content in enumerate(
+        (
+            b"",
+            file.read_bytes()[:-20],
+            lzma.compress(b"{}"),
+            lzma.compress(json.dumps({**document, "references": 9}).encode()),
+            lzma.compress(json.dumps({**document, "runs": [[0]]}).encode()),
+            lzma.compress(b" " * 100_000_000),
+        )
+    ):
+        bad = tmp_path / f"{number}.json.xz"
+        bad.write_bytes(content)
+        with pytest.raises(InputError) as caught:
+            open_references(str(bad))
+        assert "\n" not in str(caught.value)
+
+
+def test_the_file_that_comes_with_crowdbot_is_small_and_true() -> None:
+    assert len(shipped_file().read_bytes()) < LARGEST
+    found = open_references("crowdbot")
+    assert found is not None
+    runs = found.results.runs
+    assert {r.suite for r in runs} >= {"social-guidelines"}
+    shortest = min((r for r in runs if r.planner == "dwa"), key=lambda r: r.sim_time)
+    assert remake(RemakeSetup(registry=discover()), shortest) in ("identical", "different_platform")
+
+
+def test_a_sample_is_that_of_its_seed() -> None:
+    found = open_references("crowdbot")
+    assert found is not None
+    runs = found.results.runs
+    assert sample_of(runs, 3, 7) == sample_of(runs, 3, 7) != sample_of(runs, 3, 8)
+    assert sample_of(runs, None, 7) == list(runs)
