@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def verify_references(
     """
     from crowdbot.core.results.reference_file import SHIPPED, open_references
 
-    named = SHIPPED if text == _WORD and not Path(text).exists() else text
+    named = SHIPPED if text == _WORD else text
     if named != SHIPPED and not named.endswith(".json.xz"):
         return None
     found = open_references(named)

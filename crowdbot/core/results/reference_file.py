@@ -29,7 +29,7 @@ from crowdbot.errors import InputError
 
 #: The word that names the file that comes with crowdbot, the file, and its largest size, bytes.
 SHIPPED, NAME, LARGEST = "crowdbot", "reference_scores.json.xz", 1_000_000
-_SUFFIX = ".json.xz"
+SUFFIX = ".json.xz"
 _UNPACKED, _FORMAT, _DIGITS = 64_000_000, 1, 6
 _HASH = "cb1-sha256:"
 #: Metrics that are kept, with all of their variants.
@@ -197,9 +197,9 @@ def open_references(text: str) -> ReferenceScores | None:
     Raises:
         InputError: the file cannot be read, or is not one of reference scores.
     """
-    if text == SHIPPED and not Path(text).exists():
+    if text == SHIPPED:  # a folder of that name is ./crowdbot
         return read_references(shipped_file())
-    return read_references(Path(text)) if text.endswith(_SUFFIX) else None
+    return read_references(Path(text)) if text.endswith(SUFFIX) else None
 
 
 def shipped_file() -> Traversable:

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
 
 references = typer.Typer(
@@ -87,11 +87,13 @@ def make(
     from crowdbot.cli.shared.campaign_run import read_seeds, run_plan, worker_count
     from crowdbot.core.campaign.plan import make_plan
     from crowdbot.core.campaign.request import CampaignRequest
-    from crowdbot.core.results.reference_file import write_references
+    from crowdbot.core.results.reference_file import SUFFIX, write_references
     from crowdbot.core.results.results import Results
     from crowdbot.core.runs.run_options import RunOptions
+    from crowdbot.errors import UsageError
 
-    check_ending(out, ".json.xz")
+    if not out.name.endswith(SUFFIX):
+        raise UsageError(f"--out {out}: the name must end in {SUFFIX}")
     registry = installed(plugin, no_plugins)
     request = CampaignRequest(
         suites=suites, planners=planner or _all_planners(registry), seeds=read_seeds(seeds),
