@@ -58,7 +58,7 @@ def with_reference(results: Results, given: Results | None) -> tuple[Results, tu
 def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
     """Yield a line for each own planner: its place among the references, by the primary score.
 
-    Compared are means over the scenarios that all of them have run; a mean alone is no proof.
+    Compared are means over the scenarios that all of them have run; a mean alone proves nothing.
 
     Args:
         results: from `with_reference`.

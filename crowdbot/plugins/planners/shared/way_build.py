@@ -13,7 +13,7 @@ from crowdbot.plugins.planners.shared.local_map_build import kept_points, thinne
 
 #: Period at which the map is renewed, s; what stands is remembered in this range, m.
 _PERIOD, _REACH = 0.5, 6.0
-#: What stands was seen at its place in so many renewals in a row; people who are no tracks move on.
+#: What stands was seen at its place in this many renewals in a row; untracked people move on.
 _TIMES, _CELL = 3, 0.15
 #: On a way around something the robot heads for a point at most this far along, m.
 _AHEAD = 1.2
