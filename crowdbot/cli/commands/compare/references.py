@@ -116,6 +116,7 @@ def make(
 
 def _all_planners(registry: Any) -> list[str]:
     from crowdbot.core.planning.resolve import kinds_of_role
+    from crowdbot.dsl.spec.component_specs import PlannerRole
 
-    roles = ("floor", "baseline", "candidate", "ceiling")
+    roles: tuple[PlannerRole, ...] = ("floor", "baseline", "candidate", "ceiling")
     return [kind for role in roles for kind in kinds_of_role(role, registry)]
