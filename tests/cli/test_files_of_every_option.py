@@ -72,7 +72,6 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("realism", "crowd"): (".yaml", "realism", "{}"),
     ("realism", "reference"): (".csv", "realism", "rvo", "--reference", "{}"),
     ("recover", "file"): (".mcap", "recover", "{}"),
-    ("references", "file"): (".json.xz", "references", "--file", "{}"),
     ("references make", "suites"): (".yaml", "references", "make", "{}", "--runs", "RUNS"),
     ("references make", "planner"): (
         ".yaml", "references", "make", SHORT, "--planner", "{}", "--runs", "RUNS",
@@ -80,7 +79,6 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("report", "root"): ("", "report", "{}"),
     ("report", "reference"): ("", "report", "RUNS", "--reference", "{}"),
     ("report", "audit"): (".json", "report", "RUNS", "--audit", "{}"),
-    ("results", "reference"): (".json.xz", "results", "--runs", "RUNS", "--reference", "{}"),
     ("results export", "out"): ("", "results", "export", "{}"),
     ("results failures", "out"): ("", "results", "failures", "{}"),
     ("results atlas", "out"): ("", "results", "atlas", "{}"),
@@ -116,6 +114,7 @@ NO_FILES = {
     "scenario", "search", "secret", "seeds", "suite", "team", "title", "token", "user_topic",
     "variant", "zenoh", "floor", "source", "goal",
     "data", "orders", "participant", "scores",  # of studies
+    "variant", "zenoh", "floor", "source", "goal", "runs",
 }  # fmt: skip
 #: Read after something else that an empty folder lacks, by a reader that the others test.
 NOT_REACHED = {
