@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Literal
 
 from crowdbot.plugin import Component
@@ -14,8 +15,12 @@ class CadrlSpec(ValueSearchSpec):
     kind: Literal["cadrl"] = "cadrl"
 
 
+#: Weights of the right shapes that were never trained, for the conformance checks.
+_UNTRAINED = Path(__file__).with_name("untrained.npz")
+
 CADRL = Component(
     spec=CadrlSpec,
     build="crowdbot.plugins.planners.cadrl.cadrl_build:build",
+    examples=({"weights": str(_UNTRAINED)},),
     summary="value network of pairs, weights from a file (Chen, Liu, Everett, How 2017)",
 )

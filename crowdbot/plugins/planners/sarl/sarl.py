@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Literal
 
 from crowdbot.plugin import Component
@@ -14,8 +15,12 @@ class SarlSpec(ValueSearchSpec):
     kind: Literal["sarl"] = "sarl"
 
 
+#: Weights of the right shapes that were never trained, for the conformance checks.
+_UNTRAINED = Path(__file__).with_name("untrained.npz")
+
 SARL = Component(
     spec=SarlSpec,
     build="crowdbot.plugins.planners.sarl.sarl_build:build",
+    examples=({"weights": str(_UNTRAINED)},),
     summary="value network with attention among people, weights from a file (Chen et al. 2019)",
 )

@@ -31,7 +31,7 @@ class ValueSearchSpec(RungSpec):
     )
     rotation_samples: Annotated[int, Ge(1), Le(64)] = Field(default=16, description="Directions.")
     gamma: Annotated[float, Gt(0), Le(1)] = Field(
-        default=0.9, description="Discount of the value for each metre at the largest speed."
+        default=0.9, description="Discount factor of the value, for each metre at full speed."
     )
     step_time: PositiveDuration = Field(
         default=0.25, description="Time between decisions, and of the look ahead, s."
