@@ -31,7 +31,8 @@ def crowdbot_components() -> Mapping[str, Sequence[Component[Any] | str]]:  # ty
     """Return the components that this package provides, by category.
 
     The categories are ``environment``, ``robot``, ``sensor``, ``noise``, ``planner``,
-    ``crowd policy``, ``cost function`` and ``metric``. What is listed may be
+    ``crowd policy``, ``cost function``, ``metric``, ``observation`` and ``reward``. What is listed
+    may be
 
     - ``"package.module:NAME"``: the component of this name;
     - ``"package.folder.*"``: all components of this category whose specs are defined in the

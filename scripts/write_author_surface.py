@@ -10,11 +10,11 @@ from typing import Annotated, Any, get_args, get_origin
 
 from crowdbot import plugin
 from crowdbot.dsl.spec.quantities import UNITS, Quantity
-from crowdbot.plugin import for_crowds, for_environments, for_metrics, for_sensors
+from crowdbot.plugin import for_crowds, for_environments, for_learning, for_metrics, for_sensors
 from crowdbot.plugin.homes import HOMES
 
 #: Tools that few components need.
-ROOMS = (for_metrics, for_sensors, for_crowds, for_environments)
+ROOMS = (for_metrics, for_sensors, for_crowds, for_environments, for_learning)
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
 
 _HEAD = """\

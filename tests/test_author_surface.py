@@ -12,14 +12,14 @@ from pathlib import Path
 import pytest
 
 from crowdbot import plugin
-from crowdbot.plugin import for_crowds, for_environments, for_metrics, for_sensors
+from crowdbot.plugin import for_crowds, for_environments, for_learning, for_metrics, for_sensors
 from crowdbot.plugin.homes import HOMES
 from tests.docs.doc_pages import PAGES, blocks
 from tests.paths import DATA, ROOT
 
-ROOMS = (for_metrics, for_sensors, for_crowds, for_environments)
+ROOMS = (for_metrics, for_sensors, for_crowds, for_environments, for_learning)
 SURFACE = ("crowdbot.plugin", *(room.__name__ for room in ROOMS))
-PUBLIC = (*SURFACE, "crowdbot", "crowdbot.errors", "crowdbot.testing")
+PUBLIC = (*SURFACE, "crowdbot", "crowdbot.errors", "crowdbot.rl", "crowdbot.testing")
 #: What a package's own tests may import beside that: the command line as a function.
 COMMAND = "crowdbot.cli"
 #: Components that others build on are theirs to import, as those of any package are.

@@ -17,7 +17,9 @@ from crowdbot.dsl.spec.component_specs import (
     EnvironmentSpec,
     MetricSpec,
     NoiseSpec,
+    ObservationSpec,
     PlannerSpec,
+    RewardSpec,
     RobotSpec,
     SensorSpec,
 )
@@ -26,6 +28,8 @@ from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 if TYPE_CHECKING:
     from crowdbot.core.crowd.policy import Agents, CrowdPolicy
     from crowdbot.core.crowd.velocity_search.cost import CompiledCost, NumpyCost
+    from crowdbot.core.learning.build import Observer, Reward
+    from crowdbot.core.learning.seen import LearningContext
     from crowdbot.core.planning.planner import Planner
     from crowdbot.core.scoring.metric import Metric
     from crowdbot.core.sensing.context import SensorContext
@@ -41,6 +45,8 @@ NoiseSpecT = TypeVar("NoiseSpecT", bound=NoiseSpec, contravariant=True)
 PlannerSpecT = TypeVar("PlannerSpecT", bound=PlannerSpec, contravariant=True)
 PolicySpecT = TypeVar("PolicySpecT", bound=CrowdPolicySpec, contravariant=True)
 CostSpecT = TypeVar("CostSpecT", bound=CostFunctionSpec, contravariant=True)
+ObservationSpecT = TypeVar("ObservationSpecT", bound=ObservationSpec, contravariant=True)
+RewardSpecT = TypeVar("RewardSpecT", bound=RewardSpec, contravariant=True)
 MetricSpecT = TypeVar("MetricSpecT", bound=MetricSpec, contravariant=True)
 
 
@@ -146,4 +152,20 @@ class BuildMetric(Protocol[MetricSpecT]):
 
     def __call__(self, spec: MetricSpecT, /) -> Metric:
         """Return a pure function of trajectories."""
+        ...
+
+
+class BuildObservation(Protocol[ObservationSpecT]):
+    """Builds an observer: called once per environment, and once per run of a policy."""
+
+    def __call__(self, spec: ObservationSpecT, context: LearningContext, /) -> Observer:
+        """Return an observer that has seen nothing yet."""
+        ...
+
+
+class BuildReward(Protocol[RewardSpecT]):
+    """Builds a reward: called once per environment."""
+
+    def __call__(self, spec: RewardSpecT, context: LearningContext, /) -> Reward:
+        """Return a stateless reward."""
         ...

@@ -68,7 +68,7 @@ HOMES = {
     "crowdbot.dsl.spec.component": "Component",
     "crowdbot.dsl.spec.component_specs": (
         "Agreement CostFunctionSpec CrowdPolicySpec EnvironmentSpec MetricSpec NoiseSpec "
-        "PlannerDocument PlannerRole PlannerSpec RobotSpec SensorSpec"
+        "ObservationSpec PlannerDocument PlannerRole PlannerSpec RewardSpec RobotSpec SensorSpec"
     ),
     "crowdbot.dsl.spec.metric_component": "Better MetricComponent MetricVariant declare_metric",
     "crowdbot.dsl.spec.metric_invariants": "MetricInvariants",
@@ -85,7 +85,7 @@ HOMES = {
     "crowdbot.errors": "InputError PluginError SimulationError did_you_mean nearest",
     "crowdbot.hookspecs": "hookimpl",
     "crowdbot.plugin.build_functions": (
-        "BuildCost BuildEnvironment BuildMetric BuildNoise BuildPlanner BuildPlannerWithHalf "
-        "BuildPolicy BuildRangeSensor BuildRobot BuildSensor"
+        "BuildCost BuildEnvironment BuildMetric BuildNoise BuildObservation BuildPlanner "
+        "BuildPlannerWithHalf BuildPolicy BuildRangeSensor BuildReward BuildRobot BuildSensor"
     ),
 }

@@ -27,6 +27,8 @@ def crowdbot_components() -> Mapping[str, Sequence[Component[Any] | str]]:
         "crowd policy": ["crowdbot.plugins.crowd.policies.*"],
         "cost function": ["crowdbot.plugins.crowd.cost_functions.*"],
         "metric": ["crowdbot.plugins.metrics.*"],
+        "observation": ["crowdbot.plugins.observations.*"],
+        "reward": ["crowdbot.plugins.rewards.*"],
     }
 
 

@@ -13,6 +13,7 @@ import crowdbot.testing.commanded_motion as commanded_motion
 import crowdbot.testing.cost_function as cost_function
 import crowdbot.testing.crowd_policy as crowd_policy
 import crowdbot.testing.environment as environment
+import crowdbot.testing.learning as learning
 import crowdbot.testing.metric as metric
 import crowdbot.testing.noise as noise
 import crowdbot.testing.planner as planner
@@ -30,7 +31,9 @@ BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
     "environment": environment.CHECKS,
     "metric": metric.CHECKS,
     "noise": noise.CHECKS,
+    "observation": learning.OBSERVATION_CHECKS,
     "planner": planner.CHECKS,
+    "reward": learning.REWARD_CHECKS,
     "robot": (*robot.CHECKS, *commanded_motion.CHECKS),
     "sensor": sensor.CHECKS,
 }

@@ -235,7 +235,7 @@ def test_checks_say_what_to_do_and_the_page_lists_them() -> None:
 def _as_listed() -> list[tuple[Any, ...]]:
     """The groups of checks in the order of the page."""
     order = ("environment", "robot", "sensor", "noise", "planner", "crowd policy", "cost function",
-             "metric")  # fmt: skip
+             "metric", "observation", "reward")  # fmt: skip
     assert set(order) == set(BY_CATEGORY) == {c.category for c in CATEGORIES}
     return [all_kinds.CHECKS, *(BY_CATEGORY[c] for c in order)]
 

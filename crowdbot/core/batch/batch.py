@@ -9,6 +9,7 @@ import numpy as np
 from crowdbot.core.batch import step as k
 from crowdbot.core.batch.array_tables import ENTRY
 from crowdbot.core.batch.crowd_tables import CROWD_FIELDS, GROUP_FIELDS
+from crowdbot.core.batch.gather import gather_people, gather_ranges, gather_robots
 from crowdbot.core.batch.robot_tables import DRIVE_STATE, ROBOT_FIELDS
 from crowdbot.core.batch.scanner_tables import SCANNER_FIELDS
 from crowdbot.core.batch.world import World
@@ -91,6 +92,18 @@ class Batch:
         if not self._sound.all():
             self._refuse(int(np.flatnonzero(~self._sound)[0]))
 
+    def robots(self, out: Array) -> None:
+        """Write the rows (W, R, 8) of all robots as people feel them."""
+        gather_robots(self._crowds, out)
+
+    def people(self, out: Array) -> None:
+        """Write x, y, vx, vy and radius (W, M, 5) of all people, NaN for those who are absent."""
+        gather_people(self._table, self._crowds, out)
+
+    def ranges(self, sensor: int, out: Array) -> None:
+        """Write the latest ranges (W, L, B) of one sensor of each world, m."""
+        gather_ranges(self._table, self._scanners, sensor, out)
+
     @property
     def now(self) -> Indices:
         """Return (W,) ticks of 1/128 s since each world began."""
@@ -110,6 +123,7 @@ class Batch:
         for _ in range(int(self._table[w, k.PERIOD])):
             world.advance_people()
             k.step_robots(w, self._table, self._crowds, self._robots, self._scanners, self.drives)
+        k.meet_people(w, self._table, self._crowds, self.drives)
 
     def _read(self, which: Indices) -> None:
         k.read_scanners(which, self._table, self._crowds, self._scanners)
@@ -126,6 +140,7 @@ class Batch:
         self._table[w, k.NOISE_KEY], self._table[w, k.NOW] = key % _MOST_KEY, 0
         self._sound[w] = True
         self.drives[w] = 0.0
+        self.drives[w, :, _DRIVE["gap"]] = np.inf
         self.drives[w, :, [_DRIVE["clear"], _DRIVE["arrived"]]] = -1.0
 
     def _show_tables(self, w: int) -> None:

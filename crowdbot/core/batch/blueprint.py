@@ -84,7 +84,7 @@ def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) ->
     """Resolve a scenario.
 
     Args:
-        sensors: names or categories of the lidars that are simulated.
+        sensors: names of the lidars that are simulated, or categories: the first one of each.
 
     Raises:
         InputError: there is no robot, a robot lacks a sensor, or batches cannot simulate it.
@@ -132,13 +132,13 @@ def _chosen(scenario: Scenario, k: int, own: Any, wanted: Sequence[str]) -> dict
             raise InputError(
                 f"{scenario.id}: robot '{robot}' has no sensor '{name}'; it has {known}"
             )
-        for n, spec in fitting.items():
-            if _category(spec) not in SCANNERS:
-                raise InputError(
-                    f"{scenario.id}: sensor '{n}' of robot '{robot}' is of kind '{spec.kind}'; "
-                    f"batches of worlds simulate lidars only ({', '.join(SCANNERS)})"
-                )
-            found[n] = spec
+        n = name if name in fitting else next(iter(fitting))
+        if _category(fitting[n]) not in SCANNERS:
+            raise InputError(
+                f"{scenario.id}: sensor '{n}' of robot '{robot}' is of kind '{fitting[n].kind}'; "
+                f"batches of worlds simulate lidars only ({', '.join(SCANNERS)})"
+            )
+        found[n] = fitting[n]
     return found
 
 

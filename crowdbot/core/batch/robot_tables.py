@@ -52,6 +52,9 @@ class DriveStateRecord:
         since: time since the step began, s.
         arrived: time since the beginning of the step at which it entered its goal zone, s; below 0
             while it has not.
+        gap: from its outline to the nearest person at the end of the step, m.
+        advance: distance driven towards people, weighted by the room that they lack, m.
+        work: work that people need against it to keep room, J.
     """
 
     v: float
@@ -65,6 +68,9 @@ class DriveStateRecord:
     touched: float
     since: float
     arrived: float
+    gap: float
+    advance: float
+    work: float
 
 
 DRIVE_LIMITS, DRIVE_STATE = record_type(DriveLimitsRecord), record_type(DriveStateRecord)

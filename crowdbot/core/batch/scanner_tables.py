@@ -110,6 +110,11 @@ def scanner_table(
             f"sensor '{seen.name}' is tilted, and batches of worlds cast level fans only"
         )
     own = ArrayTable(SCANNER_FIELDS)
+    if spec.errors:
+        raise InputError(
+            f"sensor '{seen.name}' has errors ({', '.join(spec.errors)}), which batches of worlds "
+            "cannot add; they can add noise"
+        )
     grid = _grid(seen.info)
     own.put(own=_record(seen, models[robot]), noise=_noise(spec, seen.name))
     fan = grid.arrays._asdict()

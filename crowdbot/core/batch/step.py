@@ -8,6 +8,7 @@ from crowdbot.core.batch import crowd_tables as c
 from crowdbot.core.batch.array_tables import floats1, floats2, floats3, ints1
 from crowdbot.core.batch.decide import decide
 from crowdbot.core.batch.drive import move, watch_goal
+from crowdbot.core.batch.encounters import meet
 from crowdbot.core.batch.robot_tables import DRIVE_STATE
 from crowdbot.core.batch.scan import is_due, scan
 from crowdbot.core.batch.scanner_tables import OWN, SCANNER
@@ -21,6 +22,7 @@ from crowdbot.core.crowd.state import (
     TOUCH_COLUMNS,
 )
 from crowdbot.core.crowd.step import tick
+from crowdbot.core.crowd.traits import TRAITS
 from crowdbot.core.support.compiling.compile import array_kernel, free_kernel
 from crowdbot.core.support.records import as_record, as_rows
 from crowdbot.core.support.ticks import TICK
@@ -60,6 +62,7 @@ def step_worlds(
             _advance_robots(worlds[w], crowds[w], robots[w], drives[w])
             worlds[w, NOW] += 1
             _read(worlds[w], crowds[w], scanners)
+        meet_people(w, worlds, crowds, drives)
 
 
 @free_kernel
@@ -77,6 +80,20 @@ def read_scanners(which: Indices, worlds: Indices, crowds: Indices, scanners: In
     """Read the scanners of some worlds at their present tick, where they are due."""
     for k in range(which.shape[0]):
         _read(worlds[which[k]], crowds[which[k]], scanners)
+
+
+@free_kernel
+def meet_people(w: int, worlds: Indices, crowds: Indices, drives: Array) -> None:
+    """Note what room people have around the robots of a world, at the end of a step."""
+    crowd, count = crowds[w], worlds[w, PEOPLE]
+    rows, outlines = as_rows(floats2(crowd, c.ROBOTS), ROBOT), floats3(crowd, c.OUTLINES)
+    people = as_rows(
+        floats1(crowd, c.FLAT)[HEADER_SIZE : HEADER_SIZE + count * AGENT_COLUMNS], PERSON
+    )
+    traits = as_rows(floats1(crowd, c.TRAITS), TRAITS)
+    for r in range(rows.shape[0]):
+        drive = as_record(drives[w, r], DRIVE_STATE)
+        meet(drive, rows[r], outlines, r, people, traits, worlds[w, PERIOD] * TICK)
 
 
 @array_kernel

@@ -102,7 +102,7 @@ class World:
     def _crowd(self, pool: ScratchPool) -> ArrayTable:
         if self.engine is None:
             own = ArrayTable(CROWD_FIELDS)
-            own.put(flat=self.flat, robots=self.robots)
+            own.put(flat=self.flat, robots=self.robots, outlines=self.outlines)
             return own
         return crowd_table(
             self.engine, self.flat, self.robots, self.outlines, self.stiffnesses, pool

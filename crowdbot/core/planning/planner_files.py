@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from crowdbot.core.planning.policies.policy_choice import is_policy, policy_file
 from crowdbot.core.support.source_digest import data_files, source_files
 from crowdbot.dsl.text.plain_document import read_document
 from crowdbot.errors import InputError
@@ -20,6 +21,11 @@ def planner_files(text: str, include: Iterable[str] = ()) -> dict[str, Path]:
     Raises:
         InputError: there is no such file, or a pattern matches none or leads out of the folder.
     """
+    if is_policy(text):
+        file = policy_file(text)
+        if not file.is_file():
+            raise InputError(f"{file}: no such file")
+        return {file.name: file}
     path = Path(text.rpartition(":")[0] if ".py:" in text else text)
     if path.suffix not in (".py", ".yaml", ".yml"):
         raise InputError(f"{text}: a planner is handed in as FILE.py:CLASS or as a document")

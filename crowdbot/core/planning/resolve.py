@@ -22,6 +22,7 @@ from crowdbot.core.planning.fleet_choice import fleet_choice
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.half_choice import choice_with_half
 from crowdbot.core.planning.planner import Planner
+from crowdbot.core.planning.policies.policy_choice import is_policy, policy_choice
 from crowdbot.core.planning.process.process_planner import NotLoaded, ProcessPlan, describe
 from crowdbot.core.planning.python_file import (
     build_of_class,
@@ -66,8 +67,9 @@ def resolve_planner(
     Code of planners in separate processes is not imported here.
 
     Args:
-        text: a kind (``dwa``), a YAML file with ``kind`` and parameters, or ``file.py:Class``; for
-            several robots ``a=dwa,b=file.py:Class``, or one planner for all.
+        text: a kind (``dwa``), a YAML file with ``kind`` and parameters, ``file.py:Class``, or a
+            trained policy, ``policy.onnx`` or ``sb3:policy.zip``; for several robots
+            ``a=dwa,b=file.py:Class``, or one planner for all.
         registry: the installed components.
         settings: ``key=value``, values in YAML; they override those of a file. For several robots
             ``a.key=value``.
@@ -82,6 +84,8 @@ def resolve_planner(
     if fleet is not None:
         return fleet
     given = setting_values(settings)
+    if is_policy(text):
+        return policy_choice(text, given, registry)
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):
         return _from_class(Path(path), name, given, place)

@@ -210,6 +210,25 @@ class MetricSpec(ComponentSpec):
     category: ClassVar[str] = "metric"
 
 
+class ObservationSpec(ComponentSpec):
+    """Abstract observation: what a policy that learns sees, as one vector."""
+
+    category: ClassVar[str] = "observation"
+    #: True if it holds what no real sensor measures; a planner that observes so is privileged.
+    privileged: ClassVar[bool] = False
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Return the sensors that it reads, by name or category."""
+        return ()
+
+
+class RewardSpec(ComponentSpec):
+    """Abstract reward of a policy that learns, step by step."""
+
+    category: ClassVar[str] = "reward"
+
+
 CATEGORIES: tuple[type[ComponentSpec], ...] = (
     EnvironmentSpec,
     RobotSpec,
@@ -219,4 +238,6 @@ CATEGORIES: tuple[type[ComponentSpec], ...] = (
     CrowdPolicySpec,
     CostFunctionSpec,
     MetricSpec,
+    ObservationSpec,
+    RewardSpec,
 )

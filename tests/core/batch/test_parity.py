@@ -75,7 +75,7 @@ def compare(scenario: crowdbot.Scenario, seconds: float, lidars: list[str]) -> d
 
 def test_a_crowd_of_the_challenge_robot_people_and_lidars() -> None:
     scenario = crowdbot.load(*CHALLENGE, set=[KINEMATIC, FEW, *SURE])
-    found = compare(scenario, 6.0, ["lidar"])
+    found = compare(scenario, 6.0, ["front_lidar", "rear_lidar"])
     assert found["robot"] == 0.0
     assert found["people"] < 1e-3  # what a person's acceleration does in a tick
     assert found["ranges"] < 1e-9
@@ -138,3 +138,26 @@ def test_a_sensor_that_batches_cannot_simulate_is_named() -> None:
         blueprint(scenario, registry(), ["camera"])
     with pytest.raises(InputError, match=r"no sensor 'radar'; it has 'camera'"):
         blueprint(scenario, registry(), ["radar"])
+
+
+def test_with_dynamic_control_the_robot_stays_within_5_cm_for_20_s() -> None:
+    """The same commands without contact: wheels and motors against exact arcs."""
+    scenario = crowdbot.load(*CHALLENGE, set="crowd.flow.density=0.02")
+    world = World(blueprint(scenario, registry(), []), None)
+    batch, rng = Batch([world], [0]), np.random.default_rng(3)
+    drawn = rng.uniform([0.0, -0.8], [0.5, 0.8], (20, 2)).repeat(16, axis=0)
+    away, people = [], []
+    with crowdbot.Session(scenario, sensors=[], privileged=True) as session:
+        truth = session.reset().truth
+        for v, w in drawn.tolist():
+            truth = session.step((v, w)).truth
+            batch.step(np.array([[[v, w, 0.0]]]))
+            assert truth is not None
+            assert batch.drive("touched")[0, 0] == 0.0
+            away.append(np.hypot(*(np.array(truth.pose[:2]) - world.robots[0, :2])))
+            rows = world.rows()[world.rows()[:, s.WAITING] == s.PRESENT]
+            ahead = rows[:, s.X : s.Y + 1] + TICK * rows[:, s.VX : s.VY + 1]
+            off = np.hypot(*(truth.people - ahead).T)
+            people.append(off[off < 5.0].mean())
+    assert max(away) < 0.05  # 5 mm when this was written
+    assert np.mean(people) < 0.01  # 3 micrometres when this was written

@@ -1,0 +1,48 @@
+"""Worlds that are built once and begin again: new draws of people, and those drawn before."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+
+from crowdbot.core.batch.array_tables import ScratchPool
+from crowdbot.core.batch.blueprint import Blueprint
+from crowdbot.core.batch.world import World
+
+#: Most worlds that are kept while no one steps them.
+_MOST = 1024
+
+
+class Bank:
+    """Worlds of one thread.
+
+    Args:
+        keep: True if draws come again, so that worlds are kept.
+    """
+
+    def __init__(self, *, keep: bool) -> None:
+        self._keep, self._pool = keep, ScratchPool()
+        self._free: OrderedDict[tuple[int, int | None], list[World]] = OrderedDict()
+
+    def take(self, blueprint: Blueprint, root: int | None) -> World:
+        """Return a world of a draw at its beginning, kept or new.
+
+        Raises:
+            InputError: the people do not fit, or a robot would start in a wall or a person.
+            PluginError: a component cannot be built.
+        """
+        kept = self._free.get((id(blueprint), root))
+        if not kept:
+            return World(blueprint, root, self._pool)
+        world = kept.pop()
+        world.reset()
+        return world
+
+    def give_back(self, world: World) -> None:
+        """Keep a world that is not stepped any more."""
+        if not self._keep:
+            return
+        key = id(world.blueprint), world.root
+        self._free.setdefault(key, []).append(world)
+        self._free.move_to_end(key)
+        while sum(map(len, self._free.values())) > _MOST:
+            self._free.popitem(last=False)

@@ -1,0 +1,66 @@
+"""Room that people have around a robot, compiled: the quantities of the scores, step by step.
+
+Gap, advance and demanded work are those of the metrics ``intrusion`` and ``push_work``, with their
+usual parameters, but taken once a step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.core.batch.robot_tables import DriveStateRecord
+from crowdbot.core.crowd.contact.robot_contact import RobotRecord, corners_of, overlap
+from crowdbot.core.crowd.state import PRESENT, People
+from crowdbot.core.crowd.traits import TraitsRecord
+from crowdbot.core.support.compiling.compile import kernel
+from crowdbot.core.support.records import Rows
+from crowdbot.core.types.arrays import Array
+
+#: People farther off do not evade, m; a person with this gap has room, m.
+_NEAR, _ROOM = 2.0, 0.75
+#: Gap that people have to get, m; longest time before that they evade in, s.
+_DEMANDED, _HORIZON = 0.5, 2.0
+#: Nothing is planned in less than this, s, or with more than people reach, m/s^2.
+_SOONEST, _MOST = 0.5, 3.0
+#: Lower relative speeds bring no one nearer, m/s.
+_STILL = 1e-3
+#: People farther off than this have no part in a step, m.
+_SIGHT = 8.0
+
+
+@kernel
+def meet(
+    drive: DriveStateRecord, robot: RobotRecord, outlines: Array, r: int, people: People,
+    traits: Rows[TraitsRecord], dt: float,
+) -> None:  # fmt: skip
+    """Set ``gap``, ``advance`` and ``work`` of a step.
+
+    Args:
+        outlines: (R, K, 2) of the robots, of which this is number ``r``.
+        dt: how long the step takes, s.
+    """
+    outline = outlines[r][: corners_of(outlines, r)]
+    drive.gap, drive.advance, drive.work = math.inf, 0.0, 0.0
+    for i in range(people.shape[0]):
+        if people[i].waiting != PRESENT:
+            continue
+        px, py = people[i].x - robot.x, people[i].y - robot.y
+        away = math.hypot(px, py)
+        if away > _SIGHT or away == 0.0:
+            drive.gap = min(drive.gap, away)
+            continue
+        depth = overlap(robot.yaw, outline, -px, -py, robot.body + traits[i].radius)[0]
+        gap = -depth
+        drive.gap = min(drive.gap, gap)
+        approach = max(0.0, (robot.vx * px + robot.vy * py) / away)
+        if approach == 0.0:
+            continue
+        if away <= _NEAR:
+            drive.advance += dt * approach * min(1.0, max(0.0, 1.0 - gap / _ROOM))
+        wx, wy = people[i].vx - robot.vx, people[i].vy - robot.vy
+        until = -(px * wx + py * wy) / max(wx * wx + wy * wy, _STILL * _STILL)
+        if 0.0 < until < _HORIZON:
+            miss = math.hypot(px + until * wx, py + until * wy)
+            shift = max(0.0, away - gap + _DEMANDED - miss)
+            need = min(_MOST, 2.0 * shift / max(until, _SOONEST) ** 2)
+            drive.work += dt * need * approach * traits[i].mass

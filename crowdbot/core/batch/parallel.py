@@ -1,0 +1,97 @@
+"""Batches in threads: the same as one batch, on several cores."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from crowdbot.core.batch.batch import Batch
+from crowdbot.core.batch.world import World
+from crowdbot.core.types.arrays import Array, Indices
+
+
+class Batches:
+    """Worlds shared out among threads, in order; with one thread there is no other.
+
+    Args:
+        worlds, keys: as of `Batch`.
+        threads: how many.
+    """
+
+    def __init__(self, worlds: Sequence[World], keys: Sequence[int], threads: int) -> None:
+        count = min(threads, len(worlds))
+        ends: list[int] = np.linspace(0, len(worlds), count + 1).astype(int).tolist()
+        self._parts: list[tuple[int, int]] = list(itertools.pairwise(ends))
+        self._thread_of = np.repeat(np.arange(len(self._parts)), np.diff(ends)).tolist()
+        self._batches: list[Batch] = [Batch(worlds[a:b], keys[a:b]) for a, b in self._parts]
+        several = len(self._batches) > 1
+        self._pool = ThreadPoolExecutor(len(self._batches)) if several else None
+
+    def thread_of(self, w: int) -> int:
+        """Return the number of the thread of a world."""
+        return int(self._thread_of[w])
+
+    def put(self, w: int, world: World, key: int) -> None:
+        """Replace a world, see `Batch.put`."""
+        number = self.thread_of(w)
+        self._batches[number].put(w - self._parts[number][0], world, key)
+
+    def world(self, w: int) -> World:
+        """Return a world as it is now."""
+        number = self.thread_of(w)
+        return self._batches[number].worlds[w - self._parts[number][0]]
+
+    def step(self, commands: Array, which: Indices) -> None:
+        """Advance some worlds by one step each, see `Batch.step`."""
+
+        def one(number: int) -> None:
+            first, end = self._parts[number]
+            own = which[(which >= first) & (which < end)] - first
+            if len(own):
+                self._batches[number].step(commands[first:end], own)
+
+        self._each(one)
+
+    def robots(self, out: Array) -> None:
+        """Write the rows (W, R, 8) of all robots, see `Batch.robots`."""
+        self._into(out, lambda batch, rows: batch.robots(rows))
+
+    def people(self, out: Array) -> None:
+        """Write all people (W, M, 5), see `Batch.people`."""
+        self._into(out, lambda batch, rows: batch.people(rows))
+
+    def ranges(self, sensor: int, out: Array) -> None:
+        """Write the ranges (W, L, B) of one sensor, see `Batch.ranges`."""
+        self._into(out, lambda batch, rows: batch.ranges(sensor, rows))
+
+    def drive(self, name: str) -> Array:
+        """Return (W, R) a field of `DriveStateRecord`, a copy."""
+        return np.concatenate([batch.drive(name) for batch in self._batches])
+
+    @property
+    def commands(self) -> Array:
+        """Return (W, R, 3) the commands v, w, vy of all robots after slew limits, a copy."""
+        return np.concatenate([batch.commands for batch in self._batches])
+
+    @property
+    def now(self) -> Indices:
+        """Return (W,) ticks of 1/128 s since each world began, a copy."""
+        return np.concatenate([batch.now for batch in self._batches])
+
+    def close(self) -> None:
+        """End the threads."""
+        if self._pool is not None:
+            self._pool.shutdown()
+
+    def _into(self, out: Array, write: Callable[[Batch, Array], None]) -> None:
+        for batch, (first, end) in zip(self._batches, self._parts, strict=True):
+            write(batch, out[first:end])
+
+    def _each(self, one: Callable[[int], None]) -> None:
+        if self._pool is None:
+            one(0)
+        else:
+            list(self._pool.map(one, range(len(self._batches))))

@@ -1,0 +1,25 @@
+"""Actions of policies that learn: shares of a robot's limits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.robot import RobotLimits
+
+
+def action_size(limits: RobotLimits) -> int:
+    """Return how many numbers an action has: v, w and, where the drive can, vy."""
+    return 3 if limits.vy_max > 0.0 else 2
+
+
+def commands_of(actions: Array, limits: RobotLimits) -> Array:
+    """Return commands v, w, vy (W, 3) of actions (W, 2 or 3) from -1 to 1, m/s and rad/s.
+
+    -1 is the least of a limit, 1 its largest.
+    """
+    least = np.array([limits.v_min, -limits.w_max, -limits.vy_max])
+    most = np.array([limits.v_max, limits.w_max, limits.vy_max])
+    shares = np.full((len(actions), 3), 0.5)
+    shares[:, : actions.shape[1]] = 0.5 * (np.clip(actions, -1.0, 1.0) + 1.0)
+    return np.asarray(least + shares * (most - least))

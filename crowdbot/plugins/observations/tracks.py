@@ -1,0 +1,35 @@
+"""Observation of the nearest people in the robot's frame."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.plugin import Component, ObservationSpec, PositiveLength, PositiveSpeed
+
+People = Annotated[int, Ge(1), Le(256)]
+
+
+class TracksSpec(ObservationSpec):
+    """The nearest people, nearest first, then goal and motion; it is privileged.
+
+    Each person has six numbers: 1 (0 for no one, and then all are 0), x and y in the robot's frame
+    divided by ``range``, velocity x and y in that frame divided by ``fastest``, and the radius in
+    metres. Goal and motion are those of ``lidar_stack``.
+    """
+
+    kind: Literal["tracks"] = "tracks"
+    privileged: ClassVar[bool] = True
+    people: People = Field(default=10, description="How many people, at most.")
+    range: PositiveLength = Field(default=6.0, description="People farther off are not seen, m.")
+    fastest: PositiveSpeed = Field(default=3.0, description="Faster people are this fast, m/s.")
+    goal_range: PositiveLength = Field(default=10.0, description="Farther goals are this far, m.")
+
+
+TRACKS = Component(
+    spec=TracksSpec,
+    build="crowdbot.plugins.observations.tracks_build:build",
+    summary="nearest people in the robot's frame, as they are",
+)

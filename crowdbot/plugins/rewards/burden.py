@@ -1,0 +1,27 @@
+"""Reward of progress that demands little of people."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.plugin import Component
+from crowdbot.plugins.rewards.progress import Amount, ProgressSpec
+
+
+class BurdenSpec(ProgressSpec):
+    """``progress``, less the work that people need against the robot to keep half a metre of room.
+
+    The work is the quantity of the score of burden, ``push_work.rate``.
+    """
+
+    kind: Literal["burden"] = "burden"  # type: ignore[assignment]
+    work: Amount = Field(default=0.01, description="Taken off for each joule.")
+
+
+BURDEN = Component(
+    spec=BurdenSpec,
+    build="crowdbot.plugins.rewards.burden_build:build",
+    summary="progress that demands little of people",
+)

@@ -1,0 +1,24 @@
+"""Reward of burden."""
+
+from __future__ import annotations
+
+from crowdbot.plugin import Array
+from crowdbot.plugin.for_learning import Change, LearningContext
+from crowdbot.plugins.rewards.burden import BurdenSpec
+from crowdbot.plugins.rewards.progress_build import Progress
+
+
+class Burden:
+    """Progress, less the work demanded of people."""
+
+    def __init__(self, spec: BurdenSpec, context: LearningContext) -> None:
+        self._work, self._progress = spec.work, Progress(spec, context)
+
+    def of(self, change: Change) -> Array:
+        """Return (W,) rewards."""
+        return self._progress.of(change) - self._work * change.work
+
+
+def build(spec: BurdenSpec, context: LearningContext) -> Burden:
+    """Return the reward."""
+    return Burden(spec, context)

@@ -1,0 +1,30 @@
+"""Reward of progress that leaves people their room."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.plugin import Component
+from crowdbot.plugins.rewards.progress import Amount, ProgressSpec
+
+
+class ComfortSpec(ProgressSpec):
+    """``progress``, less what the robot advances on people who have little room.
+
+    The distance driven towards people, weighted by what they lack of 0.75 m, is the quantity of the
+    score of comfort, ``intrusion.rate``.
+    """
+
+    kind: Literal["comfort"] = "comfort"  # type: ignore[assignment]
+    advance: Amount = Field(
+        default=1.0, description="Taken off for each metre towards people without room."
+    )
+
+
+COMFORT = Component(
+    spec=ComfortSpec,
+    build="crowdbot.plugins.rewards.comfort_build:build",
+    summary="progress that leaves people their room",
+)

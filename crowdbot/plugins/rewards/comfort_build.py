@@ -1,0 +1,24 @@
+"""Reward of comfort."""
+
+from __future__ import annotations
+
+from crowdbot.plugin import Array
+from crowdbot.plugin.for_learning import Change, LearningContext
+from crowdbot.plugins.rewards.comfort import ComfortSpec
+from crowdbot.plugins.rewards.progress_build import Progress
+
+
+class Comfort:
+    """Progress, less advance on people without room."""
+
+    def __init__(self, spec: ComfortSpec, context: LearningContext) -> None:
+        self._advance, self._progress = spec.advance, Progress(spec, context)
+
+    def of(self, change: Change) -> Array:
+        """Return (W,) rewards."""
+        return self._progress.of(change) - self._advance * change.advance
+
+
+def build(spec: ComfortSpec, context: LearningContext) -> Comfort:
+    """Return the reward."""
+    return Comfort(spec, context)

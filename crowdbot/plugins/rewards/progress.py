@@ -1,0 +1,33 @@
+"""Dense reward: progress to the goal, and what it may cost."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.plugin import Component, RewardSpec
+
+Amount = Annotated[float, Ge(0.0), Le(1e6)]
+
+
+class ProgressSpec(RewardSpec):
+    """Progress in metres, and costs of time, contact, walls and jerky commands."""
+
+    kind: Literal["progress"] = "progress"
+    progress: Amount = Field(default=1.0, description="For each metre nearer to the goal.")
+    arrival: Amount = Field(default=5.0, description="For arriving.")
+    time: Amount = Field(default=0.05, description="Taken off for each second.")
+    contact: Amount = Field(default=5.0, description="Taken off for each second of contact.")
+    wall: Amount = Field(default=1.0, description="Taken off for each second stopped by a wall.")
+    change: Amount = Field(
+        default=0.01, description="Taken off for a change of the command by its whole range."
+    )
+
+
+PROGRESS = Component(
+    spec=ProgressSpec,
+    build="crowdbot.plugins.rewards.progress_build:build",
+    summary="progress to the goal, at each step",
+)

@@ -1,0 +1,36 @@
+"""Sparse reward: arrival, contact, and little room."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from crowdbot.plugin import Component, NonNegativeLength, RewardSpec
+
+Amount = Annotated[float, Ge(0.0), Le(1e6)]
+
+
+class SparseSpec(RewardSpec):
+    """1 for arrival, less for contact and for little room, as in CADRL.
+
+    Source: Chen, Liu, Everett, How, "Decentralized non-communicating multiagent collision avoidance
+    with deep reinforcement learning", ICRA 2017, equation 6: -0.25 for a contact, and
+    -0.1 - d/2 where the gap d to the nearest person is below 0.2 m. There, contact ends the
+    episode; here it counts in every step with contact, unless the environment ends it.
+    """
+
+    kind: Literal["sparse"] = "sparse"
+    arrival: Amount = Field(default=1.0, description="For arriving.")
+    contact: Amount = Field(default=0.25, description="Taken off for a step with contact.")
+    near: NonNegativeLength = Field(default=0.2, description="Gap to people without cost, m.")
+    nearness: Amount = Field(default=0.1, description="Taken off for any smaller gap.")
+    slope: Amount = Field(default=0.5, description="Taken off besides, for each metre of gap.")
+
+
+SPARSE = Component(
+    spec=SparseSpec,
+    build="crowdbot.plugins.rewards.sparse_build:build",
+    summary="arrival, contact and little room, as in CADRL",
+)

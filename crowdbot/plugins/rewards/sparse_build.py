@@ -1,0 +1,29 @@
+"""Sparse reward."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.plugin import Array
+from crowdbot.plugin.for_learning import Change, LearningContext
+from crowdbot.plugins.rewards.sparse import SparseSpec
+
+
+class Sparse:
+    """Arrival comes before contact, contact before little room."""
+
+    def __init__(self, spec: SparseSpec) -> None:
+        self._spec = spec
+
+    def of(self, change: Change) -> Array:
+        """Return (W,) rewards."""
+        spec, gap = self._spec, np.maximum(change.gap, 0.0)
+        cost = np.where(gap < spec.near, spec.nearness + spec.slope * np.minimum(gap, spec.near), 0)
+        cost = np.where(change.contact > 0.0, spec.contact, cost)
+        return np.asarray(np.where(change.arrived, spec.arrival, -cost))
+
+
+def build(spec: SparseSpec, context: LearningContext) -> Sparse:
+    """Return the reward."""
+    del context
+    return Sparse(spec)

@@ -1,0 +1,92 @@
+"""Draws of episodes: what each world is in its n-th episode, from its seed alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.dsl.scenario.seeds import stream_seed
+from crowdbot.errors import InputError
+from crowdbot.rl.env_setup import EnvSetup
+
+#: Roots of draws that come again are those of this number, which no suite has.
+_AGAIN = "rl.again"
+
+
+@dataclass(frozen=True, slots=True)
+class Episode:
+    """One episode of a world.
+
+    Attributes:
+        scenario: id.
+        root: root of its draw of people; None: those of the suite.
+        key: of its noise.
+    """
+
+    scenario: str
+    root: int | None
+    key: int
+
+
+class Course:
+    """The episodes of one world, one after the other.
+
+    Args:
+        seed: of the world.
+    """
+
+    def __init__(self, setup: EnvSetup, seed: int) -> None:
+        self._setup, self._seed, self._number = setup, seed, -1
+        self._level = 0
+
+    def next(self, level: int | None = None) -> Episode:
+        """Return the next episode.
+
+        Args:
+            level: of the curriculum, from now on; None: as before.
+
+        Raises:
+            InputError: there is no such level.
+        """
+        levels = self._setup.levels
+        if level is not None:
+            if not 0 <= level < len(levels):
+                raise InputError(f"level {level} of {len(levels)}: levels count from 0")
+            self._level = level
+        self._number += 1
+        chosen = levels[self._level]
+        scenario = chosen[self._draw("scenario") % len(chosen)].id
+        return Episode(scenario, self._root(scenario), self._draw("noise"))
+
+    def _draw(self, stream: str) -> int:
+        return stream_seed(self._seed, str(self._number), f"rl.{stream}")
+
+    def _root(self, scenario: str) -> int | None:
+        """Return the root of the draw of people."""
+        setup = self._setup
+        if setup.edition:
+            return None
+        if setup.draws is None:
+            return self._draw("crowd")
+        number = self._draw("crowd") % setup.draws
+        return stream_seed(number, scenario, _AGAIN)
+
+
+def seeds_of(seed: int | list[int | None] | None, count: int) -> list[int | None]:
+    """Return the seed of each world, as Gymnasium counts them; None: leave as it is.
+
+    Raises:
+        InputError: there is another number of seeds, or one is negative.
+    """
+    if seed is None:
+        return [None] * count
+    if isinstance(seed, int | np.integer):
+        found: list[int | None] = [int(seed) + k for k in range(count)]
+    else:
+        found = [None if s is None else int(s) for s in seed]
+    if len(found) != count:
+        raise InputError(f"{len(found)} seeds for {count} worlds")
+    if any(s is not None and s < 0 for s in found):
+        raise InputError("seeds must not be negative")
+    return found

@@ -1,0 +1,124 @@
+"""Several robots in one world, as a PettingZoo environment."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.errors import InputError
+from crowdbot.rl.env_setup import resolve
+from crowdbot.rl.libraries import ParallelEnv, gym
+from crowdbot.rl.picture import picture
+from crowdbot.rl.rollout import Rollout
+
+Values = dict[str, Any]
+
+
+class ParallelNavEnv(ParallelEnv):
+    """All robots of a scenario, each with its own observation, action and reward.
+
+    A robot that has arrived is done and stands; the others go on, until all are done or the time is
+    over.
+
+    Args:
+        arguments: as of `crowdbot.rl.env_setup.resolve`.
+
+    Raises:
+        CrowdbotError: an argument is wrong, or a component cannot be simulated in a batch.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {
+        "name": "crowdbot_nav_v0",
+        "render_modes": ["rgb_array"],
+        "render_fps": 16,
+    }
+
+    def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise InputError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}")
+        seed = int(np.random.SeedSequence().generate_state(1)[0])
+        self.rollout, self.render_mode = Rollout(resolve(**arguments), [seed]), render_mode
+        self.possible_agents = list(self.rollout.world(0).blueprint.names)
+        self.agents: list[str] = []
+        self._actors = dict(zip(self.possible_agents, self.rollout.actors, strict=True))
+        self.observation_spaces = {
+            name: gym.spaces.Box(actor.low, actor.high) for name, actor in self._actors.items()
+        }
+        self.action_spaces = {
+            name: gym.spaces.Box(-1.0, 1.0, (actor.size,), np.float32)
+            for name, actor in self._actors.items()
+        }
+
+    def observation_space(self, agent: str) -> Any:
+        """Return the observation space of a robot."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> Any:
+        """Return the action space of a robot."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Values, Values]:
+        """Begin an episode of all robots; arguments as of `crowdbot.rl.env.NavEnv.reset`."""
+        level = (options or {}).get("level")
+        self.rollout.begin(np.ones(1, np.bool_), [seed], level)
+        self.agents = list(self.possible_agents)
+        return self._observe(fresh=True), {name: {} for name in self.agents}
+
+    def step(self, actions: Values) -> tuple[Values, Values, Values, Values, Values]:
+        """Advance all robots by one period of their planner.
+
+        Args:
+            actions: of each robot that goes on, from -1 to 1.
+
+        Raises:
+            InputError: a robot that goes on has no action, or one that is wrong.
+        """
+        if not self.agents:
+            return {}, {}, {}, {}, {}
+        given = {name: self._command(name, actions) for name in self.agents}
+        still = np.zeros((1, 3))
+        rows = [given.get(name, still) for name in self.possible_agents]
+        rollout, here = self.rollout, np.ones(1, np.bool_)
+        rollout.advance(np.stack(rows, axis=1), np.zeros(1, np.int64))
+        going = {name: self._actors[name] for name in self.agents}
+        rewards = {
+            n: float(a.reward(rollout.batches, rollout.rows, given[n], here)[0])
+            for n, a in going.items()
+        }
+        done = {n: bool(a.arrived(rollout.batches)[0]) for n, a in going.items()}
+        late = {n: bool(a.late(rollout.batches)[0]) and not done[n] for n, a in going.items()}
+        infos = {
+            n: {"is_success": done[n], "touched": bool(a.touched(rollout.batches)[0])}
+            for n, a in going.items()
+        }
+        observed = self._observe(fresh=False)
+        self.agents = [name for name in self.agents if not (done[name] or late[name])]
+        return observed, rewards, done, late, infos
+
+    def _command(self, name: str, actions: Values) -> NDArray[np.float64]:
+        """Return the command (1, 3) of a robot."""
+        if name not in actions:
+            raise InputError(f"robot '{name}' has no action")
+        action = np.asarray(actions[name], np.float64)
+        if action.shape != (self._actors[name].size,) or not np.isfinite(action).all():
+            raise InputError(f"the action of '{name}' has {self._actors[name].size} finite numbers")
+        return self._actors[name].commands(action[np.newaxis])
+
+    def _observe(self, *, fresh: bool) -> Values:
+        new = np.array([fresh])
+        return {
+            name: self.rollout.look(new, ~new, self.possible_agents.index(name))[0]
+            for name in self.agents
+        }
+
+    def render(self) -> Any:
+        """Return a picture (H, W, 3) uint8 of the world from above, if asked for."""
+        return None if self.render_mode is None else picture(self.rollout, 0)
+
+    def close(self) -> None:
+        """End the threads."""
+        self.rollout.close()

@@ -1,0 +1,167 @@
+"""W worlds of one robot each, begun and stepped by number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core.batch.bank import Bank
+from crowdbot.core.batch.parallel import Batches
+from crowdbot.core.batch.world import World
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.arrays import Array, Indices, Mask
+from crowdbot.errors import InputError
+from crowdbot.rl.actor import Actor, Vectors
+from crowdbot.rl.env_setup import EnvSetup
+from crowdbot.rl.episodes import Course
+
+
+@dataclass(frozen=True, slots=True)
+class StepResult:
+    """Outcome of a step, world by world.
+
+    Attributes:
+        reward: (W,).
+        arrived, touched, late: (W,) True for robots that arrived, that were touched in this step,
+            and whose time is over.
+    """
+
+    reward: Array
+    arrived: Mask
+    touched: Mask
+    late: Mask
+
+
+class Rollout:
+    """Worlds, with the observations and rewards of their robots.
+
+    Args:
+        seeds: (W,) of the worlds.
+        threads: how many step them.
+
+    Attributes:
+        actors: the robots of each world, in order.
+        rows: (W, R, 8) as people feel them, after the last step.
+        scenarios: (W,) id of each world's scenario.
+    """
+
+    def __init__(self, setup: EnvSetup, seeds: Sequence[int], threads: int = 1) -> None:
+        self.setup, count = setup, len(seeds)
+        robots = len(next(iter(setup.blueprints.values())).models)
+        self.actors = [Actor(setup, count, robot) for robot in range(robots)]
+        self._courses = [Course(setup, seed) for seed in seeds]
+        keep = setup.draws is not None or setup.edition
+        self._banks = [Bank(keep=keep) for _ in range(max(1, min(threads, count)))]
+        self.batches = self._first(threads)
+        self.rows = np.zeros((count, robots, 8))
+        self.scenarios = np.full(count, "", object)
+        self._people = np.zeros(count, np.int64)
+        for w in range(count):
+            self._note(w)
+
+    def _first(self, threads: int) -> Batches:
+        """Return the worlds of the first episodes."""
+        count, shared = len(self._courses), len(self._banks)
+        ends = np.linspace(0, count, shared + 1).astype(int)[1:]
+        worlds, keys = [], []
+        for w, course in enumerate(self._courses):
+            episode = course.next()
+            bank = self._banks[int(np.searchsorted(ends, w, side="right"))]
+            worlds.append(bank.take(self.setup.blueprints[episode.scenario], episode.root))
+            keys.append(episode.key)
+        return Batches(worlds, keys, threads)
+
+    def begin(self, which: Mask, seeds: Sequence[int | None], level: int | None = None) -> None:
+        """Begin new episodes in some worlds.
+
+        Args:
+            which: (W,) worlds that begin.
+            seeds: (W,) new seeds; None: the next episode of the present one.
+            level: of the curriculum; None: as before.
+
+        Raises:
+            InputError: there is no such level, or the people of a draw do not fit.
+        """
+        for w in np.flatnonzero(which).tolist():
+            seed = seeds[w]
+            if seed is not None:
+                self._courses[w] = Course(self.setup, seed)
+            episode = self._courses[w].next(level)
+            bank = self._banks[self.batches.thread_of(w)]
+            bank.give_back(self.world(w))
+            plan = self.setup.blueprints[episode.scenario]
+            self.batches.put(w, bank.take(plan, episode.root), episode.key)
+            self._note(w)
+
+    def _note(self, w: int) -> None:
+        world = self.world(w)
+        self._people[w], self.scenarios[w] = world.people, world.blueprint.scenario.id
+        for actor in self.actors:
+            actor.begin(w, world.blueprint.tasks)
+
+    def advance(self, commands: Array, which: Indices) -> None:
+        """Advance some worlds by one step.
+
+        Args:
+            commands: (W, R, 3) of all robots.
+            which: rows of the worlds.
+        """
+        self.batches.step(commands, which)
+        self.batches.robots(self.rows)
+
+    def step(self, actions: Array, which: Indices) -> StepResult:
+        """Advance some worlds of one robot each; the rewards of others are 0.
+
+        Args:
+            actions: (W, N) from -1 to 1.
+            which: rows of the worlds.
+
+        Raises:
+            InputError: an action is not finite.
+        """
+        if not np.isfinite(actions[which]).all():
+            raise InputError("an action is not finite")
+        (actor,), batches = self.actors, self.batches
+        given = actor.commands(actions)
+        self.advance(given[:, np.newaxis], which)
+        here = np.zeros(len(actions), np.bool_)
+        here[which] = True
+        arrived = actor.arrived(batches) & here
+        return StepResult(
+            reward=actor.reward(batches, self.rows, given, here),
+            arrived=arrived,
+            touched=actor.touched(batches) & here,
+            late=actor.late(batches) & here & ~arrived,
+        )
+
+    def look(self, fresh: Mask, stepped: Mask, robot: int = 0) -> Vectors:
+        """Return the observations (W, N) of a robot of each world.
+
+        Args:
+            fresh: (W,) True where an episode has just begun.
+            stepped: (W,) True where a step was made since the last look.
+        """
+        self.batches.robots(self.rows)
+        most = int(self._people.max(initial=0))
+        return self.actors[robot].look(self.batches, self.rows, fresh, stepped, most)
+
+    def people(self) -> Array:
+        """Return x, y, vx, vy, radius (W, M, 5) of all people; NaN for those who are absent."""
+        out = np.zeros((len(self._courses), int(self._people.max(initial=0)), 5))
+        self.batches.people(out)
+        return out
+
+    def world(self, w: int) -> World:
+        """Return a world as it is now."""
+        return self.batches.world(w)
+
+    @property
+    def time(self) -> Array:
+        """Return (W,) the time since each episode began, s."""
+        return np.asarray(self.batches.now * TICK, np.float64)
+
+    def close(self) -> None:
+        """End the threads."""
+        self.batches.close()
