@@ -20,7 +20,7 @@ rl = pytest.importorskip("crowdbot.rl")
 
 
 def script() -> Any:
-    path = ROOT / "docs" / "howto" / "files" / "train_policy.py"
+    path = ROOT / "benchmarks" / "train_policy.py"
     spec = importlib.util.spec_from_file_location("train_policy", path)
     assert spec is not None
     assert spec.loader is not None
