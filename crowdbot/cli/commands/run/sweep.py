@@ -1,0 +1,106 @@
+"""``crowdbot sweep``: try parameters of a planner on people that no edition uses."""
+
+from __future__ import annotations
+
+import json
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.core.scoring.four_scores import PRIMARY
+
+if TYPE_CHECKING:
+    from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.campaign.run import State
+
+
+class SweepHow(StrEnum):
+    """Ways in which trials are chosen."""
+
+    grid = "grid"
+    random = "random"
+    optuna = "optuna"
+
+
+def sweep(
+    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
+    planner: Annotated[str, typer.Option(metavar="NAME|FILE|file.py:Class", help="The planner.")],
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            metavar="KEY=A,B|KEY=LOW..HIGH",
+            help="A parameter and its values, or range (:log, :int); repeatable.",
+        ),
+    ],
+    how: Annotated[SweepHow, typer.Option(help="How trials are chosen.")] = SweepHow.random,
+    trials: Annotated[
+        int, typer.Option(min=1, max=10_000, metavar="N", help="Trials, unless --how grid.")
+    ] = 20,
+    steps: Annotated[
+        int, typer.Option(min=2, max=100, metavar="N", help="Grid: values of a range.")
+    ] = 4,
+    metric: Annotated[str, typer.Option(metavar="NAME", help="The score.")] = PRIMARY.metric,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="GLOB", help="Only these scenarios; repeatable.")
+    ] = None,
+    sample: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Scenarios, by chance; 0: all.")
+    ] = 9,
+    check: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Best trials that are run with other people.")
+    ] = 3,
+    planner_set: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Fixed parameters of the planner; repeatable."),
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Of people and chance; not the suite's.")
+    ] = 1,
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Folder of the sweep; the same one resumes it.")
+    ] = Path("sweep"),
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
+    plugin: Plugins = None,
+    no_plugins: NoPlugins = False,
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+) -> None:
+    """Try parameters of a planner, on people that no edition uses; check the best on others.
+
+    Example: crowdbot sweep challenge-2020 --planner dwa --vary margin=0.02..0.2 --vary speed=0.7,1
+    """
+    from crowdbot.cli.shared.campaign_run import run_plan, worker_count
+    from crowdbot.core.campaign.sweep.axes import parse_axes
+    from crowdbot.core.campaign.sweep.page import as_json as plain
+    from crowdbot.core.campaign.sweep.page import render, verdict
+    from crowdbot.core.campaign.sweep.search import PAGE, SweepRequest, known_metric, search
+    from crowdbot.core.support.atomic_write import atomic_write
+
+    registry = installed(plugin, no_plugins)
+    variant, better = known_metric(registry, metric)
+    request = SweepRequest(
+        suite=suite, planner=planner, axes=parse_axes(vary), how=how.value, count=trials,
+        steps=steps, seed=seed, metric=metric, variant=variant, better=better, only=only or (),
+        sample=sample or None, check=check, out=out, settings=planner_set or (),
+        plugins=plugin or (),
+    )  # fmt: skip
+
+    def execute(plan: Plan, title: str) -> State:
+        say(title, err=True)
+        return run_plan(plan, worker_count(jobs), None)
+
+    try:
+        found = search(request, registry, execute)
+    except KeyboardInterrupt:
+        say("interrupted; the same command resumes the sweep", err=True)
+        raise
+    atomic_write(out / PAGE, render(found))
+    if as_json:
+        say(json.dumps(plain(found), indent=2))
+        return
+    for line in verdict(found):
+        say(line)
+    say(f"page: {out / PAGE}")

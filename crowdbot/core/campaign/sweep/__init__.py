@@ -1,0 +1,1 @@
+"""Sweeps: parameters of a planner as axes, tried on people that no edition uses."""
