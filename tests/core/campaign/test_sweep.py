@@ -23,7 +23,7 @@ def request(out: Path, **more: Any) -> SweepRequest:
         "how": "random", "count": 4, "steps": 3, "seed": 1, "metric": "safe_efficiency",
         "variant": "corrected", "better": "higher", "only": (), "sample": 2, "check": 1,
     }  # fmt: skip
-    return SweepRequest(**{**given, **more}, out=out)  # type: ignore[arg-type]
+    return SweepRequest(**{**given, **more}, out=out)
 
 
 def tried(speed: str, score: float, elsewhere: float | None = None) -> Tried:
