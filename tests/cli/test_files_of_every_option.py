@@ -114,7 +114,7 @@ NO_FILES = {
     "scenario", "search", "secret", "seeds", "suite", "team", "title", "token", "user_topic",
     "variant", "zenoh", "floor", "source", "goal",
     "data", "orders", "participant", "scores",  # of studies
-    "variant", "zenoh", "floor", "source", "goal", "runs",
+    "runs",
 }  # fmt: skip
 #: Read after something else that an empty folder lacks, by a reader that the others test.
 NOT_REACHED = {
