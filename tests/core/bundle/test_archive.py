@@ -53,7 +53,7 @@ def test_a_changed_member_is_noticed(bundle: Path) -> None:
     ("runs/../../evil.json", "it leads out of the folder"),
     ("runs/./evil.json", "it leads out of the folder"),
     ("runs\\evil.json", "it leads out of the folder"),
-    ("runs/evil.py", "only .json, .yaml, .csv, .mcap belong into a bundle"),
+    ("runs/evil.py", "only .json, .yaml, .csv, .mcap, .weights belong into a bundle"),
     ("runs/e vil\n.json", "other characters"),
 ])  # fmt: skip
 def test_names_that_lead_elsewhere_are_refused(bundle: Path, name: str, why: str) -> None:
