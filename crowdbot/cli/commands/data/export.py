@@ -53,7 +53,10 @@ def export(
     run: Annotated[
         Path, typer.Argument(metavar="RUN_DIR|FILE.mcap", help="A run, or its recording.")
     ],
-    to: Annotated[ExportFormat, typer.Option("--to", help="The format.")],
+    to: Annotated[
+        ExportFormat,
+        typer.Option("--to", metavar="FORMAT", help=f"One of {', '.join(ExportFormat)}."),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(metavar="PATH", help="File or folder to write; default: beside it."),
