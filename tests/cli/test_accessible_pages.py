@@ -14,6 +14,8 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 from crowdbot import cli
+from crowdbot.core.editor.page import page as editor_page
+from crowdbot.core.live.person.page import render_person_page
 from crowdbot.core.realism.measure import measure_tracks
 from crowdbot.core.realism.near_robots import page as near_robots_page
 from crowdbot.core.realism.near_robots.encounters import encounters_of
@@ -23,9 +25,10 @@ from crowdbot.core.realism.page import render
 from crowdbot.core.realism.reference import shipped
 from crowdbot.core.replay import write_replay
 from crowdbot.core.report import write_report
+from crowdbot.core.site.write import INDEX
 from tests.browser import PROGRAM, axe_findings, needs_axe, needs_browser
 from tests.cli.test_why import SCENARIO
-from tests.core.bundle.made_up_runs import make_bundle
+from tests.core.bundle.made_up_runs import make_bundle, write_suite
 from tests.core.realism.near_robots.walks import various
 from tests.core.realism.test_compare import people
 from tests.core.replay.replay_cases import passing
@@ -78,13 +81,37 @@ def why(path: Path) -> None:
     assert cli.main(["why", str(runs), "--out", str(path)]) == 0
 
 
+def drive(path: Path) -> None:
+    path.write_text(render_person_page("drive", "crossing"))
+
+
+def walk(path: Path) -> None:
+    path.write_text(render_person_page("walk", "crossing"))
+
+
+def editor(path: Path) -> None:
+    path.write_text(editor_page("crossing.yaml", "token"))
+
+
+def site(path: Path) -> None:
+    suite = write_suite(path.parent)
+    for planner in ("dwa", "goal_seek"):
+        make_bundle(path.parent, planner, f"{planner}.cbz", team=planner)
+    folder = str(path.parent)
+    assert cli.main(["challenge-page", str(suite), folder, "--out", folder]) == 0
+    (path.parent / INDEX).rename(path)
+
+
 #: All kinds of pages: the package that holds the parts -> who makes one.
 PAGES: dict[str, tuple[Callable[[Path], None], ...]] = {
     "core/bundle": (leaderboard,),
+    "core/editor": (editor,),
+    "core/live/person": (drive, walk),
     "core/realism": (realism,),
     "core/realism/near_robots": (near_robots,),
     "core/replay": (replay, comparison),
     "core/report": (report,),
+    "core/site": (site,),
     "core/view": (scenario,),
     "core/why": (why,),
 }
@@ -96,7 +123,7 @@ def test_every_kind_of_page_is_listed() -> None:
     parts = {p.parent.relative_to(product).as_posix() for p in product.rglob("*.html.j2")}
     assert parts == set(PAGES)
     # Nobody writes a page in another way.
-    of_their_own = [p for p in product.rglob("*.py") if "<!doctype" in p.read_text().lower()]
+    of_their_own = [p for p in product.rglob("*.py") if "<!doctype html" in p.read_text().lower()]
     assert of_their_own == []
 
 
