@@ -28,7 +28,7 @@ from crowdbot.api import registry
 from crowdbot.core.batch.array_tables import ScratchPool
 from crowdbot.core.batch.blueprint import blueprint
 from crowdbot.core.batch.parallel import Batches
-from crowdbot.core.batch.world import World
+from crowdbot.core.batch.world import BatchWorld
 
 #: Steps per second of the process's time, and of the clock.
 Rate = tuple[float, float]
@@ -73,7 +73,7 @@ def kernels(people: int, beams: int, worlds: int, threads: int) -> Rate:
     pools = [ScratchPool() for _ in range(threads)]
     ends = np.linspace(0, worlds, threads + 1)[1:]
     made = [
-        World(plan, w + 1, pools[int(np.searchsorted(ends, w, side="right"))])
+        BatchWorld(plan, w + 1, pools[int(np.searchsorted(ends, w, side="right"))])
         for w in range(worlds)
     ]
     batches, given = Batches(made, list(range(worlds)), threads), commands(worlds)

@@ -20,6 +20,6 @@ def pages() -> dict[Path, str]:
         if path.stem in planners:
             text = path.read_text(encoding="utf-8")
             before, _, rest = text.partition(BEGIN)
-            table = field_table(planners[path.stem].spec)
+            table = field_table(planners[path.stem].spec).replace("(#", "(../scenario.md#")
             found[path] = f"{before}{BEGIN}\n\n{table}\n\n{END}{rest.partition(END)[2]}"
     return found

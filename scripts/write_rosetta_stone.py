@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from crowdbot.core.exchange.all_formats import FORMATS
-from crowdbot.core.exchange.formats import Format
-from crowdbot.core.exchange.rows import Fate, Table
+from crowdbot.core.exchange.formats import SceneFormat
+from crowdbot.core.exchange.rows import Fate, SceneTable
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "reference" / "rosetta_stone.md"
 _HEAD = """\
@@ -40,12 +40,12 @@ def page() -> str:
     return "".join(parts)
 
 
-def _anchor(form: Format) -> str:
+def _anchor(form: SceneFormat) -> str:
     kept = "".join(c for c in form.title.lower() if c.isalnum() or c in " -_")
     return kept.replace(" ", "-")
 
 
-def _tables(tables: Sequence[Table]) -> Iterator[str]:
+def _tables(tables: Sequence[SceneTable]) -> Iterator[str]:
     yield "\n| part | becomes | fate | note |\n|---|---|---|---|\n"
     for table in tables:
         for row in table.rows:

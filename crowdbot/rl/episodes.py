@@ -29,7 +29,7 @@ class Episode:
     key: int
 
 
-class Course:
+class EpisodeCourse:
     """The episodes of one world, one after the other.
 
     Args:

@@ -9,13 +9,13 @@ import numpy as np
 
 from crowdbot.core.batch.bank import Bank
 from crowdbot.core.batch.parallel import Batches
-from crowdbot.core.batch.world import World
+from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.errors import InputError
 from crowdbot.rl.actor import Actor, Vectors
 from crowdbot.rl.env_setup import EnvSetup
-from crowdbot.rl.episodes import Course
+from crowdbot.rl.episodes import EpisodeCourse
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class Rollout:
         self.setup, count = setup, len(seeds)
         robots = len(next(iter(setup.blueprints.values())).models)
         self.actors = [Actor(setup, count, robot) for robot in range(robots)]
-        self._courses = [Course(setup, seed) for seed in seeds]
+        self._courses = [EpisodeCourse(setup, seed) for seed in seeds]
         keep = setup.draws is not None or setup.edition
         self._banks = [Bank(keep=keep) for _ in range(max(1, min(threads, count)))]
         self.batches = self._first(threads)
@@ -87,7 +87,7 @@ class Rollout:
         for w in np.flatnonzero(which).tolist():
             seed = seeds[w]
             if seed is not None:
-                self._courses[w] = Course(self.setup, seed)
+                self._courses[w] = EpisodeCourse(self.setup, seed)
             episode = self._courses[w].next(level)
             bank = self._banks[self.batches.thread_of(w)]
             bank.give_back(self.world(w))
@@ -153,7 +153,7 @@ class Rollout:
         self.batches.people(out)
         return out
 
-    def world(self, w: int) -> World:
+    def world(self, w: int) -> BatchWorld:
         """Return a world as it is now."""
         return self.batches.world(w)
 

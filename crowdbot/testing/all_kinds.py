@@ -35,7 +35,10 @@ _UNITS = frozenset(unit.lower() for units in UNITS.values() for unit in units) |
 #: Basic symbols of compound units: m^2/s^2, W s^2/(kg m^2).
 _SYMBOLS = frozenset({"m", "s", "kg", "n", "j", "w", "hz", "rad", "1"})
 #: Category -> what its build functions take after the spec and its parts.
-_FURTHER = {"crowd policy": ("costs", "agents"), "sensor": ("context",)}
+_FURTHER = {
+    "crowd policy": ("costs", "agents"), "sensor": ("context",),
+    "observation": ("context",), "reward": ("context",),
+}  # fmt: skip
 
 
 def check_kind_is_a_name(component: Component[Any]) -> None:
@@ -137,7 +140,8 @@ def check_build_resolves(component: Component[Any]) -> None:
 def _given(component: Component[Any]) -> tuple[str, ...]:
     """Return what the build function of a component is called with after the spec."""
     parts = (component.spec.parts_field,) if component.spec.parts_field else ()
-    return (*parts, *_FURTHER.get(component.category, ()))
+    half = ("half",) if getattr(component.spec, "half", "") else ()  # a planner within a planner
+    return (*parts, *_FURTHER.get(component.category, ()), *half)
 
 
 def check_spec_is_light(component: Component[Any]) -> None:

@@ -12,14 +12,14 @@ from crowdbot.core.studies.runner.session import RunnerSession
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.core.studies.progress import Progress
+    from crowdbot.core.studies.progress import StudyProgress
 
 #: The last page stays for so long, s.
 _STAYS = 5.0
 
 
 def serve_participant(
-    progress: Progress, registry: Registry, *, port: int, synthetic: bool
+    progress: StudyProgress, registry: Registry, *, port: int, synthetic: bool
 ) -> None:
     """Serve the page of a participant until the last step is done, or until a signal.
 

@@ -6,7 +6,7 @@ from collections import OrderedDict
 
 from crowdbot.core.batch.array_tables import ScratchPool
 from crowdbot.core.batch.blueprint import Blueprint
-from crowdbot.core.batch.world import World
+from crowdbot.core.batch.world import BatchWorld
 
 #: Most worlds that are kept while no one steps them.
 _MOST = 1024
@@ -21,9 +21,9 @@ class Bank:
 
     def __init__(self, *, keep: bool) -> None:
         self._keep, self._pool = keep, ScratchPool()
-        self._free: OrderedDict[tuple[int, int | None], list[World]] = OrderedDict()
+        self._free: OrderedDict[tuple[int, int | None], list[BatchWorld]] = OrderedDict()
 
-    def take(self, blueprint: Blueprint, root: int | None) -> World:
+    def take(self, blueprint: Blueprint, root: int | None) -> BatchWorld:
         """Return a world of a draw at its beginning, kept or new.
 
         Raises:
@@ -32,12 +32,12 @@ class Bank:
         """
         kept = self._free.get((id(blueprint), root))
         if not kept:
-            return World(blueprint, root, self._pool)
+            return BatchWorld(blueprint, root, self._pool)
         world = kept.pop()
         world.reset()
         return world
 
-    def give_back(self, world: World) -> None:
+    def give_back(self, world: BatchWorld) -> None:
         """Keep a world that is not stepped any more."""
         if not self._keep:
             return

@@ -12,7 +12,7 @@ from crowdbot.core.batch.crowd_tables import CROWD_FIELDS, GROUP_FIELDS
 from crowdbot.core.batch.gather import gather_people, gather_ranges, gather_robots
 from crowdbot.core.batch.robot_tables import DRIVE_STATE, ROBOT_FIELDS
 from crowdbot.core.batch.scanner_tables import SCANNER_FIELDS
-from crowdbot.core.batch.world import World
+from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.support.records import columns_of
 from crowdbot.core.types.arrays import Array, Indices
 from crowdbot.errors import PluginError
@@ -37,7 +37,7 @@ class Batch:
         least, most: (W, R, 3) limits of commands v, w, vy, m/s and rad/s.
     """
 
-    def __init__(self, worlds: Sequence[World], keys: Sequence[int]) -> None:
+    def __init__(self, worlds: Sequence[BatchWorld], keys: Sequence[int]) -> None:
         self.worlds = list(worlds)
         count, robots = len(worlds), max(len(w.robots) for w in worlds)
         self._most = max(len(w.groups) for w in worlds), max(len(w.scanners) for w in worlds)
@@ -52,7 +52,7 @@ class Batch:
             self._show(w, key)
         self._read(np.arange(count))
 
-    def put(self, w: int, world: World, key: int) -> None:
+    def put(self, w: int, world: BatchWorld, key: int) -> None:
         """Replace a world; it begins at its initial state, with its scanners read."""
         world.reset()
         self.worlds[w] = world

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from crowdbot.core.batch.batch import Batch
-from crowdbot.core.batch.world import World
+from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.types.arrays import Array, Indices
 
 
@@ -21,7 +21,7 @@ class Batches:
         threads: how many.
     """
 
-    def __init__(self, worlds: Sequence[World], keys: Sequence[int], threads: int) -> None:
+    def __init__(self, worlds: Sequence[BatchWorld], keys: Sequence[int], threads: int) -> None:
         count = min(threads, len(worlds))
         ends: list[int] = np.linspace(0, len(worlds), count + 1).astype(int).tolist()
         self._parts: list[tuple[int, int]] = list(itertools.pairwise(ends))
@@ -34,12 +34,12 @@ class Batches:
         """Return the number of the thread of a world."""
         return int(self._thread_of[w])
 
-    def put(self, w: int, world: World, key: int) -> None:
+    def put(self, w: int, world: BatchWorld, key: int) -> None:
         """Replace a world, see `Batch.put`."""
         number = self.thread_of(w)
         self._batches[number].put(w - self._parts[number][0], world, key)
 
-    def world(self, w: int) -> World:
+    def world(self, w: int) -> BatchWorld:
         """Return a world as it is now."""
         number = self.thread_of(w)
         return self._batches[number].worlds[w - self._parts[number][0]]

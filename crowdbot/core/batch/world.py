@@ -23,7 +23,7 @@ from crowdbot.core.sim.contacts.start_pose_check import check_start
 from crowdbot.core.types.arrays import Array
 
 
-class World:
+class BatchWorld:
     """People, robots and scanners of one world; begins at its initial state.
 
     Attributes:

@@ -7,7 +7,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from crowdbot.core.editor.document import NEW, Change, changed
+from crowdbot.core.editor.document import NEW, Edit, changed
 from crowdbot.core.editor.drawn import drawn
 from crowdbot.core.editor.play import play
 from crowdbot.core.exchange.scene import id_of
@@ -53,7 +53,7 @@ class Desk:
         with self._lock:
             return {"text": text, **self._drawn(text)}
 
-    def change(self, text: str, changes: list[Change]) -> dict[str, Any]:
+    def change(self, text: str, changes: list[Edit]) -> dict[str, Any]:
         """Return a text with changes made to it, and its drawing."""
         with self._lock:
             made = changed(_bounded(text), changes)

@@ -24,14 +24,14 @@ scenario:
 """
 
 
-class Change(NamedTuple):
+class Edit(NamedTuple):
     """One change: a value at a path of keys and indices; None removes what is there."""
 
     path: Path
     value: Any
 
 
-def changed(text: str, changes: Sequence[Change]) -> str:
+def changed(text: str, changes: Sequence[Edit]) -> str:
     """Return a text with changes made to it.
 
     Raises:

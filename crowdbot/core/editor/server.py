@@ -11,7 +11,7 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from crowdbot.core.editor.desk import ConflictError, Desk
-from crowdbot.core.editor.document import Change
+from crowdbot.core.editor.document import Edit
 from crowdbot.core.editor.page import page
 from crowdbot.core.live.admission import Admission
 from crowdbot.errors import CrowdbotError, printable
@@ -131,7 +131,7 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 def _change(desk: Desk, given: Mapping[str, Any]) -> dict[str, Any]:
-    changes = [Change(list(one["path"]), one.get("value")) for one in given["changes"]]
+    changes = [Edit(list(one["path"]), one.get("value")) for one in given["changes"]]
     return desk.change(given["text"], changes)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crowdbot.core.exchange.formats import Format
+from crowdbot.core.exchange.formats import SceneFormat
 from crowdbot.core.exchange.others.commonroad import COMMONROAD
 from crowdbot.core.exchange.others.hunav import HUNAV
 from crowdbot.core.exchange.others.jupedsim import JUPEDSIM
@@ -16,4 +16,4 @@ from crowdbot.core.exchange.trial.reading import TRIALS
 from crowdbot.core.exchange.umans.reading import UMANS
 
 _ALL = (TRIALS, UMANS, HUNAV, PEDSIM, VADERE, JUPEDSIM, ROBOT_SF, COMMONROAD, RECORDINGS)
-FORMATS: Mapping[str, Format] = {form.name: form for form in _ALL}
+FORMATS: Mapping[str, SceneFormat] = {form.name: form for form in _ALL}

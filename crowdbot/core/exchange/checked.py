@@ -6,8 +6,8 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from crowdbot.core.exchange.scene import Scene
-from crowdbot.core.exchange.write import Line
+from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.write import WrittenLine
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.support.atomic_write import atomic_write
@@ -16,7 +16,7 @@ from crowdbot.errors import SpecError
 
 
 def check(
-    lines: Sequence[Line], scenes: Sequence[Scene], registry: Registry, default: Mark
+    lines: Sequence[WrittenLine], scenes: Sequence[Stage], registry: Registry, default: Mark
 ) -> list[str]:
     """Check a document as the language does; return the ids of its scenarios.
 
@@ -39,7 +39,7 @@ def check(
             raise SpecError(list({d.sort_key(): d for d in found}.values())) from None
 
 
-def write(path: Path, lines: Sequence[Line], scenes: Sequence[Scene]) -> list[Path]:
+def write(path: Path, lines: Sequence[WrittenLine], scenes: Sequence[Stage]) -> list[Path]:
     """Write a document and the tables beside it; return the files."""
     tables: Mapping[str, str] = {n: t for scene in scenes for n, t in scene.tables.items()}
     files = [path.with_name(name) for name in tables]
@@ -50,7 +50,11 @@ def write(path: Path, lines: Sequence[Line], scenes: Sequence[Scene]) -> list[Pa
 
 
 def _at_origin(
-    found: Diagnostic, path: Path, lines: Sequence[Line], scenes: Sequence[Scene], default: Mark
+    found: Diagnostic,
+    path: Path,
+    lines: Sequence[WrittenLine],
+    scenes: Sequence[Stage],
+    default: Mark,
 ) -> Diagnostic:
     """Return an error of our document as one of the file that it came from."""
     mark = default
@@ -63,7 +67,7 @@ def _at_origin(
     return Diagnostic("E402", message, mark, hint)
 
 
-def _origin(line: Line, scene: Scene, default: Mark) -> Mark:
+def _origin(line: WrittenLine, scene: Stage, default: Mark) -> Mark:
     for length in range(len(line.path), 0, -1):
         if line.path[:length] in scene.origins:
             return scene.origins[line.path[:length]]

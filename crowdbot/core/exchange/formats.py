@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Table
-from crowdbot.core.exchange.scene import Scene
+from crowdbot.core.exchange.rows import RowTable
+from crowdbot.core.exchange.scene import Stage
 from crowdbot.core.registry.registry import Registry
 
 
@@ -27,11 +27,11 @@ class Context:
     name: str
 
 
-Reader = Callable[[Sequence[Opened], Context], list[Scene]]
+Reader = Callable[[Sequence[OpenedScene], Context], list[Stage]]
 
 
 @dataclass(frozen=True, slots=True)
-class Format:
+class SceneFormat:
     """One format.
 
     Attributes:
@@ -45,7 +45,7 @@ class Format:
 
     name: str
     title: str
-    fits: Callable[[Opened], bool]
+    fits: Callable[[OpenedScene], bool]
     read: Reader
-    tables: Sequence[Table]
+    tables: Sequence[RowTable]
     loses: str = ""

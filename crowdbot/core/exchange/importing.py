@@ -8,12 +8,12 @@ from pathlib import Path
 
 from crowdbot.core.exchange.all_formats import FORMATS
 from crowdbot.core.exchange.checked import check
-from crowdbot.core.exchange.formats import Context, Format
-from crowdbot.core.exchange.opened import Opened, open_file_of_others
+from crowdbot.core.exchange.formats import Context, SceneFormat
+from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
 from crowdbot.core.exchange.overlaps import enter_in_turn
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.scene import Scene, id_of
-from crowdbot.core.exchange.write import Line, document
+from crowdbot.core.exchange.scene import Stage, id_of
+from crowdbot.core.exchange.write import WrittenLine, document
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import SpecError
@@ -31,8 +31,8 @@ class Imported:
         formats: titles of the formats that were read.
     """
 
-    lines: list[Line]
-    scenes: list[Scene]
+    lines: list[WrittenLine]
+    scenes: list[Stage]
     ids: list[str]
     report: Report
     formats: list[str]
@@ -53,7 +53,7 @@ def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Import
     report = Report()
     opened = [open_file_of_others(path, report) for path in dict.fromkeys(paths)]
     context = Context(report, registry, id_of(name))
-    scenes: list[Scene] = []
+    scenes: list[Stage] = []
     read: list[str] = []
     for found, files in _by_format(opened).items():
         scenes += FORMATS[found].read(files, context)
@@ -68,9 +68,9 @@ def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Import
     return Imported(lines, scenes, check(lines, scenes, registry, opened[0].top), report, read)
 
 
-def _by_format(opened: Sequence[Opened]) -> dict[str, list[Opened]]:
+def _by_format(opened: Sequence[OpenedScene]) -> dict[str, list[OpenedScene]]:
     """Return the files of each format, in the order given; companions go with their format."""
-    found: dict[str, list[Opened]] = {}
+    found: dict[str, list[OpenedScene]] = {}
     for file in opened:
         form = _format_of(file)
         found.setdefault(form.name, []).append(file)
@@ -79,7 +79,7 @@ def _by_format(opened: Sequence[Opened]) -> dict[str, list[Opened]]:
     return found
 
 
-def _format_of(file: Opened) -> Format:
+def _format_of(file: OpenedScene) -> SceneFormat:
     for form in FORMATS.values():
         if form.fits(file):
             return form

@@ -20,7 +20,7 @@ _LARGEST_DATA = 8_000_000
 
 
 @dataclass(slots=True)
-class Opened:
+class OpenedScene:
     """One file.
 
     Attributes:
@@ -50,7 +50,7 @@ class Opened:
         return {root.name for root in self.roots}
 
 
-def open_file_of_others(path: Path, report: Report) -> Opened:
+def open_file_of_others(path: Path, report: Report) -> OpenedScene:
     """Open a file and parse it; record what its format does not allow, and is accepted.
 
     Raises:
@@ -62,10 +62,10 @@ def open_file_of_others(path: Path, report: Report) -> Opened:
         roots, odd = parse_xml(text, source)
         for mark, note in odd:
             report.odd(mark, note)
-        return Opened(path, source, text, "xml", roots)
+        return OpenedScene(path, source, text, "xml", roots)
     if start == "{" or ending in _DATA:
         if len(text) > _LARGEST_DATA:
             message = f"is larger than {_LARGEST_DATA // 10**6} MB, which JSON and YAML may have"
             raise SpecError([Diagnostic("E401", message, Mark(source))])
-        return Opened(path, source, text, "data", [parse_data(text, source)])
-    return Opened(path, source, text, "text")
+        return OpenedScene(path, source, text, "data", [parse_data(text, source)])
+    return OpenedScene(path, source, text, "text")

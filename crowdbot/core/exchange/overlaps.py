@@ -6,9 +6,9 @@ few milliseconds one after the other, within the first tick.
 
 from __future__ import annotations
 
-from crowdbot.core.exchange.report import Entry, Report
+from crowdbot.core.exchange.report import Report, Trace
 from crowdbot.core.exchange.rows import Fate
-from crowdbot.core.exchange.scene import Scene
+from crowdbot.core.exchange.scene import Stage
 from crowdbot.dsl.checks.agents import Disc, overlapping
 
 #: Time between two that overlap, s, and usual radius, m.
@@ -16,7 +16,7 @@ _LATER, _RADIUS = 1e-3, 0.33
 _NOTE = "overlaps another at the start, which is not allowed here: enters some milliseconds later"
 
 
-def enter_in_turn(scene: Scene, report: Report) -> None:
+def enter_in_turn(scene: Stage, report: Report) -> None:
     """Delay agents who overlap others that enter at the same time; record each."""
     radius = scene.crowd.get("body", {}).get("radius", _RADIUS)
     waves: dict[float, list[int]] = {}
@@ -34,14 +34,14 @@ def enter_in_turn(scene: Scene, report: Report) -> None:
             turn += 1
 
 
-def _disc(scene: Scene, number: int, radius: float) -> Disc:
+def _disc(scene: Stage, number: int, radius: float) -> Disc:
     agent = scene.agents[number]
     return agent["x"], agent["y"], agent.get("radius", radius)
 
 
-def _delay(scene: Scene, report: Report, number: int, time: float) -> None:
+def _delay(scene: Stage, report: Report, number: int, time: float) -> None:
     path = ("crowd", "agents", str(number))
     place = scene.origins.get(path)
-    report.entries.append(Entry(Fate.INTERPRETED, "start", place, "crowd.agents.start_time", _NOTE))
+    report.entries.append(Trace(Fate.INTERPRETED, "start", place, "crowd.agents.start_time", _NOTE))
     scene.comments[path] = "overlaps another: enters some milliseconds later"
     scene.agents[number]["start_time"] = time

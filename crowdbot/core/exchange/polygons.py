@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.scene import Scene
+from crowdbot.core.exchange.scene import Stage
 
 #: Points this near to a line are on it, m; thickness of what has no area, m.
 _LEAST, THIN = 1e-6, 0.02
@@ -15,7 +15,11 @@ Corner = Sequence[float]
 
 
 def add_polygon(
-    scene: Scene, report: Report, item: Item, corners: Sequence[Corner], name: str = "obstacle"
+    scene: Stage,
+    report: Report,
+    item: Item,
+    corners: Sequence[Corner],
+    name: str = "obstacle",
 ) -> None:
     """Add an outline as a block, or as thin walls where it has no area."""
     points = without_repeats(corners)
@@ -40,7 +44,7 @@ def _beside(point: Corner, start: Corner, end: Corner) -> float:
 
 
 def add_wall(
-    scene: Scene, item: Item, start: Corner, end: Corner, thickness: float = THIN,
+    scene: Stage, item: Item, start: Corner, end: Corner, thickness: float = THIN,
     name: str = "wall",
 ) -> None:  # fmt: skip
     """Add a straight wall."""

@@ -6,12 +6,12 @@ import math
 import re
 from collections.abc import Sequence
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import LARGEST, Item
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Scene, around, id_of
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Stage, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
@@ -23,7 +23,7 @@ _NAMES = {"t": ("t", "time", "timestamp"), "id": ("id", "agent", "agent_id", "pe
 #: Columns of a file without a header: UMANS' time, place and viewing direction of one agent.
 _BARE = {"t": 0, "x": 1, "y": 2}
 _NUMBERED = re.compile(r"(\d{1,9})$")
-RECORDING = Table(
+RECORDING = RowTable(
     "CSV with a header",
     (
         Row("time, id, x, y", "crowd.policy replay.file"),
@@ -31,7 +31,7 @@ RECORDING = Table(
         Row("entity robot", "", "a planner drives the robot here"),
     ),
 )
-WRITTEN = Table(
+WRITTEN = RowTable(
     "output_ID.csv",
     (
         Row("column 1 to 3", "crowd.policy replay.file", "time, x and y; ID is that of the name"),
@@ -40,7 +40,7 @@ WRITTEN = Table(
 )
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return one scene in which everybody in the files walks as recorded.
 
     Raises:
@@ -54,7 +54,7 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
             people[ident] = points
     if not people:
         raise SpecError([Diagnostic("E402", "no person has two lines", files[0].top)])
-    scene = Scene(id_of(files[0].path.stem))
+    scene = Stage(id_of(files[0].path.stem))
     table = f"{context.name}.recorded.csv"
     rows = [(t, ident, x, y) for ident, points in people.items() for t, x, y in points]
     scene.tables[table] = HEADER + "".join(
@@ -68,7 +68,7 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return [scene]
 
 
-def _people(file: Opened, report: Report) -> dict[int, list[tuple[float, float, float]]]:
+def _people(file: OpenedScene, report: Report) -> dict[int, list[tuple[float, float, float]]]:
     lines = file.text.split("\n")
     head = _CELLS.split(lines[0])
     columns = _columns(head)
@@ -105,7 +105,9 @@ def _columns(head: Sequence[str]) -> dict[str, int]:
     return found if {"t", "id", "x", "y"} <= set(found) else {}
 
 
-def _record(file: Opened, report: Report, head: Sequence[str], bare: bool, robots: int) -> None:
+def _record(
+    file: OpenedScene, report: Report, head: Sequence[str], bare: bool, robots: int
+) -> None:
     table = WRITTEN if bare else RECORDING
     whole = Item(table.element, Mark(file.source))
     report.carried(whole, table.rows[0].ours)
@@ -121,7 +123,7 @@ class _Row:
     """One line, whose cells know their place."""
 
     def __init__(
-        self, file: Opened, line: int, cells: Sequence[str], columns: dict[str, int]
+        self, file: OpenedScene, line: int, cells: Sequence[str], columns: dict[str, int]
     ) -> None:
         self._file, self._line, self._cells, self._columns = file, line, cells, columns
 
@@ -154,7 +156,7 @@ class _Row:
         raise SpecError([Diagnostic("E402", message, Mark(self._file.source, self._line))])
 
 
-def _is_recording(file: Opened) -> bool:
+def _is_recording(file: OpenedScene) -> bool:
     if file.kind != "text":
         return False
     first = next((line for line in file.text.split("\n") if line.strip()), "")
@@ -163,7 +165,7 @@ def _is_recording(file: Opened) -> bool:
     return len(cells) >= 3 and (bool(_columns(cells)) or (numbers and len(cells) <= 5))
 
 
-RECORDINGS = Format(
+RECORDINGS = SceneFormat(
     "recordings",
     "recorded people as CSV",
     _is_recording,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.rows import Fate, Table
+from crowdbot.core.exchange.rows import Fate, RowTable
 from crowdbot.dsl.text.diagnostics import Mark
 
 #: Reason of parts that no reader asked for.
@@ -15,7 +15,7 @@ UNKNOWN = "no meaning of it is known here"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class Trace:
     """One part of a file.
 
     Attributes:
@@ -44,34 +44,34 @@ class Entry:
 class Report:
     """All entries so far."""
 
-    entries: list[Entry] = field(default_factory=list)
+    entries: list[Trace] = field(default_factory=list)
 
     def carried(self, item: Item, ours: str) -> None:
         """Record a part that is carried over as it is."""
         item.used = True
-        self.entries.append(Entry(Fate.CARRIED, item.path, item.mark, ours))
+        self.entries.append(Trace(Fate.CARRIED, item.path, item.mark, ours))
 
     def interpreted(self, item: Item, ours: str, note: str) -> None:
         """Record a part that means something like a field of ours."""
         item.used = True
-        self.entries.append(Entry(Fate.INTERPRETED, item.path, item.mark, ours, note))
+        self.entries.append(Trace(Fate.INTERPRETED, item.path, item.mark, ours, note))
 
     def left_out(self, item: Item, note: str, *, whole: bool = True) -> None:
         """Record a part, by default with everything in it, that has no place in our language."""
         if whole:
             item.take_all()
         item.used = True
-        self.entries.append(Entry(Fate.LEFT_OUT, item.path, item.mark, "", note))
+        self.entries.append(Trace(Fate.LEFT_OUT, item.path, item.mark, "", note))
 
     def added(self, ours: str, note: str, at: Mark | None = None) -> None:
         """Record a field that our language needs and the files do not have."""
-        self.entries.append(Entry(Fate.ADDED, "", at, ours, note))
+        self.entries.append(Trace(Fate.ADDED, "", at, ours, note))
 
     def odd(self, mark: Mark, note: str) -> None:
         """Record something that the file's format does not allow, and that was accepted."""
-        self.entries.append(Entry(Fate.INTERPRETED, "(syntax)", mark, "", note))
+        self.entries.append(Trace(Fate.INTERPRETED, "(syntax)", mark, "", note))
 
-    def take(self, item: Item, table: Table) -> dict[str, Any]:
+    def take(self, item: Item, table: RowTable) -> dict[str, Any]:
         """Return our fields of an item's parts, as its table says, and record each.
 
         Raises:
@@ -82,7 +82,7 @@ class Report:
             for part in item.every(row.theirs):
                 if row.ours:
                     found[row.field] = row.read(part)
-                    self.entries.append(Entry(row.fate, part.path, part.mark, row.ours, row.note))
+                    self.entries.append(Trace(row.fate, part.path, part.mark, row.ours, row.note))
                 elif row.unless and _same(part, row.unless):
                     self.carried(part, f"(nothing to carry over: {row.unless})")
                 else:
@@ -109,7 +109,7 @@ class Report:
 
     def lines(self) -> list[str]:
         """Return one line per kind of part that was not carried over as it is, then the sums."""
-        groups: dict[tuple[Fate, str, str, str], list[Entry]] = {}
+        groups: dict[tuple[Fate, str, str, str], list[Trace]] = {}
         for entry in self.entries:
             if entry.fate != Fate.CARRIED:
                 key = (entry.fate, entry.theirs, entry.ours, entry.note)
@@ -128,7 +128,7 @@ def _same(part: Item, value: str) -> bool:
         return False
 
 
-def _line(key: tuple[Fate, str, str, str], entries: list[Entry]) -> str:
+def _line(key: tuple[Fate, str, str, str], entries: list[Trace]) -> str:
     fate, theirs, ours, note = key
     first = next((str(e.at) for e in entries if e.at), "")
     more = f" and {len(entries) - 1} more" if len(entries) > 1 else ""

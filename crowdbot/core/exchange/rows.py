@@ -71,7 +71,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class RowTable:
     """The rows of one element of one format.
 
     Attributes:

@@ -18,7 +18,7 @@ _NOT_IN_IDS = re.compile(r"[^A-Za-z0-9_.-]+")
 
 
 @dataclass(slots=True)
-class Scene:
+class Stage:
     """One scenario.
 
     Attributes:

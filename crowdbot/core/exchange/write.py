@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core.exchange.scene import Path, Scene
+from crowdbot.core.exchange.scene import Path, Stage
 
 #: Longest map of scalars on one line, characters.
 _WIDE = 100
@@ -17,7 +17,7 @@ _RESERVED = {"true", "false", "null"}
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class WrittenLine:
     """One line of a document, the scene it belongs to and its place in that."""
 
     text: str
@@ -25,29 +25,34 @@ class Line:
     path: Path = ()
 
 
-def document(scenes: list[Scene], name: str, title: str = "") -> list[Line]:
+def document(scenes: list[Stage], name: str, title: str = "") -> list[WrittenLine]:
     """Return a scenario document for one scene, else a suite with one label for each."""
-    lines = [Line(f"# {note}") for note in dict.fromkeys(n for s in scenes for n in s.notes)]
-    lines.append(Line("crowdbot: 1"))
+    lines = [WrittenLine(f"# {note}") for note in dict.fromkeys(n for s in scenes for n in s.notes)]
+    lines.append(WrittenLine("crowdbot: 1"))
     if len(scenes) == 1:
-        lines += [Line("scenario:"), Line(f"  id: {flow(scenes[0].id)}", 0, ("id",))]
+        lines += [WrittenLine("scenario:"), WrittenLine(f"  id: {flow(scenes[0].id)}", 0, ("id",))]
         return lines + list(_scene(scenes[0], 0, 1))
     head = {"id": name, "title": title} if title else {"id": name}
-    lines += [Line(f"suite: {flow(head)}"), Line("base: {}"), Line("matrix:"), Line("  trial:")]
+    lines += [
+        WrittenLine(f"suite: {flow(head)}"),
+        WrittenLine("base: {}"),
+        WrittenLine("matrix:"),
+        WrittenLine("  trial:"),
+    ]
     labels: dict[str, int] = {}
     for number, scene in enumerate(scenes):
         label = re.sub(r"[^A-Za-z0-9_]", "_", scene.id)
         while label in labels:
             label += "_"
         labels[label] = number
-        lines.append(Line(f"    {flow(label)}:", number))
+        lines.append(WrittenLine(f"    {flow(label)}:", number))
         lines += _scene(scene, number, 3)
     return lines
 
 
-def _scene(scene: Scene, number: int, depth: int) -> Iterator[Line]:
+def _scene(scene: Stage, number: int, depth: int) -> Iterator[WrittenLine]:
     for text, path in _block(scene.data(), depth, (), scene.comments):
-        yield Line(text, number, path)
+        yield WrittenLine(text, number, path)
 
 
 def _block(

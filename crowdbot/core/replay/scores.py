@@ -25,7 +25,7 @@ class Cell(NamedTuple):
     reason: str
 
 
-class Row(NamedTuple):
+class ScoreLine(NamedTuple):
     """One line of the table; ``headline``: shown by default."""
 
     metric: str
@@ -43,13 +43,13 @@ class Row(NamedTuple):
         return found.pop() if len(found) == 1 else "ok"
 
 
-def compared(runs: Sequence[Sequence[Score]]) -> dict[str, list[Row]]:
+def compared(runs: Sequence[Sequence[Score]]) -> dict[str, list[ScoreLine]]:
     """Return category -> rows, in the given order; the four main scores come first.
 
     Args:
         runs: the scores of each run; missing ones are empty cells.
     """
-    groups: dict[str, list[Row]] = {}
+    groups: dict[str, list[ScoreLine]] = {}
     by_name = [{(s.metric, s.variant): s for s in scores} for scores in runs]
     first = {name: score for scores in reversed(by_name) for name, score in scores.items()}
     given = [first[name] for name in dict.fromkeys(name for scores in by_name for name in scores)]
@@ -63,9 +63,9 @@ def compared(runs: Sequence[Sequence[Score]]) -> dict[str, list[Row]]:
     return groups
 
 
-def _row(score: Score, cells: list[Cell], *, headline: bool) -> Row:
+def _row(score: Score, cells: list[Cell], *, headline: bool) -> ScoreLine:
     arrow, meaning = _ARROWS[score.better]
-    return Row(
+    return ScoreLine(
         metric=_words(score.metric),
         variant=_words(score.variant),
         unit="" if score.unit == "1" else score.unit,

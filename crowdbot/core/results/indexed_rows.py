@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.results.rows import RUN_COLUMNS, RunRow
-from crowdbot.core.results.score_columns import Numbered, ScoreColumns, ScoreLabel, State
+from crowdbot.core.results.score_columns import ColumnState, Numbered, ScoreColumns, ScoreLabel
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.types.score import Score
 
@@ -154,7 +154,7 @@ def read_all(database: sqlite3.Connection, order: str) -> tuple[tuple[RunRow, ..
 
 def _columns(found: Sequence[tuple[str, int, int, bytes]], texts: Texts) -> ScoreColumns:
     """Return the scores of runs: id, numbers of labels and states, packed values."""
-    ids, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[State]()
+    ids, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[ColumnState]()
     groups: dict[int, list[int]] = {}
     for place, (_, number, _, _) in enumerate(found):
         groups.setdefault(number, []).append(place)
@@ -179,7 +179,7 @@ def _nothing() -> list[NDArray[Any]]:
 def _part(
     found: Sequence[tuple[str, int, int, bytes]],
     places: Sequence[int],
-    known: tuple[Numbered[str], Numbered[ScoreLabel], Numbered[State]],
+    known: tuple[Numbered[str], Numbered[ScoreLabel], Numbered[ColumnState]],
     texts: Texts,
 ) -> tuple[NDArray[Any], ...]:
     """Return places, then columns, of the scores of runs that have the same labels."""
@@ -193,7 +193,7 @@ def _part(
     state = cut[3].view("<u2").astype("i4")
     kinds = np.array([number for _, _, number, _ in found])
     for kind in np.unique(kinds):
-        table = np.array([states.place(State(*one)) for one in texts.value(int(kind))], "i4")
+        table = np.array([states.place(ColumnState(*one)) for one in texts.value(int(kind))], "i4")
         here = kinds == kind
         state[here] = table[state[here]] if len(table) else state[here]
     run = np.array([ids.place(name) for name, *_ in found], "i4")

@@ -38,7 +38,7 @@ class ScoreLabel(NamedTuple):
         return self.metric, self.variant
 
 
-class State(NamedTuple):
+class ColumnState(NamedTuple):
     """Status of a value, and its reason."""
 
     status: str
@@ -57,7 +57,7 @@ class ScoreColumns(Sequence[ScoreRow]):
 
     run_ids: tuple[str, ...]
     labels: tuple[ScoreLabel, ...]
-    states: tuple[State, ...]
+    states: tuple[ColumnState, ...]
     run: _Places
     label: _Places
     state: _Places
@@ -70,14 +70,14 @@ class ScoreColumns(Sequence[ScoreRow]):
         """Return rows as columns; columns as they are."""
         if isinstance(rows, ScoreColumns):
             return rows
-        runs, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[State]()
+        runs, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[ColumnState]()
         places = [
             (
                 runs.place(r.run_id),
                 labels.place(
                     ScoreLabel(r.category, r.metric, r.symbol, r.variant, r.unit, r.better)
                 ),
-                states.place(State(r.status, r.reason)),
+                states.place(ColumnState(r.status, r.reason)),
             )
             for r in rows
         ]

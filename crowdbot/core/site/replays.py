@@ -21,7 +21,7 @@ _PLANNERS = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Replay:
+class SiteReplay:
     """One replay page: whose run, which one, and the page relative to the site."""
 
     entry: str
@@ -33,13 +33,13 @@ class Replay:
 
 def write_replays(
     entries: Sequence[LeaderboardEntry], registry: Registry, folder: Path
-) -> list[Replay]:
+) -> list[SiteReplay]:
     """Write replays of the first entries whose bundles have recordings.
 
     Raises:
         InputError: a recording cannot be read, or a page cannot be written.
     """
-    made: list[Replay] = []
+    made: list[SiteReplay] = []
     for number, entry in enumerate([e for e in entries if e.ranked][:_PLANNERS], start=1):
         scored = sorted((v, run.name, run) for run in entry.runs if (v := _value(run)) is not None)
         if not scored or not _has_recording(entry, scored[0][2]):
@@ -50,7 +50,7 @@ def write_replays(
                 continue  # the only run
             file = f"{FOLDER}/{number}-{which}.html"
             _write(entry, run, registry, folder / file)
-            made.append(Replay(entry=entry.name, which=which, run=name, value=value, file=file))
+            made.append(SiteReplay(entry=entry.name, which=which, run=name, value=value, file=file))
     return made
 
 

@@ -14,7 +14,7 @@ from crowdbot.core.bundle.standings import Standings
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scoring.four_scores import BESIDE_PRIMARY, MAIN_SCORES
 from crowdbot.core.site.pictures import Picture, draw_conditions
-from crowdbot.core.site.replays import Replay, write_replays
+from crowdbot.core.site.replays import SiteReplay, write_replays
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 from crowdbot.dsl.suite.expand import Expansion
@@ -81,7 +81,7 @@ def write_site(folder: Path, site: Site, registry: Registry) -> list[Path]:
 
 
 def _index(
-    site: Site, pictures: Sequence[Picture], replays: Sequence[Replay], registry: Registry
+    site: Site, pictures: Sequence[Picture], replays: Sequence[SiteReplay], registry: Registry
 ) -> str:
     metrics = registry.components("metric")
     mains = [*MAIN_SCORES, BESIDE_PRIMARY]

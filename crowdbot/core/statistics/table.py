@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import WITHOUT_RUN, RunRow, ScoreRow
-from crowdbot.core.results.score_columns import Numbered, ScoreColumns, State
+from crowdbot.core.results.score_columns import ColumnState, Numbered, ScoreColumns
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
@@ -308,9 +308,9 @@ def _without_run(metric: str) -> tuple[int, str, tuple[float, float]]:
     return FAILED, "no_run", (-math.inf, math.inf)
 
 
-def _kind(state: State) -> int:
+def _kind(state: ColumnState) -> int:
     return {"ok": OK, "censored": CENSORED}.get(state.status, UNDEFINED)
 
 
-def _reason(state: State) -> str:
+def _reason(state: ColumnState) -> str:
     return state.reason or ("" if state.status == "censored" else "no_value")

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.studies.document import StudyCondition, planner_text
-from crowdbot.core.studies.progress import Progress
+from crowdbot.core.studies.progress import StudyProgress
 from crowdbot.core.studies.steps import Step
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError
@@ -25,7 +25,7 @@ _KEPT = 20
 
 
 def drive_words(
-    progress: Progress, step: Step, registry: Registry, *, synthetic: bool
+    progress: StudyProgress, step: Step, registry: Registry, *, synthetic: bool
 ) -> list[str]:
     """Return the words of the command that drives a trial, after ``crowdbot``.
 
@@ -56,12 +56,12 @@ def drive_words(
     return words
 
 
-def root_of(progress: Progress, step: Step) -> Path:
+def root_of(progress: StudyProgress, step: Step) -> Path:
     """Return the root of the run directories of a step: one for each condition."""
     return progress.runs / step.condition
 
 
-def seed_of(progress: Progress, step: Step) -> int:
+def seed_of(progress: StudyProgress, step: Step) -> int:
     """Return the seed of a drive: of its own for participant and trial, the same in conditions."""
     spec = progress.study.spec
     number = spec.people.index(progress.participant)
@@ -73,13 +73,13 @@ def shown_command(words: Sequence[str]) -> str:
     return shlex.join(["crowdbot", *words])
 
 
-def finished_run(progress: Progress, step: Step) -> Path | None:
+def finished_run(progress: StudyProgress, step: Step) -> Path | None:
     """Return the complete run directory of a step, if there is one."""
     found = root_of(progress, step).glob(f"**/seed-{seed_of(progress, step)}/run.json")
     return next((record.parent for record in sorted(found)), None)
 
 
-def _planner(progress: Progress, step: Step, registry: Registry) -> str:
+def _planner(progress: StudyProgress, step: Step, registry: Registry) -> str:
     """Return what ``--planner`` gets; a document with parameters is written beside the data."""
     condition: StudyCondition = progress.study.spec.conditions[step.condition]
     what = condition.planner

@@ -18,7 +18,7 @@ from crowdbot.core.studies.table import Row
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Finding:
+class StudyFinding:
     """One score in one condition, and its difference from the first condition.
 
     Attributes:
@@ -42,7 +42,7 @@ class Finding:
     pairs: int = 0
 
 
-def compare(rows: Sequence[Row], conditions: Sequence[str], score: str) -> list[Finding]:
+def compare(rows: Sequence[Row], conditions: Sequence[str], score: str) -> list[StudyFinding]:
     """Return the findings of one score, by condition.
 
     Args:
@@ -58,7 +58,7 @@ def compare(rows: Sequence[Row], conditions: Sequence[str], score: str) -> list[
         gains = np.array([own[p] - first[p] for p in pairs])
         test = len(pairs) > 1
         found.append(
-            Finding(
+            StudyFinding(
                 score=score,
                 condition=condition,
                 values=own,
@@ -76,7 +76,7 @@ def smallest_p(participants: int) -> float:
     return least_p(participants)
 
 
-def adjusted(found: Sequence[Finding]) -> list[Finding]:
+def adjusted(found: Sequence[StudyFinding]) -> list[StudyFinding]:
     """Return findings with Holm's correction for all tests among them."""
     tested = [k for k, f in enumerate(found) if f.p is not None]
     p_values = np.array([found[k].p for k in tested], dtype=np.float64)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.studies.drives import Drive, drive_words, finished_run
-from crowdbot.core.studies.progress import Progress
+from crowdbot.core.studies.progress import StudyProgress
 from crowdbot.core.studies.steps import Step
 from crowdbot.errors import InputError
 
@@ -14,7 +14,7 @@ from crowdbot.errors import InputError
 SYNTHETIC, PERSON = "synthetic", "person"
 
 
-def finish_all(progress: Progress, registry: Registry, say: Callable[[str], object]) -> None:
+def finish_all(progress: StudyProgress, registry: Registry, say: Callable[[str], object]) -> None:
     """Go through all steps that are not done.
 
     Args:
@@ -28,7 +28,7 @@ def finish_all(progress: Progress, registry: Registry, say: Callable[[str], obje
         progress.finish(step, _content(progress, step, registry))
 
 
-def _content(progress: Progress, step: Step, registry: Registry) -> dict[str, object]:
+def _content(progress: StudyProgress, step: Step, registry: Registry) -> dict[str, object]:
     if step.kind not in ("practice", "trial"):
         return {"driver": SYNTHETIC, "answers": None}
     if finished_run(progress, step) is None:
@@ -41,7 +41,7 @@ def _content(progress: Progress, step: Step, registry: Registry) -> dict[str, ob
     return trial_content(progress, step, SYNTHETIC)
 
 
-def trial_content(progress: Progress, step: Step, driver: str) -> dict[str, object]:
+def trial_content(progress: StudyProgress, step: Step, driver: str) -> dict[str, object]:
     """Return what is written of a drive that is done.
 
     Raises:

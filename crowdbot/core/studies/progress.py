@@ -18,7 +18,7 @@ STUDY = "study.json"
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class StudyProgress:
     """The steps of a participant and what is there of them.
 
     Attributes:
@@ -87,7 +87,7 @@ class Progress:
         return self.home / "steps" / f"{step.name}.json"
 
 
-def open_progress(study: Study, folder: Path, participant: str) -> Progress:
+def open_progress(study: Study, folder: Path, participant: str) -> StudyProgress:
     """Return the progress of a participant; the folder is marked as the study's.
 
     Raises:
@@ -97,7 +97,7 @@ def open_progress(study: Study, folder: Path, participant: str) -> Progress:
     if participant not in study.spec.people:
         raise UnknownNameError("participant", participant, study.spec.people)
     claim_folder(study, folder)
-    return Progress(study, folder, participant)
+    return StudyProgress(study, folder, participant)
 
 
 def claim_folder(study: Study, folder: Path) -> None:

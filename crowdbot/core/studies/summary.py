@@ -7,7 +7,7 @@ from pathlib import Path
 
 from crowdbot.core.studies.document import Study
 from crowdbot.core.studies.orders import condition_order
-from crowdbot.core.studies.progress import Progress
+from crowdbot.core.studies.progress import StudyProgress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +36,7 @@ def participant_states(study: Study, folder: Path) -> list[ParticipantState]:
     """
     found = []
     for participant in study.spec.people:
-        progress = Progress(study, folder, participant)
+        progress = StudyProgress(study, folder, participant)
         now, steps = progress.current(), progress.steps
         found.append(
             ParticipantState(

@@ -11,7 +11,7 @@ from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.evaluate import score
 from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.studies.document import Study
-from crowdbot.core.studies.progress import Progress
+from crowdbot.core.studies.progress import StudyProgress
 from crowdbot.core.trajectories.questionnaires import TLX_SCALES, USE_ITEMS, Questionnaires
 from crowdbot.errors import InputError
 
@@ -33,12 +33,14 @@ def study_rows(study: Study, folder: Path, registry: Registry) -> list[Row]:
     Raises:
         InputError: a file of the data is damaged.
     """
-    rows = [row for p in study.spec.people for row in _rows(Progress(study, folder, p), registry)]
+    rows = [
+        row for p in study.spec.people for row in _rows(StudyProgress(study, folder, p), registry)
+    ]
     names = sorted({name for row in rows for name in row if name not in FIRST})
     return [{name: row.get(name) for name in (*FIRST, *names)} for row in rows]
 
 
-def _rows(progress: Progress, registry: Registry) -> Iterator[Row]:
+def _rows(progress: StudyProgress, registry: Registry) -> Iterator[Row]:
     done = progress.done()
     weights: Mapping[str, Any] = {}
     answers: dict[str, dict[str, Any]] = {}

@@ -10,7 +10,7 @@ from crowdbot.plugins.observations.goal_build import SIZE, bounds, goal_and_moti
 from crowdbot.plugins.observations.occupancy import OccupancySpec
 
 
-class Occupancy:
+class OccupancyGrid:
     """Marks the cells of all returns of the latest scan; keeps nothing."""
 
     def __init__(self, spec: OccupancySpec, context: LearningContext) -> None:
@@ -41,6 +41,6 @@ class Occupancy:
         return np.column_stack([grid.reshape(worlds, -1), rest]).astype(np.float32)
 
 
-def build(spec: OccupancySpec, context: LearningContext) -> Occupancy:
+def build(spec: OccupancySpec, context: LearningContext) -> OccupancyGrid:
     """Return an observer."""
-    return Occupancy(spec, context)
+    return OccupancyGrid(spec, context)

@@ -13,7 +13,7 @@ from crowdbot.plugins.observations.tracks import TracksSpec
 _COLUMNS = 6
 
 
-class Tracks:
+class TrackRows:
     """Sorts people by distance; keeps nothing."""
 
     def __init__(self, spec: TracksSpec, context: LearningContext) -> None:
@@ -53,6 +53,6 @@ class Tracks:
         return found
 
 
-def build(spec: TracksSpec, context: LearningContext) -> Tracks:
+def build(spec: TracksSpec, context: LearningContext) -> TrackRows:
     """Return an observer."""
-    return Tracks(spec, context)
+    return TrackRows(spec, context)

@@ -17,7 +17,7 @@ class BurdenSpec(ProgressSpec):
     """
 
     kind: Literal["burden"] = "burden"  # type: ignore[assignment]
-    work: Amount = Field(default=0.01, description="Taken off for each joule.")
+    work: Amount = Field(default=0.01, description="Taken off for each joule, 1/J.")
 
 
 BURDEN = Component(

@@ -5,14 +5,14 @@ from __future__ import annotations
 from crowdbot.plugin import Array
 from crowdbot.plugin.for_learning import Change, LearningContext
 from crowdbot.plugins.rewards.burden import BurdenSpec
-from crowdbot.plugins.rewards.progress_build import Progress
+from crowdbot.plugins.rewards.progress_build import ProgressReward
 
 
 class Burden:
     """Progress, less the work demanded of people."""
 
     def __init__(self, spec: BurdenSpec, context: LearningContext) -> None:
-        self._work, self._progress = spec.work, Progress(spec, context)
+        self._work, self._progress = spec.work, ProgressReward(spec, context)
 
     def of(self, change: Change) -> Array:
         """Return (W,) rewards."""

@@ -19,7 +19,7 @@ class ComfortSpec(ProgressSpec):
 
     kind: Literal["comfort"] = "comfort"  # type: ignore[assignment]
     advance: Amount = Field(
-        default=1.0, description="Taken off for each metre towards people without room."
+        default=1.0, description="Taken off for each metre towards people without room, 1/m."
     )
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from crowdbot.plugin import Array
 from crowdbot.plugin.for_learning import Change, LearningContext
 from crowdbot.plugins.rewards.comfort import ComfortSpec
-from crowdbot.plugins.rewards.progress_build import Progress
+from crowdbot.plugins.rewards.progress_build import ProgressReward
 
 
 class Comfort:
     """Progress, less advance on people without room."""
 
     def __init__(self, spec: ComfortSpec, context: LearningContext) -> None:
-        self._advance, self._progress = spec.advance, Progress(spec, context)
+        self._advance, self._progress = spec.advance, ProgressReward(spec, context)
 
     def of(self, change: Change) -> Array:
         """Return (W,) rewards."""

@@ -16,13 +16,16 @@ class ProgressSpec(RewardSpec):
     """Progress in metres, and costs of time, contact, walls and jerky commands."""
 
     kind: Literal["progress"] = "progress"
-    progress: Amount = Field(default=1.0, description="For each metre nearer to the goal.")
-    arrival: Amount = Field(default=5.0, description="For arriving.")
-    time: Amount = Field(default=0.05, description="Taken off for each second.")
-    contact: Amount = Field(default=5.0, description="Taken off for each second of contact.")
-    wall: Amount = Field(default=1.0, description="Taken off for each second stopped by a wall.")
+    progress: Amount = Field(default=1.0, description="For each metre nearer to the goal, 1/m.")
+    arrival: Amount = Field(default=5.0, description="For arriving, a number.")
+    time: Amount = Field(default=0.05, description="Taken off for each second, 1/s.")
+    contact: Amount = Field(default=5.0, description="Taken off for each second of contact, 1/s.")
+    wall: Amount = Field(
+        default=1.0, description="Taken off for each second stopped by a wall, 1/s."
+    )
     change: Amount = Field(
-        default=0.01, description="Taken off for a change of the command by its whole range."
+        default=0.01,
+        description="Taken off for a change of the command by its whole range, a number.",
     )
 
 

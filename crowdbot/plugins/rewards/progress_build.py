@@ -9,7 +9,7 @@ from crowdbot.plugin.for_learning import Change, LearningContext
 from crowdbot.plugins.rewards.progress import ProgressSpec
 
 
-class Progress:
+class ProgressReward:
     """A sum of parts."""
 
     def __init__(self, spec: ProgressSpec, context: LearningContext) -> None:
@@ -26,6 +26,6 @@ class Progress:
         return np.asarray(found + spec.arrival * change.arrived)
 
 
-def build(spec: ProgressSpec, context: LearningContext) -> Progress:
+def build(spec: ProgressSpec, context: LearningContext) -> ProgressReward:
     """Return the reward."""
-    return Progress(spec, context)
+    return ProgressReward(spec, context)

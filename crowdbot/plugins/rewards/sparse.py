@@ -22,11 +22,13 @@ class SparseSpec(RewardSpec):
     """
 
     kind: Literal["sparse"] = "sparse"
-    arrival: Amount = Field(default=1.0, description="For arriving.")
-    contact: Amount = Field(default=0.25, description="Taken off for a step with contact.")
+    arrival: Amount = Field(default=1.0, description="For arriving, a number.")
+    contact: Amount = Field(
+        default=0.25, description="Taken off for a step with contact, a number."
+    )
     near: NonNegativeLength = Field(default=0.2, description="Gap to people without cost, m.")
-    nearness: Amount = Field(default=0.1, description="Taken off for any smaller gap.")
-    slope: Amount = Field(default=0.5, description="Taken off besides, for each metre of gap.")
+    nearness: Amount = Field(default=0.1, description="Taken off for any smaller gap, a number.")
+    slope: Amount = Field(default=0.5, description="Taken off besides, for each metre of gap, 1/m.")
 
 
 SPARSE = Component(

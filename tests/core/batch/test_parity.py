@@ -13,7 +13,7 @@ from crowdbot.api import registry
 from crowdbot.core.batch.array_tables import ScratchPool
 from crowdbot.core.batch.batch import Batch
 from crowdbot.core.batch.blueprint import blueprint
-from crowdbot.core.batch.world import World
+from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.support.ticks import TICK
 from crowdbot.errors import InputError
@@ -37,7 +37,7 @@ def commands(count: int, robots: int = 1) -> Any:
 
 def compare(scenario: crowdbot.Scenario, seconds: float, lidars: list[str]) -> dict[str, float]:
     """Largest differences between a batch of one world and a session, m; and readings compared."""
-    world = World(blueprint(scenario, registry(), lidars), None)
+    world = BatchWorld(blueprint(scenario, registry(), lidars), None)
     batch, found = Batch([world], [0]), {"robot": 0.0, "people": 0.0, "ranges": 0.0, "read": 0.0}
     session = crowdbot.Session(scenario, sensors=lidars, privileged=True)
     names = list(session.robots)
@@ -90,14 +90,14 @@ def test_a_robot_that_is_not_round_at_a_wall() -> None:
 
 def test_people_who_find_their_way_decide_outside_of_compiled_code_but_alike() -> None:
     (scenario,) = crowdbot.expand(CAFE, set=[KINEMATIC])
-    world = World(blueprint(scenario, registry(), []), None)
+    world = BatchWorld(blueprint(scenario, registry(), []), None)
     assert not world.compiled
     found = compare(scenario, 2.0, [])
     assert found["robot"] == 0.0
     assert found["people"] < 2e-3
 
 
-def states(worlds: list[World], steps: int) -> list[Any]:
+def states(worlds: list[BatchWorld], steps: int) -> list[Any]:
     """The state of each world after some steps."""
     batch = Batch(worlds, list(range(len(worlds))))
     for now in commands(steps):
@@ -110,8 +110,8 @@ def test_worlds_of_any_size_in_any_order_do_not_depend_on_each_other() -> None:
     large = blueprint(crowdbot.load(*CHALLENGE, set="crowd.flow.density=0.1"), registry(), [])
     plans = [(small, 1), (large, 2), (small, 3)]
     pool = ScratchPool()
-    together = states([World(plan, root, pool) for plan, root in plans], 24)
-    alone = [states([World(plan, root)], 24)[0] for plan, root in plans]
+    together = states([BatchWorld(plan, root, pool) for plan, root in plans], 24)
+    alone = [states([BatchWorld(plan, root)], 24)[0] for plan, root in plans]
     for one, other in zip(together, alone, strict=True):
         assert np.array_equal(one, other)
     assert not np.array_equal(together[0], together[2])
@@ -119,7 +119,7 @@ def test_worlds_of_any_size_in_any_order_do_not_depend_on_each_other() -> None:
 
 def test_a_world_begins_again_as_it_began() -> None:
     plan = blueprint(crowdbot.load(*CHALLENGE, set=FEW), registry(), ["front_lidar"])
-    world = World(plan, 5)
+    world = BatchWorld(plan, 5)
     batch = Batch([world], [3])
     first = world.scanners[0].arrays["ranges"].copy()
     runs = []
@@ -143,7 +143,7 @@ def test_a_sensor_that_batches_cannot_simulate_is_named() -> None:
 def test_with_dynamic_control_the_robot_stays_within_5_cm_for_20_s() -> None:
     """The same commands without contact: wheels and motors against exact arcs."""
     scenario = crowdbot.load(*CHALLENGE, set="crowd.flow.density=0.02")
-    world = World(blueprint(scenario, registry(), []), None)
+    world = BatchWorld(blueprint(scenario, registry(), []), None)
     batch, rng = Batch([world], [0]), np.random.default_rng(3)
     drawn = rng.uniform([0.0, -0.8], [0.5, 0.8], (20, 2)).repeat(16, axis=0)
     away, people = [], []

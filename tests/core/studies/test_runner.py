@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 
 import pytest
 
-from crowdbot.core.studies.progress import Progress, open_progress
+from crowdbot.core.studies.progress import StudyProgress, open_progress
 from crowdbot.core.studies.runner.server import RunnerServer
 from crowdbot.core.studies.runner.session import RunnerSession
 from crowdbot.core.trajectories.questionnaires import TLX_SCALES
@@ -21,12 +21,12 @@ FORM = "application/x-www-form-urlencoded"
 
 
 @pytest.fixture
-def progress(tmp_path: Path) -> Progress:
+def progress(tmp_path: Path) -> StudyProgress:
     return open_progress(study_of(tmp_path), tmp_path / "data", "p01")
 
 
 @pytest.fixture
-def server(progress: Progress) -> Iterator[RunnerServer]:
+def server(progress: StudyProgress) -> Iterator[RunnerServer]:
     server = RunnerServer(RunnerSession(progress, REGISTRY, synthetic=True))
     thread = threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True)
     thread.start()
@@ -62,7 +62,9 @@ def test_the_page_is_for_its_address_only(server: RunnerServer) -> None:
     assert ask(server, "GET", home, Origin="http://127.0.0.1:1")[0] == 403
 
 
-def test_answers_of_other_pages_are_not_taken(server: RunnerServer, progress: Progress) -> None:
+def test_answers_of_other_pages_are_not_taken(
+    server: RunnerServer, progress: StudyProgress
+) -> None:
     home, agreed = f"/{server.token}/", {"step": "001-consent", "agree": "yes"}
     assert ask(server, "POST", home, agreed, Origin="https://evil.example")[0] == 403
     assert ask(server, "POST", home, agreed, Origin="http://localhost:1")[0] == 403
@@ -78,7 +80,7 @@ def test_answers_of_other_pages_are_not_taken(server: RunnerServer, progress: Pr
     assert list(progress.done()) == ["001-consent"]
 
 
-def test_without_agreement_nothing_begins(server: RunnerServer, progress: Progress) -> None:
+def test_without_agreement_nothing_begins(server: RunnerServer, progress: StudyProgress) -> None:
     home = f"/{server.token}/"
     assert ask(server, "POST", home, {"step": "001-consent"})[0] == 303
     assert "needs your agreement" in ask(server, "GET", home)[1]
@@ -106,7 +108,7 @@ def test_a_form_is_taken_when_it_is_complete_and_once(tmp_path: Path) -> None:
 
 
 def test_a_drive_that_fails_is_said_and_can_be_tried_again(
-    progress: Progress, monkeypatch: pytest.MonkeyPatch
+    progress: StudyProgress, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     progress.finish(progress.steps[0], {})
     session = RunnerSession(progress, REGISTRY, synthetic=True)

@@ -130,7 +130,7 @@ def _driven(
     from dataclasses import replace
 
     from crowdbot.core.live.person import teleop as live
-    from crowdbot.core.live.person.picture import Picture
+    from crowdbot.core.live.person.picture import LivePicture
     from crowdbot.core.scenarios.lock import population
 
     scenario, robot = request.scenario, controls.robot
@@ -140,7 +140,7 @@ def _driven(
         people = population(scenario, request.registry).agents
         about = {"driven": list(builts).index(robot), "walker": -1}
         parts = next(iter(builts.values())).parts
-        picture = Picture(server, scenario, parts, builts, people, about)
+        picture = LivePicture(server, scenario, parts, builts, people, about)
         picture.show()
         watched = replace(request, watchers=[picture], on_begin=picture.begin_run)
         run = live.drive(watched, builts, seat, robot)

@@ -87,7 +87,7 @@ def walk(
     Example: crowdbot walk challenge-2020 counter-d0250-dispersed-c20-r05 --replay runs/RUN
     """
     from crowdbot.cli.shared.one_run import import_simulate, interruptible, print_run
-    from crowdbot.core.live.person.walking import Body
+    from crowdbot.core.live.person.walking import WalkerBody
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     with stdout_to_stderr():
@@ -97,7 +97,7 @@ def walk(
         )  # fmt: skip
         without = request_of(given, installed(plugin, no_plugins))
         import_simulate()
-        body = Body(at=_point("--at", at), goal=_point("--goal", goal), speed=speed)
+        body = WalkerBody(at=_point("--at", at), goal=_point("--goal", goal), speed=speed)
         request, builts = _with_person(without, body, planner or (), planner_set or ())
         if replay is not None:
             from crowdbot.core.live.person.walk import walk_again
@@ -156,7 +156,7 @@ def _walked(
     import numpy as np
 
     from crowdbot.core.environments.build import build_environment
-    from crowdbot.core.live.person.picture import Picture
+    from crowdbot.core.live.person.picture import LivePicture
     from crowdbot.core.live.person.walk import seat_in_the_crowd, walk
     from crowdbot.core.live.person.walking import PERSON
     from crowdbot.core.scenarios.lock import population
@@ -168,7 +168,7 @@ def _walked(
     parts = build_environment(request.registry, scenario.environment)
     seat = seat_in_the_crowd(stop, doors.rate)
     with page_of(seat, "walk", scenario.id, doors) as server:
-        picture = Picture(server, scenario, parts, builts, people, about)
+        picture = LivePicture(server, scenario, parts, builts, people, about)
         picture.show()
         watched = replace(request, watchers=[picture], on_begin=picture.begin_run)
         run = walk(watched, builts, seat, without, speed)

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Scene, around, id_of
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Stage, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 
-SCENARIO = Table(
+SCENARIO = RowTable(
     "commonRoad",
     (
         Row("@timeStepSize", "crowd.policy replay.file", "time of each state"),
@@ -29,7 +29,7 @@ _PERSON = "pedestrian"
 Point = tuple[float, float, float]
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return one scene for each file.
 
     Raises:
@@ -38,8 +38,8 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return [_scene(file, root, context) for file in files for root in file.roots]
 
 
-def _scene(file: Opened, root: Item, context: Context) -> Scene:
-    report, scene = context.report, Scene(id_of(file.path.stem))
+def _scene(file: OpenedScene, root: Item, context: Context) -> Stage:
+    report, scene = context.report, Stage(id_of(file.path.stem))
     scene.notes.append(f"Imported from CommonRoad: {file.path.name}.")
     step = root.find("@timeStepSize")
     dt = step.number(1e-6, 1e3) if step else 0.1
@@ -72,7 +72,7 @@ def _scene(file: Opened, root: Item, context: Context) -> Scene:
 
 
 def _record(
-    rows: list[tuple[float, int, float, float]], scene: Scene, root: Item, context: Context
+    rows: list[tuple[float, int, float, float]], scene: Stage, root: Item, context: Context
 ) -> None:
     table = f"{context.name}.{scene.id}.csv"
     scene.tables[table] = HEADER + "".join(
@@ -110,7 +110,7 @@ def _exact(item: Item) -> float:
     return exact.number()
 
 
-def _static(item: Item, scene: Scene, report: Report) -> None:
+def _static(item: Item, scene: Stage, report: Report) -> None:
     state = item.need("initialState")
     point = state.need("position").need("point")
     turn = state.find("orientation")
@@ -139,7 +139,7 @@ def _outline(shape: Item) -> list[tuple[float, float]]:
     return [(p.need("x").number(), p.need("y").number()) for p in points]
 
 
-COMMONROAD = Format(
+COMMONROAD = SceneFormat(
     "commonroad",
     "CommonRoad scenarios",
     lambda file: file.kind == "xml" and "commonRoad" in file.tags,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.others.usual import social_forces
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table, not_negative, positive
-from crowdbot.core.exchange.scene import Data, Scene, id_of
+from crowdbot.core.exchange.rows import Row, RowTable, not_negative, positive
+from crowdbot.core.exchange.scene import Data, Stage, id_of
 
 #: Behaviours by number: name, and our like of it.
 _BEHAVIOURS = {
@@ -28,7 +28,7 @@ def _behaviour(item: Item) -> int:
     return kind.whole(1, 6)
 
 
-AGENT = Table(
+AGENT = RowTable(
     "agent",
     (
         Row("id", "crowd.agents.id", read=lambda item: item.whole(0, 2147483647)),
@@ -42,7 +42,7 @@ AGENT = Table(
             read=lambda item: "loop" if item.truth() else "stop"),
     ),
 )  # fmt: skip
-MORE = Table(
+MORE = RowTable(
     "agent",
     (
         Row(
@@ -53,7 +53,7 @@ MORE = Table(
         Row("init_pose z, goal h", "", "heights and headings at goals"),
     ),
 )
-LOADER = Table(
+LOADER = RowTable(
     "hunav_loader",
     (
         Row("map", "", "give the floor with environment.kind: floor_plan and the map.yaml"),
@@ -64,7 +64,7 @@ LOADER = Table(
 )
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return one scene for each file.
 
     Raises:
@@ -73,13 +73,13 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return [_scene(file, context.report) for file in files]
 
 
-def _parameters(file: Opened) -> Item:
+def _parameters(file: OpenedScene) -> Item:
     loader = file.roots[0].need("hunav_loader")
     return loader.need("ros__parameters")
 
 
-def _scene(file: Opened, report: Report) -> Scene:
-    parameters, scene = _parameters(file), Scene(id_of(file.path.stem))
+def _scene(file: OpenedScene, report: Report) -> Stage:
+    parameters, scene = _parameters(file), Stage(id_of(file.path.stem))
     scene.notes.append(f"Imported from HuNavSim: {file.path.name}.")
     report.take(parameters, LOADER)
     policy = scene.policy(social_forces(), "social_forces", parameters.mark)
@@ -93,7 +93,7 @@ def _scene(file: Opened, report: Report) -> Scene:
     return scene
 
 
-def _agent(name: Item, parameters: Item, policy: str, scene: Scene, report: Report) -> None:
+def _agent(name: Item, parameters: Item, policy: str, scene: Stage, report: Report) -> None:
     item = parameters.need(name.text())
     report.carried(name, "crowd.agents")
     fields: Data = {"speed": 1.5, "radius": 0.35, **report.take(item, AGENT)}
@@ -139,7 +139,7 @@ def _behave(item: Item, row: Data, report: Report) -> None:
             report.left_out(part, "parameters of that behaviour")
 
 
-def _ignoring(scene: Scene) -> None:
+def _ignoring(scene: Stage) -> None:
     """Let those with attention 0 ignore robots."""
     count = sum(1 for agent in scene.agents if agent.get("attention") == 0.0)
     if count:
@@ -148,7 +148,7 @@ def _ignoring(scene: Scene) -> None:
         scene.crowd["robot_response"] = {"reaction": "mixed", "ignoring_fraction": share}
 
 
-HUNAV = Format(
+HUNAV = SceneFormat(
     "hunav",
     "HuNavSim agents.yaml",
     lambda file: file.kind == "data" and "hunav_loader" in file.tags,

@@ -7,18 +7,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.others.shapes import area_of, middle, pairs, rectangle_in, size
 from crowdbot.core.exchange.others.usual import social_forces, vision
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Data, Scene, free_name, id_of, name_of
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Data, Stage, free_name, id_of, name_of
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
-SCENARIO = Table(
+SCENARIO = RowTable(
     "scenario",
     (
         Row("walkable_area_wkt, or a WKT file beside it", "environment.wkt"),
@@ -62,7 +62,7 @@ class _Places:
         return min(self.exits, key=lambda name: math.dist(middle(self.exits[name]), (x, y)))
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return one scene for each scenario, or for each WKT where there is none.
 
     Raises:
@@ -75,7 +75,7 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return [_scene(file, texts, context.report) for file in decks]
 
 
-def _geometry(text: str, mark: Mark, scene: Scene) -> Any:
+def _geometry(text: str, mark: Mark, scene: Stage) -> Any:
     from shapely import GEOSException, from_wkt  # type: ignore[import-untyped,unused-ignore]
 
     try:
@@ -90,11 +90,11 @@ def _geometry(text: str, mark: Mark, scene: Scene) -> Any:
     return shape
 
 
-def _bare(file: Opened, report: Report) -> Scene:
+def _bare(file: OpenedScene, report: Report) -> Stage:
     """Return a floor with two people who walk back and forth, since WKT has none."""
     from shapely import from_wkt, maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
 
-    scene = Scene(id_of(file.path.stem))
+    scene = Stage(id_of(file.path.stem))
     scene.notes.append(f"Imported from WKT: {file.path.name}.")
     _geometry(file.text, file.top, scene)
     whole = Item("WKT", file.top)
@@ -113,8 +113,8 @@ def _bare(file: Opened, report: Report) -> Scene:
     return scene
 
 
-def _scene(file: Opened, texts: Sequence[Opened], report: Report) -> Scene:
-    root, scene = file.roots[0], Scene(id_of(file.path.stem))
+def _scene(file: OpenedScene, texts: Sequence[OpenedScene], report: Report) -> Stage:
+    root, scene = file.roots[0], Stage(id_of(file.path.stem))
     scene.notes.append(f"Imported from JuPedSim: {file.path.name}.")
     floor = _floor(root, file, texts, scene, report)
     _model(root, scene, report)
@@ -151,7 +151,9 @@ def _rest(item: Item, note: str, report: Report) -> None:
             report.left_out(part, note)
 
 
-def _floor(root: Item, file: Opened, texts: Sequence[Opened], scene: Scene, report: Report) -> Any:
+def _floor(
+    root: Item, file: OpenedScene, texts: Sequence[OpenedScene], scene: Stage, report: Report
+) -> Any:
     inside = root.find("walkable_area_wkt")
     if inside is not None:
         report.carried(inside, "environment.wkt")
@@ -170,7 +172,7 @@ def _floor(root: Item, file: Opened, texts: Sequence[Opened], scene: Scene, repo
     return _geometry(text, Mark(source), scene)
 
 
-def _model(root: Item, scene: Scene, report: Report) -> None:
+def _model(root: Item, scene: Stage, report: Report) -> None:
     kinds = [item for item in root.walk() if item.name == "model_type"]
     social = any("social" in item.text().lower() for item in kinds)
     at = kinds[0] if kinds else root
@@ -210,7 +212,7 @@ def _journeys(root: Item, report: Report) -> dict[str, list[str]]:
 
 
 def _distribution(
-    item: Item, places: _Places, journeys: dict[str, list[str]], scene: Scene, report: Report
+    item: Item, places: _Places, journeys: dict[str, list[str]], scene: Stage, report: Report
 ) -> None:
     area, how = rectangle_in(pairs(item.need("coordinates")), places.floor)
     report.interpreted(item, "crowd.streams", how or "people start within it")
@@ -275,7 +277,7 @@ def _ways(
 
 
 def _stream(
-    item: Item, parameters: Item, area: Data, way: list[Data], count: int, scene: Scene
+    item: Item, parameters: Item, area: Data, way: list[Data], count: int, scene: Stage
 ) -> None:
     radius, speed = parameters.find("radius"), parameters.find("v0")
     spread = parameters.find("v0_std")
@@ -304,13 +306,13 @@ def _stream(
     scene.origins["crowd", "streams", name] = item.mark
 
 
-def _fits(file: Opened) -> bool:
+def _fits(file: OpenedScene) -> bool:
     if file.kind == "data":
         return "distributions" in file.tags and "exits" in file.tags
     return file.kind == "text" and file.text.lstrip().upper().startswith(_WKT)
 
 
-JUPEDSIM = Format(
+JUPEDSIM = SceneFormat(
     "jupedsim",
     "JuPedSim scenarios and WKT",
     _fits,

@@ -11,7 +11,7 @@ from crowdbot.core.exchange.others.shapes import Corners, area_of, middle, recta
 from crowdbot.core.exchange.others.usual import social_forces, standing_robot
 from crowdbot.core.exchange.polygons import add_polygon
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.scene import Data, Scene, free_name
+from crowdbot.core.exchange.scene import Data, Stage, free_name
 
 #: People per m^2 on routes and in crowded zones, and width of a route, m: usual values there.
 DENSITY, WIDTH = 0.04, 3.0
@@ -20,7 +20,7 @@ _MOST_ROUTES = 50
 
 
 @dataclass(slots=True)
-class Route:
+class RobotSfRoute:
     """A route from one zone to another.
 
     Attributes:
@@ -46,7 +46,7 @@ class Person:
 
 
 @dataclass(slots=True)
-class Map:
+class RobotSfMap:
     """Everything in a map; zones by their number.
 
     Attributes:
@@ -58,11 +58,11 @@ class Map:
     bounds: tuple[float, float, float, float] | None = None
     obstacles: list[tuple[Item, Corners]] = field(default_factory=list)
     zones: dict[str, dict[int, tuple[Item, Corners]]] = field(default_factory=dict)
-    robot_routes: list[Route] = field(default_factory=list)
-    ped_routes: list[Route] = field(default_factory=list)
+    robot_routes: list[RobotSfRoute] = field(default_factory=list)
+    ped_routes: list[RobotSfRoute] = field(default_factory=list)
     people: list[Person] = field(default_factory=list)
 
-    def zone(self, kind: str, number: int, route: Route) -> tuple[Item, Corners]:
+    def zone(self, kind: str, number: int, route: RobotSfRoute) -> tuple[Item, Corners]:
         """Return a zone, or a square at the route's end where the map has none.
 
         Raises:
@@ -77,7 +77,7 @@ class Map:
         return route.item, [[x - 1, y - 1], [x + 1, y - 1], [x + 1, y + 1], [x - 1, y + 1]]
 
 
-def scenes_of(found: Map, name: str, note: str, report: Report) -> list[Scene]:
+def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[Stage]:
     """Return one scene for each route of the robot, or one without a robot.
 
     Raises:
@@ -87,10 +87,10 @@ def scenes_of(found: Map, name: str, note: str, report: Report) -> list[Scene]:
     for route in found.robot_routes[_MOST_ROUTES:]:
         report.left_out(route.item, f"more than {_MOST_ROUTES} routes")
     scenes = []
-    chosen: list[Route | None] = [*routes]
+    chosen: list[RobotSfRoute | None] = [*routes]
     for way in chosen or [None]:
         ending = f"-{way.spawn}-{way.goal}" if way is not None and len(routes) > 1 else ""
-        scene = Scene(f"{name}{ending}")
+        scene = Stage(f"{name}{ending}")
         scene.notes.append(note)
         _floor(found, scene, report)
         if way is not None:
@@ -100,7 +100,7 @@ def scenes_of(found: Map, name: str, note: str, report: Report) -> list[Scene]:
     return scenes
 
 
-def _floor(found: Map, scene: Scene, report: Report) -> None:
+def _floor(found: RobotSfMap, scene: Stage, report: Report) -> None:
     if found.bounds is not None:
         x0, x1, y0, y1 = found.bounds
         scene.environment = {"kind": "floor", "border": "walls",
@@ -120,7 +120,7 @@ def _within(corners: Corners, bounds: tuple[float, float, float, float] | None) 
     return [[min(max(x, x0), x1), min(max(y, y0), y1)] for x, y in corners]
 
 
-def _robot(found: Map, route: Route, scene: Scene, report: Report) -> None:
+def _robot(found: RobotSfMap, route: RobotSfRoute, scene: Stage, report: Report) -> None:
     _, spawn = found.zone("robot_spawn_zone", route.spawn, route)
     item, goal = found.zone("robot_goal_zone", route.goal, route)
     start_area, _ = rectangle_in(spawn)
@@ -137,7 +137,7 @@ def _robot(found: Map, route: Route, scene: Scene, report: Report) -> None:
     report.added("robots.robot.model", "a TurtleBot2", route.item.mark)
 
 
-def _people(found: Map, scene: Scene, report: Report) -> None:
+def _people(found: RobotSfMap, scene: Stage, report: Report) -> None:
     streams: Data = {}
     for route in found.ped_routes:
         _, spawn = found.zone("ped_spawn_zone", route.spawn, route)
@@ -168,7 +168,7 @@ def _length(points: Corners) -> float:
     return sum(math.dist(a, b) for a, b in pairwise(points))
 
 
-def _crowded(found: Map, scene: Scene, streams: Data, report: Report) -> None:
+def _crowded(found: RobotSfMap, scene: Stage, streams: Data, report: Report) -> None:
     for number, (item, corners) in found.zones.get("ped_crowded_zone", {}).items():
         area, _ = rectangle_in(corners)
         name = free_name(f"crowded_{number}", streams)
@@ -180,7 +180,7 @@ def _crowded(found: Map, scene: Scene, streams: Data, report: Report) -> None:
         report.interpreted(item, "crowd.streams", note)
 
 
-def _single(person: Person, policy: str, scene: Scene, report: Report) -> None:
+def _single(person: Person, policy: str, scene: Stage, report: Report) -> None:
     (x, y), *goals = person.points
     row: Data = {"x": x, "y": y, "goals": goals or [[x, y]], "policy": policy,
                  "speed": person.speed or 1.3}  # fmt: skip

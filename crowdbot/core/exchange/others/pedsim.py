@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.others.shapes import area_of, box
 from crowdbot.core.exchange.others.usual import social_forces, standing_robot
 from crowdbot.core.exchange.polygons import add_wall
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Data, Scene, free_name, id_of, name_of
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Data, Stage, free_name, id_of, name_of
 
-SCENARIO = Table(
+SCENARIO = RowTable(
     "scenario",
     (
         Row("obstacle", "environment.walls", "5 cm thick"),
@@ -26,7 +26,7 @@ SCENARIO = Table(
         Row("source, sink", "crowd.goal_areas", "people neither enter there nor leave"),
     ),
 )
-AGENT = Table(
+AGENT = RowTable(
     "agent",
     (
         Row("@x, @y, @dx, @dy", "crowd.spawns.area", "the middle, and half the width and depth"),
@@ -42,7 +42,7 @@ _SPEEDS = {0: (1.34, 0.26), 1: (1.0, 0.2), 3: (0.9, 0.15)}
 _RADIUS, _THICK = 0.35, 0.05
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return one scene for each file.
 
     Raises:
@@ -51,8 +51,8 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return [_scene(file, root, context.report) for file in files for root in file.roots]
 
 
-def _scene(file: Opened, root: Item, report: Report) -> Scene:
-    scene = Scene(id_of(file.path.stem))
+def _scene(file: OpenedScene, root: Item, report: Report) -> Stage:
+    scene = Stage(id_of(file.path.stem))
     scene.notes.append(f"Imported from pedsim_ros: {file.path.name}.")
     for item in root.every("obstacle"):
         ends = [[item.need(f"@x{k}").number(), item.need(f"@y{k}").number()] for k in (1, 2)]
@@ -76,7 +76,7 @@ def _scene(file: Opened, root: Item, report: Report) -> Scene:
     return scene
 
 
-def _areas(root: Item, scene: Scene, report: Report) -> dict[str, tuple[str, list[float]]]:
+def _areas(root: Item, scene: Stage, report: Report) -> dict[str, tuple[str, list[float]]]:
     """Return id -> name of the goal area and its bounds x0, x1, y0, y1."""
     found: dict[str, tuple[str, list[float]]] = {}
     areas: Data = {}
@@ -104,7 +104,7 @@ def _areas(root: Item, scene: Scene, report: Report) -> dict[str, tuple[str, lis
 
 
 def _agent(
-    item: Item, areas: dict[str, tuple[str, list[float]]], scene: Scene, report: Report
+    item: Item, areas: dict[str, tuple[str, list[float]]], scene: Stage, report: Report
 ) -> None:
     kind = item.find("@type")
     number = kind.whole(0, 3) if kind else 0
@@ -123,7 +123,7 @@ def _agent(
 
 
 def _spawn(
-    item: Item, at: tuple[float, float], number: int, way: list[str], scene: Scene, report: Report
+    item: Item, at: tuple[float, float], number: int, way: list[str], scene: Stage, report: Report
 ) -> None:  # fmt: skip
     count = item.find("@n")
     people = count.whole(0, 100_000) if count else 1
@@ -157,7 +157,7 @@ def _spawn(
 
 
 def _robot(
-    item: Item, at: tuple[float, float], way: list[tuple[str, list[float]]], scene: Scene,
+    item: Item, at: tuple[float, float], way: list[tuple[str, list[float]]], scene: Stage,
     report: Report,
 ) -> None:  # fmt: skip
     name = free_name("robot", scene.robots)
@@ -173,7 +173,7 @@ def _robot(
         part.text()
 
 
-PEDSIM = Format(
+PEDSIM = SceneFormat(
     "pedsim",
     "pedsim_ros scenes",
     lambda file: file.kind == "xml" and "scenario" in file.tags,

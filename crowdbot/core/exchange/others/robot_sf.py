@@ -5,17 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened
-from crowdbot.core.exchange.others.map_of_robot_sf import Map, Person, Route, scenes_of
+from crowdbot.core.exchange.opened import OpenedScene
+from crowdbot.core.exchange.others.map_of_robot_sf import (
+    Person,
+    RobotSfMap,
+    RobotSfRoute,
+    scenes_of,
+)
 from crowdbot.core.exchange.others.shapes import Corners, pairs
 from crowdbot.core.exchange.others.svg_paths import points_of
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Scene, id_of
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Stage, id_of
 
-SVG = Table(
+SVG = RowTable(
     "svg",
     (
         Row("@width, @height", "environment.area, border", "one unit is 1 m, y as it is written"),
@@ -30,7 +35,7 @@ SVG = Table(
         Row("@transform, styles, layers", "", "robot_sf reads raw coordinates, and so does this"),
     ),
 )  # fmt: skip
-MAP = Table(
+MAP = RowTable(
     "map",
     (
         Row("x_margin, y_margin", "environment.area, border"),
@@ -50,7 +55,7 @@ _DRAWN = ("rect", "path", "circle", "ellipse", "polygon", "polyline", "line")
 _LENGTH = re.compile(r"\s*([0-9.eE+-]+)\s*(?:px|m)?\s*")
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return the scenes of each map.
 
     Raises:
@@ -65,8 +70,8 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return found
 
 
-def _svg(root: Item, report: Report) -> Map:
-    found = Map(root)
+def _svg(root: Item, report: Report) -> RobotSfMap:
+    found = RobotSfMap(root)
     width, height = _length(root, "@width"), _length(root, "@height")
     if width and height:
         found.bounds = (0.0, width, 0.0, height)
@@ -98,7 +103,7 @@ def _length(root: Item, name: str) -> float:
 
 
 def _labelled(
-    item: Item, label: str, found: Map,
+    item: Item, label: str, found: RobotSfMap,
     singles: tuple[dict[str, tuple[Item, list[float]]], dict[str, list[float]]], report: Report,
 ) -> None:  # fmt: skip
     if label in ("obstacle", "bound"):
@@ -115,7 +120,7 @@ def _labelled(
         if len(points) < 2:
             item.refuse("a route of fewer than two points")
         into = found.robot_routes if route[1] == "robot" else found.ped_routes
-        into.append(Route(item, int(route[2]), int(route[3]), points))
+        into.append(RobotSfRoute(item, int(route[2]), int(route[3]), points))
     elif single := _SINGLE.fullmatch(label):
         item.used = True
         at = [item.need("@cx").number(), item.need("@cy").number()]
@@ -145,8 +150,8 @@ def _style(item: Item, report: Report) -> None:
         parent = parent.parent
 
 
-def _data(root: Item, report: Report) -> Map:
-    found = Map(root)
+def _data(root: Item, report: Report) -> RobotSfMap:
+    found = RobotSfMap(root)
     margins = [root.find(name) for name in ("x_margin", "y_margin")]
     if all(margins):
         numbers = [part.number() for m in margins if m for part in m.every()]
@@ -171,7 +176,7 @@ def _data(root: Item, report: Report) -> Map:
         for item in _entries(root, f"{kind}_routes"):
             points = pairs(item.need("waypoints"), 2)
             spawn, goal = item.need("spawn_id").whole(0), item.need("goal_id").whole(0)
-            into.append(Route(item, spawn, goal, points))
+            into.append(RobotSfRoute(item, spawn, goal, points))
     for item in _entries(root, "single_pedestrians"):
         found.people.append(_single(item, report))
     return found
@@ -213,13 +218,13 @@ def _point(item: Item) -> list[float]:
     return numbers
 
 
-def _fits(file: Opened) -> bool:
+def _fits(file: OpenedScene) -> bool:
     if file.kind == "xml":
         return "svg" in file.tags
     return file.kind == "data" and bool({"robot_spawn_zones", "x_margin"} & file.tags)
 
 
-ROBOT_SF = Format(
+ROBOT_SF = SceneFormat(
     "robot_sf",
     "robot_sf maps",
     _fits,

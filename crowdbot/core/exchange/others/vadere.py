@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.others.shapes import area_of, box, middle, rectangle_in
 from crowdbot.core.exchange.others.usual import social_forces, vision
 from crowdbot.core.exchange.polygons import add_polygon
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table, number, positive
-from crowdbot.core.exchange.scene import Data, Scene, free_name, id_of
+from crowdbot.core.exchange.rows import Row, RowTable, number, positive
+from crowdbot.core.exchange.scene import Data, Stage, free_name, id_of
 
-SCENARIO = Table(
+SCENARIO = RowTable(
     "scenario",
     (
         Row("mainModel", "crowd.policy", "social forces are ours of 1995, others the usual costs"),
@@ -26,7 +26,7 @@ SCENARIO = Table(
         Row("stimulusInfos", "", "nothing happens to people from outside"),
     ),
 )
-TOPOGRAPHY = Table(
+TOPOGRAPHY = RowTable(
     "topography",
     (
         Row("obstacles", "environment.blocks"),
@@ -45,7 +45,7 @@ TOPOGRAPHY = Table(
         Row("attributesCar", "", "there are no cars"),
     ),
 )
-PEDESTRIAN = Table(
+PEDESTRIAN = RowTable(
     "attributesPedestrian",
     (
         Row("radius", "crowd.body.radius", read=lambda item: item.number(0.01, 10.0)),
@@ -56,7 +56,7 @@ PEDESTRIAN = Table(
         Row("maximumSpeed", "crowd.body.max_speed", read=positive),
     ),
 )  # fmt: skip
-SOURCE = Table(
+SOURCE = RowTable(
     "source",
     (
         Row("spawnNumber", "crowd.streams.count", "people at a time; with interSpawnTime arrivals",
@@ -74,13 +74,13 @@ _FORMS = ("RECTANGLE", "POLYGON")
 class _Topography:
     """Targets by id, and the scene that is filled."""
 
-    scene: Scene
+    scene: Stage
     report: Report
     targets: dict[int, Data] = field(default_factory=dict)
     absorbing: dict[int, bool] = field(default_factory=dict)
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return one scene for each file.
 
     Raises:
@@ -89,10 +89,10 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
     return [_scene(file, context.report) for file in files]
 
 
-def _scene(file: Opened, report: Report) -> Scene:
+def _scene(file: OpenedScene, report: Report) -> Stage:
     root = file.roots[0]
     name = root.find("name")
-    scene = Scene(id_of(name.text() if name else file.path.stem))
+    scene = Stage(id_of(name.text() if name else file.path.stem))
     scene.notes.append(f"Imported from Vadere: {file.path.name}.")
     for part, note in (("description", "for people"), ("release", "the version of Vadere"),
                        ("processWriters", "metrics are those of crowdbot"),
@@ -146,7 +146,7 @@ def _ids(item: Item) -> None:
             part.take_all()
 
 
-def _bounds(attributes: Item, scene: Scene, report: Report) -> None:
+def _bounds(attributes: Item, scene: Stage, report: Report) -> None:
     bounds = attributes.need("bounds")
     x, y = bounds.need("x").number(), bounds.need("y").number()
     width, height = bounds.need("width").number(0.1), bounds.need("height").number(0.1)
@@ -178,7 +178,7 @@ def _shape(item: Item, report: Report) -> tuple[list[list[float]], Data]:
     return points, found
 
 
-def _people(item: Item, scene: Scene, report: Report) -> None:
+def _people(item: Item, scene: Stage, report: Report) -> None:
     given = item.find("attributesPedestrian")
     fields = report.take(given, PEDESTRIAN) if given else {}
     scene.crowd["speed"] = {"mean": fields.get("mean", 1.34), "std": fields.get("std", 0.26)}
@@ -314,7 +314,7 @@ def _element(item: Item, into: _Topography) -> None:
             into.report.left_out(part, "state of Vadere's models")
 
 
-VADERE = Format(
+VADERE = SceneFormat(
     "vadere",
     "Vadere scenarios",
     lambda file: file.kind == "data" and "scenario" in file.tags and "crowdbot" not in file.tags,

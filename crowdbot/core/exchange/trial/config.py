@@ -9,12 +9,12 @@ from pathlib import Path
 from crowdbot.core.exchange.companions import companion
 from crowdbot.core.exchange.formats import Context
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened, open_file_of_others
+from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
+from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.dsl.text.diagnostics import Mark
 
-CONFIG = Table(
+CONFIG = RowTable(
     "Config",
     (
         Row("experience/sourceFileExperiment", "suite", "the trials in the order of this file"),
@@ -34,10 +34,10 @@ _MOST = 500
 class Trials:
     """Trial files, each once, and words in paths."""
 
-    files: list[Opened] = field(default_factory=list)
+    files: list[OpenedScene] = field(default_factory=list)
     words: dict[str, str] = field(default_factory=lambda: {"{USER}": "0", "{TWO}": "0"})
 
-    def add(self, file: Opened) -> None:
+    def add(self, file: OpenedScene) -> None:
         """Add a trial unless it is there already."""
         if not self.has(file.path):
             self.files.append(file)
@@ -47,7 +47,7 @@ class Trials:
         return path.resolve() in {file.path.resolve() for file in self.files}
 
 
-def find_trials(files: Sequence[Opened], context: Context) -> Trials:
+def find_trials(files: Sequence[OpenedScene], context: Context) -> Trials:
     """Return the trials that files are, or name.
 
     Raises:
@@ -96,7 +96,7 @@ def _config(root: Item, found: Trials, report: Report) -> Item | None:
     return named
 
 
-def _order(file: Opened, found: Trials, report: Report) -> None:
+def _order(file: OpenedScene, found: Trials, report: Report) -> None:
     for number, line in enumerate(file.text.split("\n")):
         if not line.strip():
             continue

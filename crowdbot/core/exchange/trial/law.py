@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table, not_negative
+from crowdbot.core.exchange.rows import Row, RowTable, not_negative
 from crowdbot.core.exchange.umans.agents import limited
 
 #: Distance of the goal of those who only walk straight on, m.
@@ -27,20 +27,20 @@ _WALK = (
     Row("@isLooping", "crowd.agents.at_goal",
         read=lambda item: "loop" if item.truth() else "stop"),
 )  # fmt: skip
-CONTROL_LAWS: Mapping[str, Table] = {
-    "LawGoals": Table("LawGoals", (*_WALK, Row("Goals/Goal", "crowd.agents.goals"))),
-    "LawWaypoints": Table(
+CONTROL_LAWS: Mapping[str, RowTable] = {
+    "LawGoals": RowTable("LawGoals", (*_WALK, Row("Goals/Goal", "crowd.agents.goals"))),
+    "LawWaypoints": RowTable(
         "LawWaypoints", (*_WALK, Row("Waypoints/Waypoint", "crowd.agents.goals"))
     ),
-    "LawStanding": Table(
+    "LawStanding": RowTable(
         "LawStanding",
         (
             Row("@animationType", "", "bodies are not animated"),
             Row("LookAt", "crowd.agents.heading"),
         ),
     ),
-    "LawMoveStraight": Table("LawMoveStraight", _WALK[:3]),
-    "LawFileData": Table(
+    "LawMoveStraight": RowTable("LawMoveStraight", _WALK[:3]),
+    "LawFileData": RowTable(
         "LawFileData",
         (
             Row("@timeColumn", "crowd.policies.replay", read=lambda item: item.whole(-99, 99)),
@@ -50,14 +50,14 @@ CONTROL_LAWS: Mapping[str, Table] = {
             Row("dataFile", "crowd.policies.replay.file"),
         ),
     ),
-    "LawFake": Table("LawFake", ()),
-    "LawCamControlEditor": Table(
+    "LawFake": RowTable("LawFake", ()),
+    "LawCamControlEditor": RowTable(
         "LawCamControlEditor",
         tuple(Row(f"@{n}", "", "the screen's camera: crowdbot view and replay have their own")
               for n in ("lookSpeedH", "lookSpeedV", "zoomSpeed", "dragSpeed")),
     ),
     **{
-        name: Table(name, tuple(Row(f"@{n}", "", _STICK) for n in names))
+        name: RowTable(name, tuple(Row(f"@{n}", "", _STICK) for n in names))
         for name, names in {
             "LawControllerSpeedAngle": ("speedCurrent", "speedDefault", "speedVariation",
                                         "angularSpeed", "accelerationMax", "timeBeforeControl"),
@@ -156,7 +156,7 @@ def read_law(wrapper: Item | None, start: list[float], facing: float, report: Re
     item = only_child(wrapper, CONTROL_LAWS)
     table = CONTROL_LAWS[item.name]
     parts = [row for row in table.rows if row.theirs.startswith("@")]
-    fields = report.take(item, Table(table.element, parts))
+    fields = report.take(item, RowTable(table.element, parts))
     report.carried(item, "crowd.agents")
     motion = Motion(item.name, item, [start])
     if item.name in _READERS:

@@ -7,15 +7,15 @@ from collections.abc import Mapping
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Data, Scene
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Data, Stage
 from crowdbot.core.exchange.trial.law import Motion, heading, place, read_law
 from crowdbot.core.exchange.trial.replays import Replays
 from crowdbot.core.exchange.trial.sims import Simulated, law_alone, read_sim
 
 #: Height of a body without offset, m.
 HEIGHT = 1.7
-AGENT = Table(
+AGENT = RowTable(
     "TrialRegularAgent",
     (
         Row("@mesh", "", "bodies here have a radius and a height, no clothes"),
@@ -27,11 +27,11 @@ AGENT = Table(
             read=lambda item: round(HEIGHT * (1.0 + item.number(-0.9, 9.0)), 9)),
     ),
 )  # fmt: skip
-POSE = Table("Position and Rotation", (
+POSE = RowTable("Position and Rotation", (
     Row("Position", "crowd.agents.x", "our x is its y, our y its x; heights do not count"),
     Row("Rotation", "crowd.agents.heading", "the turn about the upright axis, the other way round"),
 ))  # fmt: skip
-PLAYER = Table(
+PLAYER = RowTable(
     "TrialCamPlayer, TrialRegularPlayer",
     (
         Row("TrialCamPlayer in_sim=false", "", "the screen's camera: crowdbot view has its own"),
@@ -48,7 +48,7 @@ _DRIVEN = (
 
 
 def read_people(
-    root: Item | None, policies: Policies, scene: Scene, replays: Replays, report: Report
+    root: Item | None, policies: Policies, scene: Stage, replays: Replays, report: Report
 ) -> None:
     """Add all agents of a trial to a scene.
 
@@ -62,7 +62,7 @@ def read_people(
 
 
 def read_player(
-    root: Item | None, policies: Policies, scene: Scene, replays: Replays, report: Report
+    root: Item | None, policies: Policies, scene: Stage, replays: Replays, report: Report
 ) -> None:
     """Add a player as a person, if the crowd sees one.
 
@@ -84,7 +84,7 @@ def read_player(
 
 
 def _add(
-    item: Item, fields: Data, policies: Policies, scene: Scene, replays: Replays, report: Report
+    item: Item, fields: Data, policies: Policies, scene: Stage, replays: Replays, report: Report
 ) -> None:  # fmt: skip
     start, facing = _pose(item, report)
     motion = read_law(item.find("controlLaw"), start, facing, report)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crowdbot.core.exchange.formats import Context, Format
+from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import Opened
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Scene, id_of, name_of
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Stage, id_of, name_of
 from crowdbot.core.exchange.trial.config import CONFIG, find_trials
 from crowdbot.core.exchange.trial.endings import read_endings
 from crowdbot.core.exchange.trial.law import CONTROL_LAWS
@@ -27,7 +27,7 @@ from crowdbot.core.exchange.trial.sims import SIMS
 from crowdbot.core.exchange.trial.stage import OBSTACLES, SCENE, read_stage
 from crowdbot.core.exchange.umans.policies import read_policies
 
-TRIAL = Table(
+TRIAL = RowTable(
     "Trial",
     (
         Row("screenRecorder", "", "crowdbot view and replay make pictures and films of a run"),
@@ -37,7 +37,7 @@ TRIAL = Table(
 )
 
 
-def read(files: Sequence[Opened], context: Context) -> list[Scene]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     """Return one scene for each trial that the files are, or name.
 
     Raises:
@@ -63,9 +63,9 @@ def read(files: Sequence[Opened], context: Context) -> list[Scene]:
 
 
 def _scene(
-    root: Item, trial: Opened, policies: Policies, replays: Replays, context: Context
-) -> Scene:  # fmt: skip
-    report, scene = context.report, Scene(id_of(trial.path.stem))
+    root: Item, trial: OpenedScene, policies: Policies, replays: Replays, context: Context
+) -> Stage:  # fmt: skip
+    report, scene = context.report, Stage(id_of(trial.path.stem))
     scene.origins[()] = root.mark
     stage = root.find("scene")
     read_stage(stage, root.find("obstacles"), scene, report)
@@ -84,7 +84,7 @@ def _scene(
     return scene
 
 
-def _routing(root: Item, scene: Scene, report: Report) -> None:
+def _routing(root: Item, scene: Stage, report: Report) -> None:
     """Choose paths round walls where people have goals and the stage has walls."""
     solid = any(scene.environment.get(kind) for kind in ("walls", "blocks", "pillars"))
     if solid and any(item.name == "LawGoals" for item in root.walk()):
@@ -92,7 +92,7 @@ def _routing(root: Item, scene: Scene, report: Report) -> None:
         report.added("crowd.routing", "LawGoals finds its way on the stage's navigation mesh")
 
 
-def _one_person(scene: Scene, root: Item, report: Report) -> None:
+def _one_person(scene: Stage, root: Item, report: Report) -> None:
     """Add a person who stands far off where there are neither people nor robots."""
     if scene.agents or scene.robots:
         return
@@ -104,12 +104,12 @@ def _one_person(scene: Scene, root: Item, report: Report) -> None:
     report.added("crowd.agents", "one person, since the trial has no one", root.mark)
 
 
-def _is_order(file: Opened) -> bool:
+def _is_order(file: OpenedScene) -> bool:
     lines = [line.strip() for line in file.text.split("\n") if line.strip()]
     return file.kind == "text" and bool(lines) and all(ln.endswith(".xml") for ln in lines)
 
 
-TRIALS = Format(
+TRIALS = SceneFormat(
     "trial",
     "the original's trials",
     lambda file: bool(file.tags & {"Trial", "Config"}) or _is_order(file),

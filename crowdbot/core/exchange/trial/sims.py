@@ -8,7 +8,7 @@ from typing import Any
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table, positive
+from crowdbot.core.exchange.rows import Row, RowTable, positive
 from crowdbot.core.exchange.scene import Data
 from crowdbot.core.exchange.trial.law import only_child
 from crowdbot.core.exchange.umans.agents import limited
@@ -34,8 +34,8 @@ def _policy_id(item: Item) -> int:
     return item.whole(0)
 
 
-SIMS: Mapping[str, Table] = {
-    "UMANSconfig": Table(
+SIMS: Mapping[str, RowTable] = {
+    "UMANSconfig": RowTable(
         "UMANSconfig",
         (
             _SHARED,
@@ -46,10 +46,10 @@ SIMS: Mapping[str, Table] = {
             Row("@max_acceleration", "crowd.agents.max_acceleration", read=limited),
         ),
     ),
-    "RVOconfig": Table("RVOconfig", _RVO),
-    "RosSimConfig": Table("RosSimConfig", _RVO),
-    "SidoSimConfig": Table("SidoSimConfig", _RVO),
-    "VOGConfig": Table(
+    "RVOconfig": RowTable("RVOconfig", _RVO),
+    "RosSimConfig": RowTable("RosSimConfig", _RVO),
+    "SidoSimConfig": RowTable("SidoSimConfig", _RVO),
+    "VOGConfig": RowTable(
         "VOGConfig",
         (
             *_RVO,
@@ -59,7 +59,7 @@ SIMS: Mapping[str, Table] = {
                 "horizonTime", "weightPrefVel", "weightGroup")),
         ),
     ),
-    "HelbingConfig": Table(
+    "HelbingConfig": RowTable(
         "HelbingConfig",
         (
             _SHARED,
@@ -68,7 +68,7 @@ SIMS: Mapping[str, Table] = {
             Row("@doBoids", "", "flocking is not part of the social force model", unless="false"),
         ),
     ),
-    "TangentConfig": Table(
+    "TangentConfig": RowTable(
         "TangentConfig",
         (
             _SHARED,
@@ -81,7 +81,7 @@ SIMS: Mapping[str, Table] = {
             _MOST,
         ),
     ),
-    "VBMConfig": Table(
+    "VBMConfig": RowTable(
         "VBMConfig",
         (
             _SHARED,
@@ -209,13 +209,13 @@ def read_sim(wrapper: Item, policies: Mapping[int, tuple[Data, Item]], report: R
 def _taken(item: Item, report: Report) -> dict[str, Any]:
     """Return the fields of a sim, and of the group in it."""
     table = SIMS[item.name]
-    own = Table(table.element, [r for r in table.rows if r.theirs.startswith("@")])
+    own = RowTable(table.element, [r for r in table.rows if r.theirs.startswith("@")])
     found = report.take(item, own)
     group = item.find("group")
     if group is not None:
         inner = [Row(r.theirs.removeprefix("group"), r.ours, r.note, r.read)
                  for r in table.rows if r.theirs.startswith("group@")]  # fmt: skip
-        found |= report.take(group, Table("group", inner))
+        found |= report.take(group, RowTable("group", inner))
     return found
 
 

@@ -27,7 +27,7 @@ assert set(_MESHES) == set(KINDS.values())
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class TrialDocument:
     """An exported scenario.
 
     Attributes:
@@ -41,7 +41,7 @@ class Trial:
     report: Report
 
 
-def export_trial(scenario: Scenario, registry: Registry) -> Trial:
+def export_trial(scenario: Scenario, registry: Registry) -> TrialDocument:
     """Return a scenario as a trial of the original."""
     report, root = Report(), Xml.Element("Trial")
     _scene(root, scenario, report)
@@ -55,7 +55,7 @@ def export_trial(scenario: Scenario, registry: Registry) -> Trial:
         policies = add_people(agents, scenario, people, registry, report)
     _obstacles(root, scenario, registry, report)
     _rest(scenario, report)
-    return Trial(text_of(root), policies, report)
+    return TrialDocument(text_of(root), policies, report)
 
 
 def _scene(root: Xml.Element, scenario: Scenario, report: Report) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table, not_negative
-from crowdbot.core.exchange.scene import Data, Scene
+from crowdbot.core.exchange.rows import Row, RowTable, not_negative
+from crowdbot.core.exchange.scene import Data, Stage
 from crowdbot.core.exchange.umans.presets import PRESETS, preset
 
 #: Speed and acceleration that stand for "no limit", such as the largest float32.
@@ -23,7 +23,7 @@ def _mass(item: Item) -> float:
     return item.number(1e-6)
 
 
-AGENT = Table(
+AGENT = RowTable(
     "Agent",
     (
         Row("@id", "crowd.agents.id", read=lambda item: item.whole(0, 2147483647)),
@@ -56,7 +56,7 @@ def point(item: Item) -> list[float]:
 
 
 def read_agents(
-    root: Item, policies: Mapping[int, tuple[Data, Item]], scene: Scene, report: Report
+    root: Item, policies: Mapping[int, tuple[Data, Item]], scene: Stage, report: Report
 ) -> None:
     """Add all agents of an ``Agents`` element to a scene.
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.polygons import add_polygon
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table
-from crowdbot.core.exchange.scene import Scene
+from crowdbot.core.exchange.rows import Row, RowTable
+from crowdbot.core.exchange.scene import Stage
 from crowdbot.core.exchange.umans.agents import point
 
-OBSTACLES = Table(
+OBSTACLES = RowTable(
     "Obstacles",
     (
         Row("Obstacle/Point", "environment.blocks.corners"),
@@ -18,7 +18,7 @@ OBSTACLES = Table(
 )
 
 
-def read_obstacles(root: Item, scene: Scene, report: Report) -> None:
+def read_obstacles(root: Item, scene: Stage, report: Report) -> None:
     """Add all polygons of an ``Obstacles`` element to a scene.
 
     Raises:

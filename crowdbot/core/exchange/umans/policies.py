@@ -8,7 +8,7 @@ from typing import Any
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.rows import Row, Table, not_negative, positive, text
+from crowdbot.core.exchange.rows import Row, RowTable, not_negative, positive, text
 from crowdbot.core.exchange.scene import Data, free_name
 
 #: Cost functions: our kind, and our name of each attribute. A later attribute replaces an earlier
@@ -48,7 +48,7 @@ def _count(item: Item) -> int:
     return item.whole(1)
 
 
-POLICY = Table(
+POLICY = RowTable(
     "Policy",
     (
         Row("@OptimizationMethod", "velocity_space.method",
@@ -80,11 +80,11 @@ _OF_SAMPLES = ("samples", "base", "direction", "radius", "angle", "speeds", "ang
                "random_samples", "include_base")  # fmt: skip
 
 
-def cost_table(name: str) -> Table:
+def cost_table(name: str) -> RowTable:
     """Return the table of one cost function."""
     kind, names = COSTS[name]
     own = (Row(f"@{theirs}", f"{kind}.{ours}", read=not_negative) for theirs, ours in names.items())
-    return Table(
+    return RowTable(
         f"costfunction {name}",
         (
             Row("@coeff", f"{kind}.weight", read=not_negative),
@@ -123,7 +123,7 @@ def read_policy(item: Item, report: Report) -> Data:
     for part in parts:
         cost = read_cost(part, report)
         costs[free_name(cost["kind"], costs)] = cost
-    table = Table(POLICY.element, [r for r in POLICY.rows if r.theirs != "costfunction"])
+    table = RowTable(POLICY.element, [r for r in POLICY.rows if r.theirs != "costfunction"])
     fields = {**DEFAULTS, **report.take(item, table)}
     return {"policy": {"kind": "velocity_space", **_said(fields)}, "costs": costs}
 

@@ -11,7 +11,7 @@ from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
 
 
-class PassThrough:
+class StickPlanner:
     """Returns the reading of the stick."""
 
     def __init__(self, stick: str) -> None:

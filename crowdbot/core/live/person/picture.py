@@ -27,7 +27,7 @@ _BEAMS = 240
 _FINE = 1000.0
 
 
-class Picture:
+class LivePicture:
     """A watcher that shows each sample of a run to all pages."""
 
     def __init__(

@@ -12,7 +12,7 @@ import numpy as np
 
 from crowdbot.core.live.live_record import with_live_part
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.person.pass_through import PassThrough
+from crowdbot.core.live.person.pass_through import StickPlanner
 from crowdbot.core.live.person.seat import Seat, SeatLog
 from crowdbot.core.live.person.seat_stick import JOYSTICK, SeatStick, with_stick
 from crowdbot.core.live.session import LiveSession
@@ -104,7 +104,7 @@ def choice_of(
     name, assist = controls.name, controls.assist
     if not name or name.startswith(".") or set(name) & set("/\\\0"):
         raise InputError(f"'{name}' cannot be the name of a planner, which a folder has")
-    build: Callable[[], Planner] = partial(PassThrough, stick) if assist is None else assist.build
+    build: Callable[[], Planner] = partial(StickPlanner, stick) if assist is None else assist.build
     needs: tuple[str, ...] | None = tuple(lidars)
     if assist is not None:
         needs = None if assist.needs is None else tuple(n for n in assist.needs if n != JOYSTICK)

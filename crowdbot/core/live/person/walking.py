@@ -36,7 +36,7 @@ _STEP = 0.5  # m, between places that are tried
 
 
 @dataclass(frozen=True, kw_only=True)
-class Body:
+class WalkerBody:
     """The body of a person who walks.
 
     Attributes:
@@ -52,7 +52,7 @@ class Body:
     speed: float = COMFORTABLE
 
 
-def with_person(scenario: Scenario, registry: Registry, body: Body) -> Scenario:
+def with_person(scenario: Scenario, registry: Registry, body: WalkerBody) -> Scenario:
     """Return the scenario with one more person, whose id has ``+walk`` at its end.
 
     Raises:
@@ -89,7 +89,7 @@ def with_person(scenario: Scenario, registry: Registry, body: Body) -> Scenario:
     return scenario.model_copy(update={"id": f"{scenario.id}+walk", "crowd": changed})
 
 
-def _heading(scenario: Scenario, body: Body, at: Point) -> float:
+def _heading(scenario: Scenario, body: WalkerBody, at: Point) -> float:
     """Return the direction of the first view: default to the first robot, or to the goal."""
     if body.heading is not None:
         return body.heading

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from crowdbot.core.studies.findings import Finding
+from crowdbot.core.studies.findings import StudyFinding
 
 _WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM = 640.0, 260.0, 70.0, 16.0, 34.0
 
 
-def dots(findings: Sequence[Finding], titles: Sequence[str], label: str) -> str:
+def dots(findings: Sequence[StudyFinding], titles: Sequence[str], label: str) -> str:
     """Return the SVG element; values of one participant are joined by lines.
 
     Args:
@@ -56,7 +56,7 @@ def _axis(y: object, low: float, high: float) -> str:
     )
 
 
-def _mean(finding: Finding, x: float, y: object) -> str:
+def _mean(finding: StudyFinding, x: float, y: object) -> str:
     """Return the mean with its interval, beside the dots."""
     assert callable(y)
     found = finding.mean

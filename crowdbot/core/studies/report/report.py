@@ -12,7 +12,7 @@ from markupsafe import Markup
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.studies.document import Study
-from crowdbot.core.studies.findings import Finding, adjusted, compare, smallest_p
+from crowdbot.core.studies.findings import StudyFinding, adjusted, compare, smallest_p
 from crowdbot.core.studies.headless import SYNTHETIC
 from crowdbot.core.studies.orders import balance, condition_order
 from crowdbot.core.studies.report.dots import dots
@@ -31,12 +31,12 @@ USUAL = (
 )  # fmt: skip
 _NOTES = {"higher": "Higher is better.", "lower": "Lower is better."}
 
-ByScore = Mapping[str, Sequence[Finding]]
+ByScore = Mapping[str, Sequence[StudyFinding]]
 
 
 def findings_of(
     study: Study, rows: Sequence[Row], scores: Sequence[str] = ()
-) -> dict[str, list[Finding]]:
+) -> dict[str, list[StudyFinding]]:
     """Return score -> findings by condition.
 
     Args:
@@ -95,7 +95,7 @@ def write_study_report(
 
 
 def _score(
-    name: str, found: Sequence[Finding], titles: Sequence[str], registry: Registry
+    name: str, found: Sequence[StudyFinding], titles: Sequence[str], registry: Registry
 ) -> dict[str, Any]:
     metric, _, variant = name.partition(".")
     component: Any = registry.components("metric").get(metric)

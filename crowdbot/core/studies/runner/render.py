@@ -8,7 +8,7 @@ from typing import Any
 
 from crowdbot.core.studies.document import Study
 from crowdbot.core.studies.forms import Question, questions_of
-from crowdbot.core.studies.progress import Progress
+from crowdbot.core.studies.progress import StudyProgress
 from crowdbot.core.studies.steps import Step
 from crowdbot.core.support.html_page import render_page
 
@@ -61,7 +61,7 @@ class Reply:
     open_names: Sequence[str] = ()
 
 
-def render_step(progress: Progress, step: Step | None, drive: DriveState, reply: Reply) -> str:
+def render_step(progress: StudyProgress, step: Step | None, drive: DriveState, reply: Reply) -> str:
     """Return the page of a participant's present step; None: all are done."""
     steps = progress.steps
     step = step or steps[-1]

@@ -9,7 +9,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.studies.drives import Drive, drive_words, finished_run, shown_command
 from crowdbot.core.studies.forms import checked_answers, questions_of, weights_of
 from crowdbot.core.studies.headless import PERSON, SYNTHETIC, trial_content
-from crowdbot.core.studies.progress import Progress
+from crowdbot.core.studies.progress import StudyProgress
 from crowdbot.core.studies.runner.render import DriveState, Reply, render_step
 from crowdbot.core.studies.steps import Step
 from crowdbot.errors import CrowdbotError
@@ -25,7 +25,7 @@ class RunnerSession:
         synthetic: True if synthetic users drive.
     """
 
-    def __init__(self, progress: Progress, registry: Registry, *, synthetic: bool) -> None:
+    def __init__(self, progress: StudyProgress, registry: Registry, *, synthetic: bool) -> None:
         self._progress, self._registry, self._synthetic = progress, registry, synthetic
         self._drive: Drive | None = None
         self._reply = Reply()

@@ -41,7 +41,7 @@ def _apart(one: Array, other: Array, front: float) -> float:
     """Return the squared distance of the robot's front at two poses, m^2: turns count, too."""
     dx = one[0] - other[0] + front * (math.cos(one[2]) - math.cos(other[2]))
     dy = one[1] - other[1] + front * (math.sin(one[2]) - math.sin(other[2]))
-    return dx * dx + dy * dy
+    return float(dx * dx + dy * dy)
 
 
 @kernel

@@ -22,8 +22,8 @@ from crowdbot.core.live.person.walking import (
     COMFORTABLE,
     FASTEST,
     PERSON,
-    Body,
     Steps,
+    WalkerBody,
     with_person,
 )
 from crowdbot.core.live.session import LiveSession
@@ -64,7 +64,7 @@ def _request(out: Path, *overrides: str) -> Request:
     return request_of(given, discover())
 
 
-def _walked(out: Path, body: Body, *overrides: str) -> tuple[Run, Trajectories]:
+def _walked(out: Path, body: WalkerBody, *overrides: str) -> tuple[Run, Trajectories]:
     without = _request(out, *overrides)
     request, builts = _with_person(without, body, (), ())
     run = walk(request, builts, Scripted(), without.scenario, body.speed)
@@ -79,7 +79,7 @@ def _me(run: Trajectories) -> int:
 
 def test_the_person_walks_within_human_limits_and_is_repeated(tmp_path: Path) -> None:
     limit = "robots.robot.task.time_limit=1.5"
-    run, tracks = _walked(tmp_path, Body(at=(0.8, -1.5), speed=FASTEST), limit)
+    run, tracks = _walked(tmp_path, WalkerBody(at=(0.8, -1.5), speed=FASTEST), limit)
     assert tracks.agents is not None
     me = _me(tracks)
     x, y = tracks.agents.x[:, me], tracks.agents.y[:, me]
@@ -97,14 +97,14 @@ def test_the_person_walks_within_human_limits_and_is_repeated(tmp_path: Path) ->
     assert live.steps == len(tracks.signals["walker/vx"]) == 24
 
     without = _request(tmp_path / "again", limit)
-    request, builts = _with_person(without, Body(at=(0.8, -1.5), speed=FASTEST), (), ())
+    request, builts = _with_person(without, WalkerBody(at=(0.8, -1.5), speed=FASTEST), (), ())
     again = walk_again(request, builts, without.scenario, run.directory)
     assert again.record.hashes == run.record.hashes
 
 
 def test_people_alone_are_joined_and_a_goal_makes_a_trip(tmp_path: Path) -> None:
     nobody = ("robots={}",)
-    run, tracks = _walked(tmp_path, Body(at=(3.0, -1.0), goal=(3.6, -0.8)), *nobody)
+    run, tracks = _walked(tmp_path, WalkerBody(at=(3.0, -1.0), goal=(3.6, -0.8)), *nobody)
     assert tracks.trips is not None
     assert PERSON in tracks.trips.agent
     assert run.record.people_alone
@@ -116,7 +116,7 @@ def test_others_see_and_avoid_the_person() -> None:
     aside = []
     for at in ((5.0, 0.0), (5.0, -1.65)):
         scenario, registry = _one_pedestrian(), discover()
-        joined = with_person(scenario, registry, Body(at=at))
+        joined = with_person(scenario, registry, WalkerBody(at=at))
         parts = build_environment(registry, joined.environment)
         engine = build_crowd(joined, population(joined, registry).agents, parts, registry)
         assert engine is not None
@@ -139,7 +139,7 @@ def _one_pedestrian() -> Scenario:
 
 def test_neither_robots_nor_evasion_change_what_the_person_wants() -> None:
     scenario, registry = pick(open_spec(SHORT, discover()), None), discover()
-    joined = with_person(scenario, registry, Body(at=(3.0, 0.4)))
+    joined = with_person(scenario, registry, WalkerBody(at=(3.0, 0.4)))
     parts = build_environment(registry, joined.environment)
     engine = build_crowd(joined, population(joined, registry).agents, parts, registry)
     assert engine is not None
@@ -160,15 +160,15 @@ def test_a_stick_is_a_velocity_in_the_direction_of_the_view() -> None:
 
 def test_a_free_place_is_found_and_a_taken_one_refused() -> None:
     scenario, registry = pick(open_spec(SHORT, discover()), None), discover()
-    joined = with_person(scenario, registry, Body())
+    joined = with_person(scenario, registry, WalkerBody())
     assert joined.crowd is not None
     person = joined.crowd.agents[-1]
     assert math.dist((person.x, person.y), (1.5, 0.4)) > 1.0
     for at in ((1.5, 0.4), (3.0, 1.9)):  # the robot, the wall
         with pytest.raises(InputError, match="not free"):
-            with_person(scenario, registry, Body(at=at))
+            with_person(scenario, registry, WalkerBody(at=at))
     with pytest.raises(InputError, match="a walker already"):
-        with_person(replace_id(joined), registry, Body())
+        with_person(replace_id(joined), registry, WalkerBody())
 
 
 def replace_id(scenario: Scenario) -> Scenario:
