@@ -10,7 +10,7 @@ from pathlib import Path
 
 from crowdbot.core.exchange.all_formats import FORMATS
 from crowdbot.core.exchange.formats import SceneFormat
-from crowdbot.core.exchange.rows import Fate, SceneTable
+from crowdbot.core.exchange.rows import Fate, RowTable
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "reference" / "rosetta_stone.md"
 _HEAD = """\
@@ -45,7 +45,7 @@ def _anchor(form: SceneFormat) -> str:
     return kept.replace(" ", "-")
 
 
-def _tables(tables: Sequence[SceneTable]) -> Iterator[str]:
+def _tables(tables: Sequence[RowTable]) -> Iterator[str]:
     yield "\n| part | becomes | fate | note |\n|---|---|---|---|\n"
     for table in tables:
         for row in table.rows:

@@ -13,7 +13,7 @@ from crowdbot.core.crowd.contact.robot_contact import R_W, R_YAW, RVX, RVY
 from crowdbot.core.learning.actions import action_size, commands_of
 from crowdbot.core.learning.build import build_observer, build_reward
 from crowdbot.core.learning.conventions import Conventions, conventions_of
-from crowdbot.core.learning.seen import LearningContext, SeenChange, SeenLayout
+from crowdbot.core.learning.seen import LearningContext, StepChange, RobotInputs
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.core.types.robot import robot_body
@@ -85,7 +85,7 @@ class Actor:
         distance = np.hypot(away[:, 0], away[:, 1])
         progress, self._distance = self._distance - distance, distance
         ticks = self.context.step / TICK
-        change = SeenChange(
+        change = StepChange(
             progress=progress,
             distance=distance,
             arrived=self.arrived(batches) & here,
@@ -118,7 +118,7 @@ class Actor:
 
         Args:
             rows: (W, R, 8) of all robots.
-            fresh, stepped: (W,) as of `SeenLayout`.
+            fresh, stepped: (W,) as of `RobotInputs`.
             most: room for this many people, where they are seen as they are.
         """
         own = rows[:, self._robot]
@@ -129,7 +129,7 @@ class Actor:
         if self._privileged:
             batches.people(people)
         return self._observer.observe(
-            SeenLayout(
+            RobotInputs(
                 fresh=fresh,
                 stepped=stepped,
                 pose=own[:, [0, 1, R_YAW]],

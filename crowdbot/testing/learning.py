@@ -14,7 +14,7 @@ from crowdbot.core.learning.build import (
     build_observer,
     build_reward,
 )
-from crowdbot.core.learning.seen import LearningContext, SeenChange, SeenLayout
+from crowdbot.core.learning.seen import LearningContext, StepChange, RobotInputs
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
@@ -142,7 +142,7 @@ def _rewards(
         yield build_reward(known, cast(RewardSpec, spec), _context(worlds))
 
 
-def _sights(worlds: int) -> list[SeenLayout]:
+def _sights(worlds: int) -> list[RobotInputs]:
     """Five times: free, walls near, people near and far, no one, a new episode in between."""
     rng, found = np.random.default_rng(3), []
     for step in range(5):
@@ -154,7 +154,7 @@ def _sights(worlds: int) -> list[SeenLayout]:
         fresh = np.full(worlds, step == 0)
         fresh[1] = step in (0, 3)
         found.append(
-            SeenLayout(
+            RobotInputs(
                 fresh=fresh,
                 stepped=np.full(worlds, step > 0),
                 pose=rng.uniform(-4.0, 4.0, (worlds, 3)),
@@ -167,13 +167,13 @@ def _sights(worlds: int) -> list[SeenLayout]:
     return found
 
 
-def _changes(worlds: int) -> list[SeenChange]:
+def _changes(worlds: int) -> list[StepChange]:
     rng, found = np.random.default_rng(4), []
     for step in range(4):
         gap = rng.uniform(-0.1, 3.0, worlds)
         gap[0] = np.inf if step == 0 else gap[0]
         found.append(
-            SeenChange(
+            StepChange(
                 progress=rng.uniform(-0.1, 0.1, worlds),
                 distance=rng.uniform(0.0, 30.0, worlds),
                 arrived=rng.random(worlds) < 0.3,
@@ -200,7 +200,7 @@ def _only(given: Any, w: int) -> Any:
     return replace(given, **cut)
 
 
-def _arrays(seen: SeenLayout) -> list[Any]:
+def _arrays(seen: RobotInputs) -> list[Any]:
     return [
         seen.fresh,
         seen.stepped,

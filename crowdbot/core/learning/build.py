@@ -8,7 +8,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.learning.seen import LearningContext, SeenChange, SeenLayout
+from crowdbot.core.learning.seen import LearningContext, StepChange, RobotInputs
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
@@ -28,7 +28,7 @@ class Observer(Protocol):
     low: Vectors
     high: Vectors
 
-    def observe(self, seen: SeenLayout) -> Vectors:
+    def observe(self, seen: RobotInputs) -> Vectors:
         """Return (W, N) float32 within the bounds; a new array."""
         ...
 
@@ -36,7 +36,7 @@ class Observer(Protocol):
 class Reward(Protocol):
     """Rates steps."""
 
-    def of(self, change: SeenChange) -> Array:
+    def of(self, change: StepChange) -> Array:
         """Return (W,) finite float64."""
         ...
 
@@ -57,7 +57,7 @@ class CheckedObserver:
         """Return how many numbers a vector has."""
         return len(self.low)
 
-    def observe(self, seen: SeenLayout) -> Vectors:
+    def observe(self, seen: RobotInputs) -> Vectors:
         """Return (W, N) vectors within the bounds.
 
         Raises:
@@ -78,7 +78,7 @@ class CheckedReward:
     def __init__(self, reward: Reward, worlds: int, call: PluginCall) -> None:
         self._reward, self._worlds, self._call = reward, worlds, call
 
-    def of(self, change: SeenChange) -> Array:
+    def of(self, change: StepChange) -> Array:
         """Return (W,) rewards.
 
         Raises:

@@ -33,7 +33,7 @@ class LearningContext:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeenLayout:
+class RobotInputs:
     """Inputs of W robots at one time; SI units, arrays are not to be changed.
 
     Attributes:
@@ -58,7 +58,7 @@ class SeenLayout:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeenChange:
+class StepChange:
     """Changes of W robots in one step; SI units.
 
     Attributes:

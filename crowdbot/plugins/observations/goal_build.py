@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.plugin import Array, RobotLimits
-from crowdbot.plugin.for_learning import Seen
+from crowdbot.plugin.for_learning import RobotInputs
 
 #: Numbers of the part: distance, cosine and sine of the direction; v, w, vy.
 SIZE = 6
 
 
-def goal_and_motion(seen: Seen, limits: RobotLimits, goal_range: float) -> Array:
+def goal_and_motion(seen: RobotInputs, limits: RobotLimits, goal_range: float) -> Array:
     """Return (W, 6): distance to the goal from 0 to 1, its direction, and v, w, vy from -1 to 1."""
     away = seen.goal - seen.pose[:, :2]
     distance = np.hypot(away[:, 0], away[:, 1])

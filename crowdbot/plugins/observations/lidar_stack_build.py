@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import LearningContext, Seen, sensor_named
+from crowdbot.plugin.for_learning import LearningContext, RobotInputs, sensor_named
 from crowdbot.plugins.observations.goal_build import SIZE, bounds, goal_and_motion
 from crowdbot.plugins.observations.lidar_stack import LidarStackSpec
 
@@ -24,7 +24,7 @@ class LidarStack:
         self.low, self.high = bounds((spec.scans * sectors, 0.0, 1.0), (1, 0.0, 1.0),
                                      (SIZE - 1, -1.0, 1.0))  # fmt: skip
 
-    def observe(self, seen: Seen) -> NDArray[np.float32]:
+    def observe(self, seen: RobotInputs) -> NDArray[np.float32]:
         """Return (W, N): scans from the latest to the earliest, goal, motion."""
         now = self._sectors(seen.readings[self._name])
         later = np.concatenate([now[np.newaxis], self._kept[:-1]])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.plugin.for_learning import LearningContext, Seen, sensor_named
+from crowdbot.plugin.for_learning import LearningContext, RobotInputs, sensor_named
 from crowdbot.plugins.observations.goal_build import SIZE, bounds, goal_and_motion
 from crowdbot.plugins.observations.occupancy import OccupancySpec
 
@@ -26,7 +26,7 @@ class OccupancyGrid:
         self.low, self.high = bounds((spec.cells**2, 0.0, 1.0), (1, 0.0, 1.0),
                                      (SIZE - 1, -1.0, 1.0))  # fmt: skip
 
-    def observe(self, seen: Seen) -> NDArray[np.float32]:
+    def observe(self, seen: RobotInputs) -> NDArray[np.float32]:
         """Return (W, N): the grid, goal, motion."""
         ranges, spec = seen.readings[self._name], self._spec
         worlds, per_metre = len(ranges), spec.cells / spec.side

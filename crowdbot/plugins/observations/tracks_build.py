@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import LearningContext, Seen
+from crowdbot.plugin.for_learning import LearningContext, RobotInputs
 from crowdbot.plugins.observations.goal_build import SIZE, bounds, goal_and_motion
 from crowdbot.plugins.observations.tracks import TracksSpec
 
@@ -21,13 +21,13 @@ class TrackRows:
         row = ((1, 0.0, 1.0), (4, -1.0, 1.0), (1, 0.0, 2.0))
         self.low, self.high = bounds(*row * spec.people, (1, 0.0, 1.0), (SIZE - 1, -1.0, 1.0))
 
-    def observe(self, seen: Seen) -> NDArray[np.float32]:
+    def observe(self, seen: RobotInputs) -> NDArray[np.float32]:
         """Return (W, N): people, goal, motion."""
         people = self._nearest(seen).reshape(len(seen.pose), -1)
         rest = goal_and_motion(seen, self._limits, self._spec.goal_range)
         return np.column_stack([people, rest]).astype(np.float32)
 
-    def _nearest(self, seen: Seen) -> Array:
+    def _nearest(self, seen: RobotInputs) -> Array:
         """Return (W, K, 6) the rows of the nearest people."""
         spec, given = self._spec, seen.people
         away = given[:, :, :2] - seen.pose[:, np.newaxis, :2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.plugin.for_learning import LearningContext, Seen
+from crowdbot.plugin.for_learning import LearningContext, RobotInputs
 from crowdbot.plugins.observations.goal_build import bounds, goal_and_motion
 from crowdbot.plugins.observations.truth import TruthSpec
 
@@ -20,7 +20,7 @@ class EverythingSeen:
         row = ((1, 0.0, 1.0), (4, -1.0, 1.0), (1, 0.0, 2.0))
         self.low, self.high = bounds((9, -1.0, 1.0), *row * spec.people)
 
-    def observe(self, seen: Seen) -> NDArray[np.float32]:
+    def observe(self, seen: RobotInputs) -> NDArray[np.float32]:
         """Return (W, N): the robot, then people."""
         spec, worlds = self._spec, len(seen.pose)
         here = np.isfinite(seen.people[:, :, 0])

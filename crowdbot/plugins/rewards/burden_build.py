@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import Change, LearningContext
+from crowdbot.plugin.for_learning import StepChange, LearningContext
 from crowdbot.plugins.rewards.burden import BurdenSpec
 from crowdbot.plugins.rewards.progress_build import ProgressReward
 
@@ -14,7 +14,7 @@ class Burden:
     def __init__(self, spec: BurdenSpec, context: LearningContext) -> None:
         self._work, self._progress = spec.work, ProgressReward(spec, context)
 
-    def of(self, change: Change) -> Array:
+    def of(self, change: StepChange) -> Array:
         """Return (W,) rewards."""
         return self._progress.of(change) - self._work * change.work
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import Change, LearningContext
+from crowdbot.plugin.for_learning import StepChange, LearningContext
 from crowdbot.plugins.rewards.comfort import ComfortSpec
 from crowdbot.plugins.rewards.progress_build import ProgressReward
 
@@ -14,7 +14,7 @@ class Comfort:
     def __init__(self, spec: ComfortSpec, context: LearningContext) -> None:
         self._advance, self._progress = spec.advance, ProgressReward(spec, context)
 
-    def of(self, change: Change) -> Array:
+    def of(self, change: StepChange) -> Array:
         """Return (W,) rewards."""
         return self._progress.of(change) - self._advance * change.advance
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import Change, LearningContext
+from crowdbot.plugin.for_learning import StepChange, LearningContext
 from crowdbot.plugins.rewards.progress import ProgressSpec
 
 
@@ -17,7 +17,7 @@ class ProgressReward:
         range_of = [limits.v_max - limits.v_min, 2.0 * limits.w_max, 2.0 * limits.vy_max]
         self._range = np.array([r if r > 0.0 else np.inf for r in range_of])
 
-    def of(self, change: Change) -> Array:
+    def of(self, change: StepChange) -> Array:
         """Return (W,) rewards."""
         spec, step = self._spec, self._step
         changed = np.abs(change.command - change.before) / self._range

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import Change, LearningContext
+from crowdbot.plugin.for_learning import StepChange, LearningContext
 from crowdbot.plugins.rewards.sparse import SparseSpec
 
 
@@ -15,7 +15,7 @@ class Sparse:
     def __init__(self, spec: SparseSpec) -> None:
         self._spec = spec
 
-    def of(self, change: Change) -> Array:
+    def of(self, change: StepChange) -> Array:
         """Return (W,) rewards."""
         spec, gap = self._spec, np.maximum(change.gap, 0.0)
         cost = np.where(gap < spec.near, spec.nearness + spec.slope * np.minimum(gap, spec.near), 0)

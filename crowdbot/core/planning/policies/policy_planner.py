@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core.learning.actions import action_size, commands_of
 from crowdbot.core.learning.build import CheckedObserver, build_observer
 from crowdbot.core.learning.conventions import Conventions
-from crowdbot.core.learning.seen import LearningContext, SeenLayout
+from crowdbot.core.learning.seen import LearningContext, RobotInputs
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.motion import Command
@@ -84,7 +84,7 @@ class PolicyPlanner:
         v, w, vy = commands_of(action, self._limits)[0].tolist()
         return Command(v, w, vy)
 
-    def _seen(self, obs: Observation) -> SeenLayout:
+    def _seen(self, obs: Observation) -> RobotInputs:
         """Return what the robot sees, as one world."""
         pose, people = obs.pose, np.zeros((1, 0, 5))
         if self._conventions.observation.privileged and obs.truth is not None:
@@ -100,7 +100,7 @@ class PolicyPlanner:
         missing = set(self._sensors) - set(readings)
         if missing:
             raise PlannerError(f"there is no reading of {', '.join(sorted(missing))} yet")
-        return SeenLayout(
+        return RobotInputs(
             fresh=np.array([self._steps == 0]),
             stepped=np.array([self._steps > 0]),
             pose=np.array([pose], np.float64),
