@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from crowdbot.core.learning.build import Observer, Reward
-from crowdbot.core.learning.seen import LearningContext, StepChange, RobotInputs, sensor_named
+from crowdbot.core.learning.seen import LearningContext, RobotInputs, StepChange, sensor_named
 
-__all__ = ["LearningContext", "Observer", "Reward", "StepChange", "RobotInputs", "sensor_named"]
+__all__ = ["LearningContext", "Observer", "Reward", "RobotInputs", "StepChange", "sensor_named"]

@@ -13,7 +13,7 @@ from crowdbot.core.crowd.contact.robot_contact import R_W, R_YAW, RVX, RVY
 from crowdbot.core.learning.actions import action_size, commands_of
 from crowdbot.core.learning.build import build_observer, build_reward
 from crowdbot.core.learning.conventions import Conventions, conventions_of
-from crowdbot.core.learning.seen import LearningContext, StepChange, RobotInputs
+from crowdbot.core.learning.seen import LearningContext, RobotInputs, StepChange
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.core.types.robot import robot_body

@@ -14,7 +14,7 @@ from crowdbot.core.learning.build import (
     build_observer,
     build_reward,
 )
-from crowdbot.core.learning.seen import LearningContext, StepChange, RobotInputs
+from crowdbot.core.learning.seen import LearningContext, RobotInputs, StepChange
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import SensorInfo

@@ -8,7 +8,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.learning.seen import LearningContext, StepChange, RobotInputs
+from crowdbot.core.learning.seen import LearningContext, RobotInputs, StepChange
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import StepChange, LearningContext
+from crowdbot.plugin.for_learning import LearningContext, StepChange
 from crowdbot.plugins.rewards.comfort import ComfortSpec
 from crowdbot.plugins.rewards.progress_build import ProgressReward
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.plugin import Array
-from crowdbot.plugin.for_learning import StepChange, LearningContext
+from crowdbot.plugin.for_learning import LearningContext, StepChange
 from crowdbot.plugins.rewards.sparse import SparseSpec
 
 
