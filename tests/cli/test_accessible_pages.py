@@ -14,6 +14,8 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 from crowdbot import cli
+from crowdbot.core.campaign.sweep.page import render as render_sweep
+from crowdbot.core.campaign.sweep.search import Sweep
 from crowdbot.core.editor.page import page as editor_page
 from crowdbot.core.live.person.page import render_person_page
 from crowdbot.core.realism.measure import measure_tracks
@@ -23,17 +25,23 @@ from crowdbot.core.realism.near_robots.measure import measure_encounters
 from crowdbot.core.realism.near_robots.reference import reference_of
 from crowdbot.core.realism.page import render
 from crowdbot.core.realism.reference import shipped
+from crowdbot.core.registry.registry import discover
 from crowdbot.core.replay import write_replay
 from crowdbot.core.report import write_report
 from crowdbot.core.site.write import INDEX
+from crowdbot.core.studies.findings import compare
+from crowdbot.core.studies.report.report import write_study_report
 from tests.browser import PROGRAM, axe_findings, needs_axe, needs_browser
 from tests.cli.test_why import SCENARIO
 from tests.core.bundle.made_up_runs import make_bundle, write_suite
+from tests.core.campaign.test_sweep import request, tried
 from tests.core.realism.near_robots.walks import various
 from tests.core.realism.test_compare import people
 from tests.core.replay.replay_cases import passing
 from tests.core.report.report_cases import contents
 from tests.core.statistics.test_floors import results
+from tests.core.studies.study_cases import study_of
+from tests.core.studies.test_findings import VALUES, rows
 from tests.paths import ROOT
 
 
@@ -102,9 +110,30 @@ def site(path: Path) -> None:
     (path.parent / INDEX).rename(path)
 
 
-#: All kinds of pages: the package that holds the parts -> who makes one.
+def sweep(path: Path) -> None:
+    best, usual = tried("1", 0.6, 0.55), tried("", 0.5, 0.5)
+    found = Sweep(request=request(path.parent), tried=(best, tried("0.5", 0.4)), usual=usual)
+    path.write_text(render_sweep(found))
+
+
+def study_report(path: Path) -> None:
+    name = "safe_efficiency.corrected"
+    people = {"p1": "p01", "p2": "p02", "p3": "p03", "p4": "p04"}
+    drives = [
+        {"participant": people[row["participant"]], "condition": row["condition"],
+         "driver": "teleop", name: row["x.y"]}
+        for row in rows(VALUES)
+    ]  # fmt: skip
+    found = {name: compare(drives, ["alone", "helped"], name)}
+    write_study_report(path, study_of(path.parent), drives, found, discover(allow=()))
+
+
+#: Pages that only a server makes; ``tests/cli/test_study_page.py`` walks through them.
+ELSEWHERE = {"core/studies/runner"}
+#: All other kinds of pages: the package that holds the parts -> who makes one.
 PAGES: dict[str, tuple[Callable[[Path], None], ...]] = {
     "core/bundle": (leaderboard,),
+    "core/campaign/sweep": (sweep,),
     "core/editor": (editor,),
     "core/live/person": (drive, walk),
     "core/realism": (realism,),
@@ -112,6 +141,7 @@ PAGES: dict[str, tuple[Callable[[Path], None], ...]] = {
     "core/replay": (replay, comparison),
     "core/report": (report,),
     "core/site": (site,),
+    "core/studies/report": (study_report,),
     "core/view": (scenario,),
     "core/why": (why,),
 }
@@ -121,7 +151,7 @@ MAKERS = [maker for makers in PAGES.values() for maker in makers]
 def test_every_kind_of_page_is_listed() -> None:
     product = ROOT / "crowdbot"
     parts = {p.parent.relative_to(product).as_posix() for p in product.rglob("*.html.j2")}
-    assert parts == set(PAGES)
+    assert parts == set(PAGES) | ELSEWHERE
     # Nobody writes a page in another way.
     of_their_own = [p for p in product.rglob("*.py") if "<!doctype html" in p.read_text().lower()]
     assert of_their_own == []
