@@ -43,7 +43,7 @@ class ProbabilisticSpec(LadderSpec):
         default=0.15, description="Spread of people's ways, growing with time, m/s."
     )
     avoidance: Annotated[float, Gt(0), Lt(1)] = Field(
-        default=0.9999, description="Strength of the interaction with people and walls."
+        default=0.9999, description="Interaction with people and walls, a fraction."
     )
     safety: PositiveLength = Field(
         default=0.3, description="Gap at which that interaction has fallen to 61 %, m."
