@@ -50,7 +50,8 @@ def test_an_old_module_forwards_and_warns(old: object) -> None:
 
 
 def test_every_category_had_a_hook() -> None:
-    assert sorted(OLD_HOOKS.values()) == sorted(c.category for c in CATEGORIES)
+    later = {"observation", "reward"}  # had no hook of their own
+    assert sorted(OLD_HOOKS.values()) == sorted({c.category for c in CATEGORIES} - later)
 
 
 def test_lines_are_collected_and_said_once(caplog: pytest.LogCaptureFixture) -> None:

@@ -115,6 +115,7 @@ NO_FILES = {
     "variant", "zenoh", "floor", "source", "goal",
     "data", "orders", "participant", "scores",  # of studies
     "runs",
+    "vary", "how",  # of sweeps
 }  # fmt: skip
 #: Read after something else that an empty folder lacks, by a reader that the others test.
 NOT_REACHED = {

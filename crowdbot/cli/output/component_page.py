@@ -68,7 +68,11 @@ def reference(component: Component[Any], owner: Plugin) -> str:
     """Return where a component is documented: page, card, address or file."""
     name = component.kind
     if owner.name == BUILTIN:
-        pages = {"metric": f"metrics/{name}.md", "planner": _page_of_planner(component)}
+        learning = f"learning.md#{name}"
+        pages = {
+            "metric": f"metrics/{name}.md", "planner": _page_of_planner(component),
+            "observation": learning, "reward": learning,
+        }  # fmt: skip
         return f"docs/reference/{pages.get(component.category, f'scenario.md#{name}')}"
     if component.category == "metric" and component.card_place:
         return component.card_place

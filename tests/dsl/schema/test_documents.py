@@ -38,7 +38,9 @@ STARTED = ("torch_planner.yaml",)
 WRITTEN = sorted(
     file
     for file in [*SPECS.rglob("*.yaml"), *ROOT.glob("docs/*/files/*.yaml")]
-    if file.name not in STARTED and file.parent.name != "plans"  # maps of ROS are YAML, too
+    if file.name not in STARTED
+    and file.parent.name != "plans"  # maps of ROS are YAML, too
+    and file.name != "study.yaml"  # a document of another kind, which crowdbot study reads
 )
 
 #: Broken files that a schema takes: what it cannot say, and where validate says it.
@@ -355,9 +357,15 @@ def test_planner_files(document: dict[str, Any], fit: bool) -> None:
     assert validator("planner").is_valid(document) is fit
 
 
+def _needs_more(spec: Any) -> bool:
+    return any(field.is_required() for field in spec.model_fields.values())
+
+
 @pytest.mark.parametrize("kind", REGISTRY.components("planner"))
 def test_every_planner_with_its_defaults_fits(kind: str) -> None:
-    spec = REGISTRY.find("planner", kind).spec.model_validate({"kind": kind})
+    component = REGISTRY.find("planner", kind)
+    given = next(iter(component.examples), {}) if _needs_more(component.spec) else {}
+    spec = component.spec.model_validate({"kind": kind, **given})
     whole = spec.model_dump(mode="json")
     assert validator("planner").is_valid(whole)
     assert validator("planner", canonical=True).is_valid(whole)

@@ -61,7 +61,7 @@ def sweep(
         int, typer.Option(min=0, metavar="N", help="Of people and chance; not the suite's.")
     ] = 1,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder of the sweep; the same one resumes it.")
+        Path, typer.Option(metavar="DIR", help="Folder to write; the same one resumes the sweep.")
     ] = Path("sweep"),
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
     plugin: Plugins = None,

@@ -110,19 +110,12 @@ def test_discs_cover_the_outline(front: float, back: float, half: float) -> None
 def test_a_way_leads_around_a_wall() -> None:
     wall = np.column_stack([np.full(81, 2.0), np.linspace(-1.0, 3.0, 81)])
     way = Way(0.3)
-    _, y = way.aim(0.0, Pose(0.0, 0.0, 0.0), wall, (5.0, 0.0))
+    for t in (0.0, 0.5, 1.0):  # seen three times, it stands
+        _, y = way.aim(t, Pose(0.0, 0.0, 0.0), wall, (5.0, 0.0))
     assert y < -0.4  # the shorter side
-    assert way.aim(1.0, Pose(2.5, -1.4, 0.0), wall, (5.0, -1.4)) == (5.0, -1.4)
+    assert way.aim(1.5, Pose(2.5, -1.4, 0.0), wall, (5.0, -1.4)) == (5.0, -1.4)
     assert is_blocked(wall, 0.0, 0.0, 5.0, 0.0, 0.3)
     assert not is_blocked(wall, 0.0, -1.5, 5.0, -1.5, 0.3)
-
-
-def test_a_hidden_wall_is_remembered() -> None:
-    wall = np.column_stack([np.full(81, 2.0), np.linspace(-1.0, 3.0, 81)])
-    way = Way(0.3)
-    way.aim(0.0, Pose(0.0, 0.0, 0.0), wall, (5.0, 0.0))
-    near = np.column_stack([np.full(200, 0.8), np.linspace(-6.0, 6.0, 200)])
-    assert way.aim(1.0, Pose(0.0, 0.0, 0.0), near, (5.0, 0.0)) != (5.0, 0.0)
 
 
 LIMITS = RobotLimits(v_min=-0.2, v_max=0.6, w_max=1.5, a_max=0.8, alpha_max=1.5)
