@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crowdbot.core.support.html_page import render_page
+from crowdbot.core.support.html_page import Allowed, render_page
 
 _SCRIPTS = ("geometry.js", "items.js", "sheet.js", "talk.js", "tools.js", "app.js")
 
@@ -15,5 +15,9 @@ def page(name: str, token: str) -> str:
         token: token of the server.
     """
     return render_page(
-        "crowdbot.core.editor", scripts=_SCRIPTS, connect="'self'", name=name, token=token
+        "crowdbot.core.editor",
+        scripts=_SCRIPTS,
+        allowed=Allowed(connect="'self'"),
+        name=name,
+        token=token,
     )

@@ -13,7 +13,7 @@ from urllib.parse import parse_qs, urlsplit
 from crowdbot.core.editor.desk import ConflictError, Desk
 from crowdbot.core.editor.document import Edit
 from crowdbot.core.editor.page import page
-from crowdbot.core.live.admission import Admission
+from crowdbot.core.live.admission import PAGE_HEADERS, Admission
 from crowdbot.errors import CrowdbotError, printable
 
 #: Largest request, bytes.
@@ -118,10 +118,8 @@ class _Handler(BaseHTTPRequestHandler):
         if status == HTTPStatus.FORBIDDEN:
             self.close_connection = True
         self.send_response(status)
-        for name, value in (("Content-Type", kind), ("Content-Length", str(len(body))),
-                            ("Cache-Control", "no-store"), ("X-Frame-Options", "DENY"),
-                            ("Referrer-Policy", "no-referrer"),
-                            ("X-Content-Type-Options", "nosniff")):  # fmt: skip
+        own = {"Content-Type": kind, "Content-Length": str(len(body))}
+        for name, value in {**PAGE_HEADERS, **own}.items():
             self.send_header(name, value)
         self.end_headers()
         self.wfile.write(body)

@@ -41,7 +41,7 @@ WRITTEN = RowTable(
 
 
 def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
-    """Return one scene in which everybody in the files walks as recorded.
+    """Return one scene in which all people of the files walk as recorded.
 
     Raises:
         SpecError: E402, a cell is not a number, or two files have the same person.

@@ -12,6 +12,17 @@ from crowdbot.errors import printable
 
 #: Largest number of refused websites that are named on stderr.
 _NAMED = 20
+#: Headers of a page of our own: no other site may frame it, guess its kind, learn its address or
+#: keep it.
+PAGE_HEADERS: Mapping[str, str] = {
+    "Content-Security-Policy": "frame-ancestors 'none'",
+    "X-Frame-Options": "DENY",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
 
 
 def is_loopback(host: str) -> bool:

@@ -10,12 +10,12 @@ from __future__ import annotations
 import asyncio
 import secrets
 import sys
-import threading
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
 from crowdbot.core.live.admission import Admission
+from crowdbot.core.live.loop_thread import LoopThread
 from crowdbot.errors import InputError
 
 #: Largest request, bytes; time for it, s; clients at once.
@@ -43,16 +43,15 @@ class FoxgloveGate:
             InputError: the address is not available.
         """
         self._admission, self._clients = admission, 0
-        self._loop = asyncio.new_event_loop()
         where = inner_address()
         try:
             self.server = start(where)
         except RuntimeError as error:
-            self._loop.close()
             raise InputError(f"{where}: cannot listen there: {error}") from error
         self._inner = where, int(self.server.port)
+        self._loop = LoopThread("foxglove gate")
         try:
-            self._listener = self._loop.run_until_complete(
+            self._listener = self._loop.run(
                 asyncio.start_server(self._serve, host, port, limit=_HEAD)
             )
         except OSError as error:
@@ -61,16 +60,11 @@ class FoxgloveGate:
             text = error.strerror or error
             raise InputError(f"{host}:{port}: cannot listen there: {text}") from error
         self.port = int(self._listener.sockets[0].getsockname()[1])
-        work = self._loop.run_forever
-        self._thread = threading.Thread(target=work, name="foxglove gate", daemon=True)
-        self._thread.start()
 
     def close(self) -> None:
         """Close all connections."""
         self.server.stop()
-        asyncio.run_coroutine_threadsafe(self._stop(), self._loop).result(timeout=10.0)
-        self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join()
+        self._loop.run(self._stop())
         self._loop.close()
 
     async def _stop(self) -> None:

@@ -61,8 +61,8 @@ def _scenery(shown: ShownRun) -> Scenery:
     if shown.scenery is not None:
         return shown.scenery
     walls = np.zeros((0, 4)) if shown.run.walls is None else shown.run.walls.reshape(-1, 4)
-    everybody = np.ones(len(walls), np.bool_)
-    return Scenery(walls=walls, stops_robot=everybody, stops_crowd=everybody)
+    solid = np.ones(len(walls), np.bool_)
+    return Scenery(walls=walls, stops_robot=solid, stops_crowd=solid)
 
 
 def scenery_numbers(scene: Scenery) -> dict[str, Any]:

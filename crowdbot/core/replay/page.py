@@ -11,7 +11,7 @@ from crowdbot.core.replay.scores import compared
 from crowdbot.core.replay.shown_run import ShownRun
 from crowdbot.core.replay.three import three_packed, three_source
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.core.support.html_page import render_page
+from crowdbot.core.support.html_page import Allowed, render_page
 from crowdbot.core.types.ending import ending_style
 
 _SCRIPTS = (
@@ -51,9 +51,9 @@ def _render(shown: Sequence[ShownRun], title: str) -> str:
     return render_page(
         __package__,
         scripts=_SCRIPTS,
+        styles=("base.css", "page.css"),
         more_style=ending_style(),
-        frames=True,
-        later=(three_source(),),
+        allowed=Allowed(frames=True, later=(three_source(),)),
         three=three_packed(),
         title=title,
         labels=[one.label or one.title for one in shown],

@@ -18,7 +18,7 @@ from crowdbot.core.report.packing import pack, pack_document, pack_whole
 from crowdbot.core.results.rows import RunRow, processes
 from crowdbot.core.statistics.estimate_text import joined_text
 from crowdbot.core.support.atomic_write import atomic_lines, atomic_write
-from crowdbot.core.support.html_page import render_page
+from crowdbot.core.support.html_page import Allowed, render_page
 from crowdbot.core.types.ending import ATTEMPTED, ending_style
 
 _SCRIPTS = (
@@ -61,7 +61,7 @@ def render(contents: Contents) -> str:
         more_style=ending_style(),
         endings=ATTEMPTED,
         scripts=[f"{name}.js" for name in _SCRIPTS],
-        images="blob:",  # saving as PNG draws the picture once more
+        allowed=Allowed(images="blob:"),  # saving as PNG draws the picture once more
         heading=contents.heading,
         contents=contents,
         planners=[_planner(contents, p) for p in contents.planners],

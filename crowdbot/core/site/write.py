@@ -16,7 +16,7 @@ from crowdbot.core.scoring.four_scores import BESIDE_PRIMARY, MAIN_SCORES
 from crowdbot.core.site.pictures import Picture, draw_conditions
 from crowdbot.core.site.replays import SiteReplay, write_replays
 from crowdbot.core.support.atomic_write import atomic_write
-from crowdbot.core.support.html_page import render_page
+from crowdbot.core.support.html_page import Allowed, render_page
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.dsl.suite.round import Round
 
@@ -31,15 +31,18 @@ class Site:
         suite: name of the suite in commands, as the organiser gave it.
         expansion: the suite.
         tables: tables of the leaderboard.
-        entries: all bundles that stand in a table.
         left_out: name of a bundle -> why it is left out.
     """
 
     suite: str
     expansion: Expansion
     tables: Sequence[Standings]
-    entries: Sequence[LeaderboardEntry] = ()
     left_out: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def entries(self) -> list[LeaderboardEntry]:
+        """Return all bundles of the tables, in their order."""
+        return [entry for table in self.tables for entry in table.entries]
 
     @property
     def round(self) -> Round:
@@ -87,7 +90,7 @@ def _index(
     mains = [*MAIN_SCORES, BESIDE_PRIMARY]
     return render_page(
         __package__,
-        images="'self'",
+        allowed=Allowed(images="'self'"),
         title=site.title,
         suite=site.suite,
         site=site,

@@ -291,8 +291,8 @@ def _key(run: RunRow) -> Key:
 
 def _draw(run: RunRow) -> str:
     """Return the name of the crowd draw; the scenario itself without known people."""
-    nobody = run.density is None and run.agents == "none"
-    return f"{run.suite}/{run.scenario}" if nobody else run.realisation_hash
+    without_people = run.density is None and run.agents == "none"
+    return f"{run.suite}/{run.scenario}" if without_people else run.realisation_hash
 
 
 def _condition(key: Key, axes: Mapping[str, str]) -> str:

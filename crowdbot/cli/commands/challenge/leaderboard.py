@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.folder_of_bundles import Accept, Keys, read_bundles
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 
@@ -25,22 +26,14 @@ def leaderboard(
         ),
     ] = "rule",
     title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
-    accept: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Compare although this differs; repeatable."),
-    ] = None,
+    accept: Accept = None,
     audit: Annotated[
         list[Path] | None,
         typer.Option(
             metavar="FILE", help="Audit of a suite; repeatable. Default: FOLDER/*audit.json."
         ),
     ] = None,
-    key: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="HEX", help="Believe records that this public key signed; repeatable."
-        ),
-    ] = None,
+    key: Keys = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The order as JSON on stdout.")] = False,
@@ -53,12 +46,7 @@ def leaderboard(
 
     Example: crowdbot leaderboard bundles --out leaderboard.html --by spl
     """
-    from crowdbot.core.bundle.entries import load_entries
     from crowdbot.core.bundle.leaderboard import write_leaderboard
-    from crowdbot.core.bundle.signature import check_public_key, own_public_key
-    from crowdbot.core.bundle.standings import set_apart, standings
-    from crowdbot.core.scoring.score_scale import score_scales
-    from crowdbot.core.statistics.audit import AUDIT, read_audit
     from crowdbot.core.statistics.rules import RULE
     from crowdbot.errors import UnknownNameError
 
@@ -66,18 +54,11 @@ def leaderboard(
     registry = installed(plugin, no_plugins)
     if by != RULE and by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
-    trusted = {check_public_key(text) for text in key or ()} | {own_public_key()} - {""}
-    entries, left_out = load_entries(folder, registry, trusted)
-    for entry in entries:
-        if entry.doubt:
-            say(f"warning: {entry.doubt}", err=True)
-    entries, apart = set_apart(entries, accept or ())
-    left_out = dict(sorted((left_out | apart).items()))
-    audits = [read_audit(path) for path in audit or sorted(folder.glob(f"*{AUDIT}"))]
-    tables = standings(entries, by, accept or (), audits, score_scales(registry))
-    write_leaderboard(out, tables, left_out, title)
-    for name, why in left_out.items():
-        say(f"warning: {name} is left out: {why}", err=True)
+    found = read_bundles(
+        folder, registry, by, accept=accept or (), keys=key or (), audits=audit or ()
+    )
+    tables = found.tables
+    write_leaderboard(out, tables, found.left_out, title)
     if as_json:
         document = [
             {"edition": t.edition, "class": t.classed, "by": t.by, "suspicion": t.suspicion,
@@ -87,7 +68,9 @@ def leaderboard(
                          for e in t.entries]}
             for t in tables
         ]  # fmt: skip
-        say(json.dumps({"page": str(out), "tables": document, "left_out": left_out}, indent=2))
+        whole = {"page": str(out), "tables": document, "left_out": dict(found.left_out)}
+        say(json.dumps(whole, indent=2))
         return
-    counts = f"{plural(len(entries), 'bundle')}, {plural(len(tables), 'table')}"
+    count = sum(len(table.entries) for table in tables)
+    counts = f"{plural(count, 'bundle')}, {plural(len(tables), 'table')}"
     say(f"{counts}; wrote {out}")

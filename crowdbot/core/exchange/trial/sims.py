@@ -17,7 +17,7 @@ from crowdbot.core.exchange.umans.presets import PRESETS, preset
 _SHARED = Row("@SimulationID", "", "one crowd: people of all simulations react to each other",
               unless="0")  # fmt: skip
 _RADIUS = Row("@radius", "crowd.agents.radius", read=lambda item: item.number(1e-6, 100.0))
-_MOST = Row("@maxNeighbors", "", "everybody within the range counts")
+_MOST = Row("@maxNeighbors", "", "all within the range count")
 _FORMATION = "groups here hold together by crowd.groups, which is common to all"
 _RVO = (
     _SHARED,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from crowdbot.core.replay.three import three_packed, three_source
-from crowdbot.core.support.html_page import render_page
+from crowdbot.core.support.html_page import Allowed, render_page
 
 #: What the person does: drives a robot, or walks.
 Mode = Literal["drive", "walk"]
@@ -28,8 +28,8 @@ def render_person_page(mode: Mode, scenario: str) -> str:
             *(f"crowdbot.core.replay:script/{name}.js" for name in _SHARED),
             *(f"script/{name}.js" for name in _OWN),
         ],
-        connect="'self'",
-        later=(three_source(),),
+        styles=("crowdbot.core.replay:base.css", "page.css"),
+        allowed=Allowed(connect="'self'", later=(three_source(),)),
         three=three_packed(),
         mode=mode,
         scenario=scenario,

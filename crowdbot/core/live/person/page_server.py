@@ -6,15 +6,14 @@ import asyncio
 import json
 import logging
 import secrets
-import threading
 import time
-from collections.abc import Callable
 from contextlib import suppress
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
-from crowdbot.core.live.admission import is_loopback
+from crowdbot.core.live.admission import PAGE_HEADERS, is_loopback
+from crowdbot.core.live.loop_thread import LoopThread
 from crowdbot.core.live.person.page_client import PageClient
 from crowdbot.core.live.person.seat import Seat
 from crowdbot.errors import InputError
@@ -27,16 +26,6 @@ HOST = "127.0.0.1"
 _LARGEST, _WAITING, _MOST_CLIENTS = 16_384, 32, 16
 _STATE = 0.1  # s between two looks at what the pages have to know
 _FAREWELL = 2.0  # s
-#: No other site may frame the page, guess its kind, learn its address or keep it.
-_HEADERS = {
-    "Content-Security-Policy": "frame-ancestors 'none'",
-    "X-Frame-Options": "DENY",
-    "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cache-Control": "no-store",
-}
 
 
 class PageServer:
@@ -63,19 +52,16 @@ class PageServer:
         self._clients = set[PageClient]()
         self._scene, self._frame, self._end, self._state = "", "", "", ""
         seat.on_taken = lambda number, t: self.tell("taken", n=number, t=t)
-        self._loop = asyncio.new_event_loop()
-        work = self._loop.run_forever
-        self._thread = threading.Thread(target=work, name=f"{name} page", daemon=True)
-        self._thread.start()
+        self._loop = LoopThread(f"{name} page")
         try:
-            self._server: Server = self._run(self._start(port))
+            self._server: Server = self._loop.run(self._start(port))
         except OSError as error:
-            self._stop_loop()
+            self._loop.close()
             raise InputError(
                 f"{HOST}:{port}: cannot listen there: {error.strerror or error}"
             ) from error
         self.port: int = next(iter(self._server.sockets)).getsockname()[1]
-        self._watch = asyncio.run_coroutine_threadsafe(self._tell_states(), self._loop)
+        self._watch = self._loop.begin(self._tell_states())
 
     @property
     def url(self) -> str:
@@ -85,41 +71,29 @@ class PageServer:
     # ---------------------------------------------------------------- the simulation's thread
     def show_scene(self, scene: Any) -> None:
         """Send all pages, and those that come later, what does not move."""
-        self._soon(self._keep, "_scene", json.dumps({"op": "scene", "scene": scene}), "scene")
-        self._soon(self._forget_end)
+        self._loop.soon(self._keep, "_scene", json.dumps({"op": "scene", "scene": scene}), "scene")
+        self._loop.soon(self._forget_end)
 
     def show_frame(self, frame: Any) -> None:
         """Send all pages what moves; a page that is slow gets only the latest."""
-        self._soon(self._keep, "_frame", json.dumps({"op": "frame", **frame}), "frame")
+        self._loop.soon(self._keep, "_frame", json.dumps({"op": "frame", **frame}), "frame")
 
     def show_end(self, **fields: Any) -> None:
         """Send all pages how the run ended."""
-        self._soon(self._keep, "_end", json.dumps({"op": "end", **fields}), "end")
+        self._loop.soon(self._keep, "_end", json.dumps({"op": "end", **fields}), "end")
 
     def tell(self, op: str, **fields: Any) -> None:
         """Send all pages a message."""
-        self._soon(self._send_all, json.dumps({"op": op, **fields}))
+        self._loop.soon(self._send_all, json.dumps({"op": op, **fields}))
 
     def close(self) -> None:
         """Send what is queued, then say goodbye to all pages."""
-        if self._loop.is_closed():
+        if self._loop.is_closed:
             return
         self._watch.cancel()
         with suppress(TimeoutError, RuntimeError):
-            self._run(self._stop())
-        self._stop_loop()
-
-    def _stop_loop(self) -> None:
-        self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join()
+            self._loop.run(self._stop())
         self._loop.close()
-
-    def _run(self, work: Any) -> Any:
-        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=30.0)
-
-    def _soon(self, what: Callable[..., object], *given: object) -> None:
-        with suppress(RuntimeError):  # already closed
-            self._loop.call_soon_threadsafe(what, *given)
 
     # ------------------------------------------------------------------ the server's thread
     def _keep(self, name: str, text: str, topic: str) -> None:
@@ -180,7 +154,7 @@ class PageServer:
             return connection.respond(HTTPStatus.NOT_FOUND, "there is one page\n")
         headers = Headers(
             {
-                **_HEADERS,
+                **PAGE_HEADERS,
                 "Content-Type": "text/html; charset=utf-8",
                 "Content-Length": str(len(self._page)),
                 "Connection": "close",

@@ -5,16 +5,16 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
-import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
 from crowdbot.core.live.admission import Admission
+from crowdbot.core.live.loop_thread import LoopThread
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.plain import Ros
 from crowdbot.core.live.rosbridge.connection import Connection
@@ -96,14 +96,11 @@ class RosbridgeServer:
         self._wanted = frozenset[str]()
         self._connections = set[Connection]()
         self._frames: dict[tuple[int, str], tuple[LiveMessage, Frame]] = {}
-        self._loop = asyncio.new_event_loop()
-        work = self._loop.run_forever
-        self._thread = threading.Thread(target=work, name="rosbridge", daemon=True)
-        self._thread.start()
+        self._loop = LoopThread("rosbridge")
         try:
-            self._server: Server = self._run(self._start())
+            self._server: Server = self._loop.run(self._start())
         except OSError as error:
-            self._end()
+            self._loop.close()
             where = f"{address.host}:{address.port}"
             raise InputError(f"{where}: cannot listen there: {error.strerror or error}") from error
 
@@ -122,7 +119,7 @@ class RosbridgeServer:
     def open(self, offers: Sequence[OfferedTopic]) -> None:
         """Start a run that offers these topics."""
         mine = [o for o in offers if not (self.external_clock and o.topic == "/clock")]
-        self._soon(self._opened, mine)
+        self._loop.soon(self._opened, mine)
 
     def wants(self, topic: str) -> bool:
         """Return True if a client listens to a topic, or the next client needs it."""
@@ -131,27 +128,15 @@ class RosbridgeServer:
     def publish(self, messages: Sequence[LiveMessage]) -> None:
         """Send messages to the listeners."""
         if messages:
-            self._soon(self._published, list(messages))
+            self._loop.soon(self._published, list(messages))
 
     def close(self) -> None:
         """Say goodbye to all clients."""
-        if self._loop.is_closed():
+        if self._loop.is_closed:
             return
         with suppress(TimeoutError, RuntimeError):
-            self._run(self._stop())
-        self._end()
-
-    def _end(self) -> None:
-        self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join()
+            self._loop.run(self._stop())
         self._loop.close()
-
-    def _run(self, work: Any) -> Any:
-        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=30.0)
-
-    def _soon(self, what: Callable[..., object], *given: object) -> None:
-        with suppress(RuntimeError):  # already closed
-            self._loop.call_soon_threadsafe(what, *given)
 
     # ------------------------------------------------------------------ the server's thread
     def _opened(self, offers: Sequence[OfferedTopic]) -> None:

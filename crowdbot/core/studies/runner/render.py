@@ -10,7 +10,7 @@ from crowdbot.core.studies.document import Study
 from crowdbot.core.studies.forms import Question, questions_of
 from crowdbot.core.studies.progress import StudyProgress
 from crowdbot.core.studies.steps import Step
-from crowdbot.core.support.html_page import render_page
+from crowdbot.core.support.html_page import Allowed, render_page
 
 #: Headings of forms, and what stands before their questions.
 _FORMS = {
@@ -89,7 +89,9 @@ def render_step(progress: StudyProgress, step: Step | None, drive: DriveState, r
     questions: Sequence[Question] = content["questions"]
     content["open_questions"] = [(q.name, q.title) for q in questions if q.name in reply.open_names]
     content["problem"] = content["problem"] or drive.problem
-    return render_page(__package__, scripts=("page.js",), connect="'self'", forms=True, **content)
+    return render_page(
+        __package__, scripts=("page.js",), allowed=Allowed(connect="'self'", forms=True), **content
+    )
 
 
 def _of_step(study: Study, step: Step, drive: DriveState) -> dict[str, Any]:

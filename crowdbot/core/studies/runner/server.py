@@ -9,20 +9,14 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 from urllib.parse import parse_qsl
 
-from crowdbot.core.live.admission import Admission
+from crowdbot.core.live.admission import PAGE_HEADERS, Admission
 from crowdbot.core.studies.runner.session import RunnerSession
 from crowdbot.errors import CrowdbotError, InputError
 
 #: Longest body of a request, bytes; largest number of its fields.
 _LONGEST, _MOST_FIELDS = 65_536, 200
-_HEADERS = {
-    "Cache-Control": "no-store",
-    "Referrer-Policy": "same-origin",
-    "X-Content-Type-Options": "nosniff",
-    "X-Frame-Options": "DENY",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cross-Origin-Resource-Policy": "same-origin",
-}
+#: Forms say where they come from only if the page may tell its own server.
+_HEADERS = {**PAGE_HEADERS, "Referrer-Policy": "same-origin"}
 
 
 class RunnerServer(ThreadingHTTPServer):

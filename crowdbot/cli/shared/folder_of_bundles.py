@@ -1,0 +1,83 @@
+"""Options and reading that the commands about a folder of bundles share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from crowdbot.cli.output.say import say
+from crowdbot.errors import InputError
+
+if TYPE_CHECKING:
+    from crowdbot.core.bundle.standings import Standings
+    from crowdbot.core.registry.registry import Registry
+
+Accept = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME", help="Compare although this differs; repeatable."),
+]
+Keys = Annotated[
+    list[str] | None,
+    typer.Option(metavar="HEX", help="Believe records that this public key signed; repeatable."),
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FolderOfBundles:
+    """The tables of a folder's bundles; ``left_out``: name of a bundle -> reason."""
+
+    tables: Sequence[Standings]
+    left_out: Mapping[str, str]
+
+
+def read_bundles(
+    folder: Path,
+    registry: Registry,
+    by: str,
+    *,
+    accept: Sequence[str] = (),
+    keys: Sequence[str] = (),
+    audits: Sequence[Path] = (),
+    suite: str = "",
+) -> FolderOfBundles:
+    """Return the tables of a folder, and say why bundles are left out or a record is not believed.
+
+    Args:
+        folder: folder of the bundles.
+        registry: the installed components.
+        by: what decides the order: a metric, or the ranking rule.
+        accept: differences that are accepted.
+        keys: public keys of organisers, besides the user's own.
+        audits: audits of suites; default: those of the folder.
+        suite: id of the only suite; empty: all.
+
+    Raises:
+        InputError: there is no bundle, or none of that suite.
+    """
+    from crowdbot.core.bundle.entries import load_entries
+    from crowdbot.core.bundle.signature import check_public_key, own_public_key
+    from crowdbot.core.bundle.standings import set_apart, standings
+    from crowdbot.core.scoring.score_scale import score_scales
+    from crowdbot.core.statistics.audit import AUDIT, read_audit
+
+    trusted = {check_public_key(text) for text in keys} | {own_public_key()} - {""}
+    entries, left_out = load_entries(folder, registry, trusted)
+    for entry in entries:
+        if entry.doubt:
+            say(f"warning: {entry.doubt}", err=True)
+    wanted = [e for e in entries if suite in ("", e.manifest.edition.suite)]
+    if entries and not wanted:
+        raise InputError(f"{folder}: no bundle of {suite} there")
+    left_out |= {e.path.name: f"it is not of {suite}" for e in entries if e not in wanted}
+    kept, apart = set_apart(wanted, accept)
+    left_out = dict(sorted((left_out | apart).items()))
+    for name, why in left_out.items():
+        say(f"warning: {name} is left out: {why}", err=True)
+    read = [read_audit(path) for path in audits or sorted(folder.glob(f"*{AUDIT}"))]
+    return FolderOfBundles(
+        tables=standings(kept, by, accept, read, score_scales(registry)), left_out=left_out
+    )
