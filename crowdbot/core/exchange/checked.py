@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 from crowdbot.core.exchange.write import WrittenLine
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import open_spec
@@ -16,7 +16,7 @@ from crowdbot.errors import SpecError
 
 
 def check(
-    lines: Sequence[WrittenLine], scenes: Sequence[Stage], registry: Registry, default: Mark
+    lines: Sequence[WrittenLine], scenes: Sequence[Draft], registry: Registry, default: Mark
 ) -> list[str]:
     """Check a document as the language does; return the ids of its scenarios.
 
@@ -39,7 +39,7 @@ def check(
             raise SpecError(list({d.sort_key(): d for d in found}.values())) from None
 
 
-def write(path: Path, lines: Sequence[WrittenLine], scenes: Sequence[Stage]) -> list[Path]:
+def write(path: Path, lines: Sequence[WrittenLine], scenes: Sequence[Draft]) -> list[Path]:
     """Write a document and the tables beside it; return the files."""
     tables: Mapping[str, str] = {n: t for scene in scenes for n, t in scene.tables.items()}
     files = [path.with_name(name) for name in tables]
@@ -53,7 +53,7 @@ def _at_origin(
     found: Diagnostic,
     path: Path,
     lines: Sequence[WrittenLine],
-    scenes: Sequence[Stage],
+    scenes: Sequence[Draft],
     default: Mark,
 ) -> Diagnostic:
     """Return an error of our document as one of the file that it came from."""
@@ -67,7 +67,7 @@ def _at_origin(
     return Diagnostic("E402", message, mark, hint)
 
 
-def _origin(line: WrittenLine, scene: Stage, default: Mark) -> Mark:
+def _origin(line: WrittenLine, scene: Draft, default: Mark) -> Mark:
     for length in range(len(line.path), 0, -1):
         if line.path[:length] in scene.origins:
             return scene.origins[line.path[:length]]

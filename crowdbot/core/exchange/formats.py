@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import RowTable
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 from crowdbot.core.registry.registry import Registry
 
 
@@ -27,7 +27,7 @@ class Context:
     name: str
 
 
-Reader = Callable[[Sequence[OpenedScene], Context], list[Stage]]
+Reader = Callable[[Sequence[OpenedScene], Context], list[Draft]]
 
 
 @dataclass(frozen=True, slots=True)

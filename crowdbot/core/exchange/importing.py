@@ -12,7 +12,7 @@ from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
 from crowdbot.core.exchange.overlaps import enter_in_turn
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.scene import Stage, id_of
+from crowdbot.core.exchange.scene import Draft, id_of
 from crowdbot.core.exchange.write import WrittenLine, document
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.text.diagnostics import Diagnostic
@@ -32,7 +32,7 @@ class Imported:
     """
 
     lines: list[WrittenLine]
-    scenes: list[Stage]
+    scenes: list[Draft]
     ids: list[str]
     report: Report
     formats: list[str]
@@ -53,7 +53,7 @@ def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Import
     report = Report()
     opened = [open_file_of_others(path, report) for path in dict.fromkeys(paths)]
     context = Context(report, registry, id_of(name))
-    scenes: list[Stage] = []
+    scenes: list[Draft] = []
     read: list[str] = []
     for found, files in _by_format(opened).items():
         scenes += FORMATS[found].read(files, context)

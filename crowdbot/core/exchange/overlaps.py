@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from crowdbot.core.exchange.report import Report, Trace
 from crowdbot.core.exchange.rows import Fate
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 from crowdbot.dsl.checks.agents import Disc, overlapping
 
 #: Time between two that overlap, s, and usual radius, m.
@@ -16,7 +16,7 @@ _LATER, _RADIUS = 1e-3, 0.33
 _NOTE = "overlaps another at the start, which is not allowed here: enters some milliseconds later"
 
 
-def enter_in_turn(scene: Stage, report: Report) -> None:
+def enter_in_turn(scene: Draft, report: Report) -> None:
     """Delay agents who overlap others that enter at the same time; record each."""
     radius = scene.crowd.get("body", {}).get("radius", _RADIUS)
     waves: dict[float, list[int]] = {}
@@ -34,12 +34,12 @@ def enter_in_turn(scene: Stage, report: Report) -> None:
             turn += 1
 
 
-def _disc(scene: Stage, number: int, radius: float) -> Disc:
+def _disc(scene: Draft, number: int, radius: float) -> Disc:
     agent = scene.agents[number]
     return agent["x"], agent["y"], agent.get("radius", radius)
 
 
-def _delay(scene: Stage, report: Report, number: int, time: float) -> None:
+def _delay(scene: Draft, report: Report, number: int, time: float) -> None:
     path = ("crowd", "agents", str(number))
     place = scene.origins.get(path)
     report.entries.append(Trace(Fate.INTERPRETED, "start", place, "crowd.agents.start_time", _NOTE))

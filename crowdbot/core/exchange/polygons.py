@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 
 #: Points this near to a line are on it, m; thickness of what has no area, m.
 _LEAST, THIN = 1e-6, 0.02
@@ -15,7 +15,7 @@ Corner = Sequence[float]
 
 
 def add_polygon(
-    scene: Stage,
+    scene: Draft,
     report: Report,
     item: Item,
     corners: Sequence[Corner],
@@ -44,7 +44,7 @@ def _beside(point: Corner, start: Corner, end: Corner) -> float:
 
 
 def add_wall(
-    scene: Stage, item: Item, start: Corner, end: Corner, thickness: float = THIN,
+    scene: Draft, item: Item, start: Corner, end: Corner, thickness: float = THIN,
     name: str = "wall",
 ) -> None:  # fmt: skip
     """Add a straight wall."""

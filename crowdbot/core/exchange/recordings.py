@@ -11,7 +11,7 @@ from crowdbot.core.exchange.item import LARGEST, Item
 from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Stage, around, id_of
+from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
@@ -40,7 +40,7 @@ WRITTEN = RowTable(
 )
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene in which all people of the files walk as recorded.
 
     Raises:
@@ -54,7 +54,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
             people[ident] = points
     if not people:
         raise SpecError([Diagnostic("E402", "no person has two lines", files[0].top)])
-    scene = Stage(id_of(files[0].path.stem))
+    scene = Draft(id_of(files[0].path.stem))
     table = f"{context.name}.recorded.csv"
     rows = [(t, ident, x, y) for ident, points in people.items() for t, x, y in points]
     scene.tables[table] = HEADER + "".join(

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core.exchange.scene import Path, Stage
+from crowdbot.core.exchange.scene import Draft, Path
 
 #: Longest map of scalars on one line, characters.
 _WIDE = 100
@@ -25,7 +25,7 @@ class WrittenLine:
     path: Path = ()
 
 
-def document(scenes: list[Stage], name: str, title: str = "") -> list[WrittenLine]:
+def document(scenes: list[Draft], name: str, title: str = "") -> list[WrittenLine]:
     """Return a scenario document for one scene, else a suite with one label for each."""
     lines = [WrittenLine(f"# {note}") for note in dict.fromkeys(n for s in scenes for n in s.notes)]
     lines.append(WrittenLine("crowdbot: 1"))
@@ -50,7 +50,7 @@ def document(scenes: list[Stage], name: str, title: str = "") -> list[WrittenLin
     return lines
 
 
-def _scene(scene: Stage, number: int, depth: int) -> Iterator[WrittenLine]:
+def _scene(scene: Draft, number: int, depth: int) -> Iterator[WrittenLine]:
     for text, path in _block(scene.data(), depth, (), scene.comments):
         yield WrittenLine(text, number, path)
 

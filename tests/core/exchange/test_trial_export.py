@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.exchange.checked import write
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 from crowdbot.core.exchange.trial_export.document import export_trial
 from crowdbot.core.exchange.umans.presets import preset
 from crowdbot.core.exchange.write import document
@@ -47,8 +47,8 @@ _OWN = {
 }  # fmt: skip
 
 
-def _scene(people: list[dict[str, Any]]) -> Stage:
-    scene = Stage("exported")
+def _scene(people: list[dict[str, Any]]) -> Draft:
+    scene = Draft("exported")
     scene.environment |= {"area": {"x": [-50, 50], "y": [-50, 50]}}
     for name in dict.fromkeys(person["policy"] for person in people):
         scene.policy(_OWN if name == "own" else preset(int(name[-1])), name, _HERE)
@@ -57,7 +57,7 @@ def _scene(people: list[dict[str, Any]]) -> Stage:
     return scene
 
 
-def _opened(scene: Stage, folder: Path) -> Scenario:
+def _opened(scene: Draft, folder: Path) -> Scenario:
     path = write(folder / "mine.yaml", document([scene], "mine"), [scene])[0]
     return open_spec(str(path), registry()).scenarios[0]
 

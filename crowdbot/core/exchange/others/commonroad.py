@@ -10,7 +10,7 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Stage, around, id_of
+from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 
 SCENARIO = RowTable(
@@ -29,7 +29,7 @@ _PERSON = "pedestrian"
 Point = tuple[float, float, float]
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each file.
 
     Raises:
@@ -38,8 +38,8 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     return [_scene(file, root, context) for file in files for root in file.roots]
 
 
-def _scene(file: OpenedScene, root: Item, context: Context) -> Stage:
-    report, scene = context.report, Stage(id_of(file.path.stem))
+def _scene(file: OpenedScene, root: Item, context: Context) -> Draft:
+    report, scene = context.report, Draft(id_of(file.path.stem))
     scene.notes.append(f"Imported from CommonRoad: {file.path.name}.")
     step = root.find("@timeStepSize")
     dt = step.number(1e-6, 1e3) if step else 0.1
@@ -72,7 +72,7 @@ def _scene(file: OpenedScene, root: Item, context: Context) -> Stage:
 
 
 def _record(
-    rows: list[tuple[float, int, float, float]], scene: Stage, root: Item, context: Context
+    rows: list[tuple[float, int, float, float]], scene: Draft, root: Item, context: Context
 ) -> None:
     table = f"{context.name}.{scene.id}.csv"
     scene.tables[table] = HEADER + "".join(
@@ -110,7 +110,7 @@ def _exact(item: Item) -> float:
     return exact.number()
 
 
-def _static(item: Item, scene: Stage, report: Report) -> None:
+def _static(item: Item, scene: Draft, report: Report) -> None:
     state = item.need("initialState")
     point = state.need("position").need("point")
     turn = state.find("orientation")

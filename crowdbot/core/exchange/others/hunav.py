@@ -10,7 +10,7 @@ from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.others.usual import social_forces
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, not_negative, positive
-from crowdbot.core.exchange.scene import Data, Stage, id_of
+from crowdbot.core.exchange.scene import Data, Draft, id_of
 
 #: Behaviours by number: name, and our like of it.
 _BEHAVIOURS = {
@@ -64,7 +64,7 @@ LOADER = RowTable(
 )
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each file.
 
     Raises:
@@ -78,8 +78,8 @@ def _parameters(file: OpenedScene) -> Item:
     return loader.need("ros__parameters")
 
 
-def _scene(file: OpenedScene, report: Report) -> Stage:
-    parameters, scene = _parameters(file), Stage(id_of(file.path.stem))
+def _scene(file: OpenedScene, report: Report) -> Draft:
+    parameters, scene = _parameters(file), Draft(id_of(file.path.stem))
     scene.notes.append(f"Imported from HuNavSim: {file.path.name}.")
     report.take(parameters, LOADER)
     policy = scene.policy(social_forces(), "social_forces", parameters.mark)
@@ -93,7 +93,7 @@ def _scene(file: OpenedScene, report: Report) -> Stage:
     return scene
 
 
-def _agent(name: Item, parameters: Item, policy: str, scene: Stage, report: Report) -> None:
+def _agent(name: Item, parameters: Item, policy: str, scene: Draft, report: Report) -> None:
     item = parameters.need(name.text())
     report.carried(name, "crowd.agents")
     fields: Data = {"speed": 1.5, "radius": 0.35, **report.take(item, AGENT)}
@@ -139,7 +139,7 @@ def _behave(item: Item, row: Data, report: Report) -> None:
             report.left_out(part, "parameters of that behaviour")
 
 
-def _ignoring(scene: Stage) -> None:
+def _ignoring(scene: Draft) -> None:
     """Let those with attention 0 ignore robots."""
     count = sum(1 for agent in scene.agents if agent.get("attention") == 0.0)
     if count:

@@ -14,7 +14,7 @@ from crowdbot.core.exchange.others.shapes import area_of, middle, pairs, rectang
 from crowdbot.core.exchange.others.usual import social_forces, vision
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Data, Stage, free_name, id_of, name_of
+from crowdbot.core.exchange.scene import Data, Draft, free_name, id_of, name_of
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
@@ -62,7 +62,7 @@ class _Places:
         return min(self.exits, key=lambda name: math.dist(middle(self.exits[name]), (x, y)))
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each scenario, or for each WKT where there is none.
 
     Raises:
@@ -75,7 +75,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     return [_scene(file, texts, context.report) for file in decks]
 
 
-def _geometry(text: str, mark: Mark, scene: Stage) -> Any:
+def _geometry(text: str, mark: Mark, scene: Draft) -> Any:
     from shapely import GEOSException, from_wkt  # type: ignore[import-untyped,unused-ignore]
 
     try:
@@ -90,11 +90,11 @@ def _geometry(text: str, mark: Mark, scene: Stage) -> Any:
     return shape
 
 
-def _bare(file: OpenedScene, report: Report) -> Stage:
+def _bare(file: OpenedScene, report: Report) -> Draft:
     """Return a floor with two people who walk back and forth, since WKT has none."""
     from shapely import from_wkt, maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
 
-    scene = Stage(id_of(file.path.stem))
+    scene = Draft(id_of(file.path.stem))
     scene.notes.append(f"Imported from WKT: {file.path.name}.")
     _geometry(file.text, file.top, scene)
     whole = Item("WKT", file.top)
@@ -113,8 +113,8 @@ def _bare(file: OpenedScene, report: Report) -> Stage:
     return scene
 
 
-def _scene(file: OpenedScene, texts: Sequence[OpenedScene], report: Report) -> Stage:
-    root, scene = file.roots[0], Stage(id_of(file.path.stem))
+def _scene(file: OpenedScene, texts: Sequence[OpenedScene], report: Report) -> Draft:
+    root, scene = file.roots[0], Draft(id_of(file.path.stem))
     scene.notes.append(f"Imported from JuPedSim: {file.path.name}.")
     floor = _floor(root, file, texts, scene, report)
     _model(root, scene, report)
@@ -152,7 +152,7 @@ def _rest(item: Item, note: str, report: Report) -> None:
 
 
 def _floor(
-    root: Item, file: OpenedScene, texts: Sequence[OpenedScene], scene: Stage, report: Report
+    root: Item, file: OpenedScene, texts: Sequence[OpenedScene], scene: Draft, report: Report
 ) -> Any:
     inside = root.find("walkable_area_wkt")
     if inside is not None:
@@ -172,7 +172,7 @@ def _floor(
     return _geometry(text, Mark(source), scene)
 
 
-def _model(root: Item, scene: Stage, report: Report) -> None:
+def _model(root: Item, scene: Draft, report: Report) -> None:
     kinds = [item for item in root.walk() if item.name == "model_type"]
     social = any("social" in item.text().lower() for item in kinds)
     at = kinds[0] if kinds else root
@@ -212,7 +212,7 @@ def _journeys(root: Item, report: Report) -> dict[str, list[str]]:
 
 
 def _distribution(
-    item: Item, places: _Places, journeys: dict[str, list[str]], scene: Stage, report: Report
+    item: Item, places: _Places, journeys: dict[str, list[str]], scene: Draft, report: Report
 ) -> None:
     area, how = rectangle_in(pairs(item.need("coordinates")), places.floor)
     report.interpreted(item, "crowd.streams", how or "people start within it")
@@ -277,7 +277,7 @@ def _ways(
 
 
 def _stream(
-    item: Item, parameters: Item, area: Data, way: list[Data], count: int, scene: Stage
+    item: Item, parameters: Item, area: Data, way: list[Data], count: int, scene: Draft
 ) -> None:
     radius, speed = parameters.find("radius"), parameters.find("v0")
     spread = parameters.find("v0_std")

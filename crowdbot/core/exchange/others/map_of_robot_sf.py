@@ -11,7 +11,7 @@ from crowdbot.core.exchange.others.shapes import Corners, area_of, middle, recta
 from crowdbot.core.exchange.others.usual import social_forces, standing_robot
 from crowdbot.core.exchange.polygons import add_polygon
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.scene import Data, Stage, free_name
+from crowdbot.core.exchange.scene import Data, Draft, free_name
 
 #: People per m^2 on routes and in crowded zones, and width of a route, m: usual values there.
 DENSITY, WIDTH = 0.04, 3.0
@@ -77,7 +77,7 @@ class RobotSfMap:
         return route.item, [[x - 1, y - 1], [x + 1, y - 1], [x + 1, y + 1], [x - 1, y + 1]]
 
 
-def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[Stage]:
+def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[Draft]:
     """Return one scene for each route of the robot, or one without a robot.
 
     Raises:
@@ -90,7 +90,7 @@ def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[S
     chosen: list[RobotSfRoute | None] = [*routes]
     for way in chosen or [None]:
         ending = f"-{way.spawn}-{way.goal}" if way is not None and len(routes) > 1 else ""
-        scene = Stage(f"{name}{ending}")
+        scene = Draft(f"{name}{ending}")
         scene.notes.append(note)
         _floor(found, scene, report)
         if way is not None:
@@ -100,7 +100,7 @@ def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[S
     return scenes
 
 
-def _floor(found: RobotSfMap, scene: Stage, report: Report) -> None:
+def _floor(found: RobotSfMap, scene: Draft, report: Report) -> None:
     if found.bounds is not None:
         x0, x1, y0, y1 = found.bounds
         scene.environment = {"kind": "floor", "border": "walls",
@@ -120,7 +120,7 @@ def _within(corners: Corners, bounds: tuple[float, float, float, float] | None) 
     return [[min(max(x, x0), x1), min(max(y, y0), y1)] for x, y in corners]
 
 
-def _robot(found: RobotSfMap, route: RobotSfRoute, scene: Stage, report: Report) -> None:
+def _robot(found: RobotSfMap, route: RobotSfRoute, scene: Draft, report: Report) -> None:
     _, spawn = found.zone("robot_spawn_zone", route.spawn, route)
     item, goal = found.zone("robot_goal_zone", route.goal, route)
     start_area, _ = rectangle_in(spawn)
@@ -137,7 +137,7 @@ def _robot(found: RobotSfMap, route: RobotSfRoute, scene: Stage, report: Report)
     report.added("robots.robot.model", "a TurtleBot2", route.item.mark)
 
 
-def _people(found: RobotSfMap, scene: Stage, report: Report) -> None:
+def _people(found: RobotSfMap, scene: Draft, report: Report) -> None:
     streams: Data = {}
     for route in found.ped_routes:
         _, spawn = found.zone("ped_spawn_zone", route.spawn, route)
@@ -168,7 +168,7 @@ def _length(points: Corners) -> float:
     return sum(math.dist(a, b) for a, b in pairwise(points))
 
 
-def _crowded(found: RobotSfMap, scene: Stage, streams: Data, report: Report) -> None:
+def _crowded(found: RobotSfMap, scene: Draft, streams: Data, report: Report) -> None:
     for number, (item, corners) in found.zones.get("ped_crowded_zone", {}).items():
         area, _ = rectangle_in(corners)
         name = free_name(f"crowded_{number}", streams)
@@ -180,7 +180,7 @@ def _crowded(found: RobotSfMap, scene: Stage, streams: Data, report: Report) -> 
         report.interpreted(item, "crowd.streams", note)
 
 
-def _single(person: Person, policy: str, scene: Stage, report: Report) -> None:
+def _single(person: Person, policy: str, scene: Draft, report: Report) -> None:
     (x, y), *goals = person.points
     row: Data = {"x": x, "y": y, "goals": goals or [[x, y]], "policy": policy,
                  "speed": person.speed or 1.3}  # fmt: skip

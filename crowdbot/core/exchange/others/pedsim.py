@@ -13,7 +13,7 @@ from crowdbot.core.exchange.others.usual import social_forces, standing_robot
 from crowdbot.core.exchange.polygons import add_wall
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Data, Stage, free_name, id_of, name_of
+from crowdbot.core.exchange.scene import Data, Draft, free_name, id_of, name_of
 
 SCENARIO = RowTable(
     "scenario",
@@ -42,7 +42,7 @@ _SPEEDS = {0: (1.34, 0.26), 1: (1.0, 0.2), 3: (0.9, 0.15)}
 _RADIUS, _THICK = 0.35, 0.05
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each file.
 
     Raises:
@@ -51,8 +51,8 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     return [_scene(file, root, context.report) for file in files for root in file.roots]
 
 
-def _scene(file: OpenedScene, root: Item, report: Report) -> Stage:
-    scene = Stage(id_of(file.path.stem))
+def _scene(file: OpenedScene, root: Item, report: Report) -> Draft:
+    scene = Draft(id_of(file.path.stem))
     scene.notes.append(f"Imported from pedsim_ros: {file.path.name}.")
     for item in root.every("obstacle"):
         ends = [[item.need(f"@x{k}").number(), item.need(f"@y{k}").number()] for k in (1, 2)]
@@ -76,7 +76,7 @@ def _scene(file: OpenedScene, root: Item, report: Report) -> Stage:
     return scene
 
 
-def _areas(root: Item, scene: Stage, report: Report) -> dict[str, tuple[str, list[float]]]:
+def _areas(root: Item, scene: Draft, report: Report) -> dict[str, tuple[str, list[float]]]:
     """Return id -> name of the goal area and its bounds x0, x1, y0, y1."""
     found: dict[str, tuple[str, list[float]]] = {}
     areas: Data = {}
@@ -104,7 +104,7 @@ def _areas(root: Item, scene: Stage, report: Report) -> dict[str, tuple[str, lis
 
 
 def _agent(
-    item: Item, areas: dict[str, tuple[str, list[float]]], scene: Stage, report: Report
+    item: Item, areas: dict[str, tuple[str, list[float]]], scene: Draft, report: Report
 ) -> None:
     kind = item.find("@type")
     number = kind.whole(0, 3) if kind else 0
@@ -123,7 +123,7 @@ def _agent(
 
 
 def _spawn(
-    item: Item, at: tuple[float, float], number: int, way: list[str], scene: Stage, report: Report
+    item: Item, at: tuple[float, float], number: int, way: list[str], scene: Draft, report: Report
 ) -> None:  # fmt: skip
     count = item.find("@n")
     people = count.whole(0, 100_000) if count else 1
@@ -157,7 +157,7 @@ def _spawn(
 
 
 def _robot(
-    item: Item, at: tuple[float, float], way: list[tuple[str, list[float]]], scene: Stage,
+    item: Item, at: tuple[float, float], way: list[tuple[str, list[float]]], scene: Draft,
     report: Report,
 ) -> None:  # fmt: skip
     name = free_name("robot", scene.robots)

@@ -18,7 +18,7 @@ from crowdbot.core.exchange.others.shapes import Corners, pairs
 from crowdbot.core.exchange.others.svg_paths import points_of
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Stage, id_of
+from crowdbot.core.exchange.scene import Draft, id_of
 
 SVG = RowTable(
     "svg",
@@ -55,7 +55,7 @@ _DRAWN = ("rect", "path", "circle", "ellipse", "polygon", "polyline", "line")
 _LENGTH = re.compile(r"\s*([0-9.eE+-]+)\s*(?:px|m)?\s*")
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return the scenes of each map.
 
     Raises:

@@ -13,7 +13,7 @@ from crowdbot.core.exchange.others.usual import social_forces, vision
 from crowdbot.core.exchange.polygons import add_polygon
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, number, positive
-from crowdbot.core.exchange.scene import Data, Stage, free_name, id_of
+from crowdbot.core.exchange.scene import Data, Draft, free_name, id_of
 
 SCENARIO = RowTable(
     "scenario",
@@ -74,13 +74,13 @@ _FORMS = ("RECTANGLE", "POLYGON")
 class _Topography:
     """Targets by id, and the scene that is filled."""
 
-    scene: Stage
+    scene: Draft
     report: Report
     targets: dict[int, Data] = field(default_factory=dict)
     absorbing: dict[int, bool] = field(default_factory=dict)
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each file.
 
     Raises:
@@ -89,10 +89,10 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     return [_scene(file, context.report) for file in files]
 
 
-def _scene(file: OpenedScene, report: Report) -> Stage:
+def _scene(file: OpenedScene, report: Report) -> Draft:
     root = file.roots[0]
     name = root.find("name")
-    scene = Stage(id_of(name.text() if name else file.path.stem))
+    scene = Draft(id_of(name.text() if name else file.path.stem))
     scene.notes.append(f"Imported from Vadere: {file.path.name}.")
     for part, note in (("description", "for people"), ("release", "the version of Vadere"),
                        ("processWriters", "metrics are those of crowdbot"),
@@ -146,7 +146,7 @@ def _ids(item: Item) -> None:
             part.take_all()
 
 
-def _bounds(attributes: Item, scene: Stage, report: Report) -> None:
+def _bounds(attributes: Item, scene: Draft, report: Report) -> None:
     bounds = attributes.need("bounds")
     x, y = bounds.need("x").number(), bounds.need("y").number()
     width, height = bounds.need("width").number(0.1), bounds.need("height").number(0.1)
@@ -178,7 +178,7 @@ def _shape(item: Item, report: Report) -> tuple[list[list[float]], Data]:
     return points, found
 
 
-def _people(item: Item, scene: Stage, report: Report) -> None:
+def _people(item: Item, scene: Draft, report: Report) -> None:
     given = item.find("attributesPedestrian")
     fields = report.take(given, PEDESTRIAN) if given else {}
     scene.crowd["speed"] = {"mean": fields.get("mean", 1.34), "std": fields.get("std", 0.26)}

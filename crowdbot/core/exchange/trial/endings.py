@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 
 _ROOT = "the original tests a point that never moves; meant is the robot's place, as it is here"
 
 
-def read_endings(root: Item | None, scene: Stage, report: Report) -> None:
+def read_endings(root: Item | None, scene: Draft, report: Report) -> None:
     """Set time limits and goal zones of a scene's robots; any condition ends a trial.
 
     Raises:
@@ -28,7 +28,7 @@ def read_endings(root: Item | None, scene: Stage, report: Report) -> None:
             report.left_out(item, "there is no robot whose place could end the run")
 
 
-def _time(item: Item, test: str, value: float, scene: Stage, report: Report) -> None:
+def _time(item: Item, test: str, value: float, scene: Draft, report: Report) -> None:
     if test == "less" and value <= 0.0:
         report.carried(item, "(never ends the trial)")
     elif test == "less":
@@ -44,7 +44,7 @@ def _time(item: Item, test: str, value: float, scene: Stage, report: Report) -> 
         report.carried(item, "robots.task.time_limit")
 
 
-def _place(item: Item, parameter: str, test: str, value: float, scene: Stage) -> None:
+def _place(item: Item, parameter: str, test: str, value: float, scene: Draft) -> None:
     """Make the goal zones of all robots the part of the floor beyond a line."""
     area = scene.data()["environment"]["area"]
     # x is Unity's, -1 times our y; y is Unity's Z, our x

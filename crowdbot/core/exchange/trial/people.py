@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Data, Stage
+from crowdbot.core.exchange.scene import Data, Draft
 from crowdbot.core.exchange.trial.law import Motion, heading, place, read_law
 from crowdbot.core.exchange.trial.replays import Replays
 from crowdbot.core.exchange.trial.sims import Simulated, law_alone, read_sim
@@ -48,7 +48,7 @@ _DRIVEN = (
 
 
 def read_people(
-    root: Item | None, policies: Policies, scene: Stage, replays: Replays, report: Report
+    root: Item | None, policies: Policies, scene: Draft, replays: Replays, report: Report
 ) -> None:
     """Add all agents of a trial to a scene.
 
@@ -62,7 +62,7 @@ def read_people(
 
 
 def read_player(
-    root: Item | None, policies: Policies, scene: Stage, replays: Replays, report: Report
+    root: Item | None, policies: Policies, scene: Draft, replays: Replays, report: Report
 ) -> None:
     """Add a player as a person, if the crowd sees one.
 
@@ -84,7 +84,7 @@ def read_player(
 
 
 def _add(
-    item: Item, fields: Data, policies: Policies, scene: Stage, replays: Replays, report: Report
+    item: Item, fields: Data, policies: Policies, scene: Draft, replays: Replays, report: Report
 ) -> None:  # fmt: skip
     start, facing = _pose(item, report)
     motion = read_law(item.find("controlLaw"), start, facing, report)

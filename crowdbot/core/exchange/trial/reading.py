@@ -9,7 +9,7 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Stage, id_of, name_of
+from crowdbot.core.exchange.scene import Draft, id_of, name_of
 from crowdbot.core.exchange.trial.config import CONFIG, find_trials
 from crowdbot.core.exchange.trial.endings import read_endings
 from crowdbot.core.exchange.trial.law import CONTROL_LAWS
@@ -37,7 +37,7 @@ TRIAL = RowTable(
 )
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each trial that the files are, or name.
 
     Raises:
@@ -64,8 +64,8 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
 
 def _scene(
     root: Item, trial: OpenedScene, policies: Policies, replays: Replays, context: Context
-) -> Stage:  # fmt: skip
-    report, scene = context.report, Stage(id_of(trial.path.stem))
+) -> Draft:  # fmt: skip
+    report, scene = context.report, Draft(id_of(trial.path.stem))
     scene.origins[()] = root.mark
     stage = root.find("scene")
     read_stage(stage, root.find("obstacles"), scene, report)
@@ -84,7 +84,7 @@ def _scene(
     return scene
 
 
-def _routing(root: Item, scene: Stage, report: Report) -> None:
+def _routing(root: Item, scene: Draft, report: Report) -> None:
     """Choose paths round walls where people have goals and the stage has walls."""
     solid = any(scene.environment.get(kind) for kind in ("walls", "blocks", "pillars"))
     if solid and any(item.name == "LawGoals" for item in root.walk()):
@@ -92,7 +92,7 @@ def _routing(root: Item, scene: Stage, report: Report) -> None:
         report.added("crowd.routing", "LawGoals finds its way on the stage's navigation mesh")
 
 
-def _one_person(scene: Stage, root: Item, report: Report) -> None:
+def _one_person(scene: Draft, root: Item, report: Report) -> None:
     """Add a person who stands far off where there are neither people nor robots."""
     if scene.agents or scene.robots:
         return

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from crowdbot.core.exchange.companions import companion
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.scene import Data, Stage
+from crowdbot.core.exchange.scene import Data, Draft
 from crowdbot.core.exchange.source import source_of
 from crowdbot.core.exchange.trial.law import Motion
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
@@ -32,7 +32,7 @@ class Replays:
         self._beside, self._name, self._words = beside, name, words
         self._rows: list[str] = []
 
-    def add(self, motion: Motion, number: int, row: Data, scene: Stage) -> str:
+    def add(self, motion: Motion, number: int, row: Data, scene: Draft) -> str:
         """Read the file of one person; set the start and goal in its row, return its policy.
 
         Raises:

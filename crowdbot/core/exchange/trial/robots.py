@@ -10,7 +10,7 @@ from typing import Any
 from crowdbot.core.exchange.formats import Context
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Data, Stage, free_name, name_of
+from crowdbot.core.exchange.scene import Data, Draft, free_name, name_of
 from crowdbot.core.exchange.trial.law import Motion, heading, place, read_law
 from crowdbot.core.robots import build_model
 from crowdbot.core.scenarios.library import plugin_folders
@@ -39,7 +39,7 @@ _SIDE, _AHEAD = 1.0, (5.0, 3.0, 8.0, 2.0, 12.0)
 _ANY = "its name is not known: a TurtleBot2"
 
 
-def read_robots(root: Item | None, scene: Stage, context: Context) -> None:
+def read_robots(root: Item | None, scene: Draft, context: Context) -> None:
     """Add all robots to a scene.
 
     Raises:
@@ -62,7 +62,7 @@ def read_robots(root: Item | None, scene: Stage, context: Context) -> None:
         context.report.added("crowd.robot_response.velocity", note)
 
 
-def _read(item: Item, scene: Stage, context: Context) -> tuple[float, bool]:
+def _read(item: Item, scene: Draft, context: Context) -> tuple[float, bool]:
     report = context.report
     mesh = item.need("@mesh")
     kind = next((k for n, k in KINDS.items() if mesh.text().lower().startswith(n)), "")
@@ -113,7 +113,7 @@ def _part(kind: str, context: Context) -> Data:
 
 
 def _zone(
-    motion: Motion, start: list[float], facing: float, scene: Stage, context: Context
+    motion: Motion, start: list[float], facing: float, scene: Draft, context: Context
 ) -> Data:
     """Return the goal zone: round the law's last goal, or a few metres ahead."""
     if motion.walks:
@@ -133,7 +133,7 @@ def _square(x: float, y: float) -> Data:
             "y": [round(y - half, 6), round(y + half, 6)]}  # fmt: skip
 
 
-def _is_free(point: tuple[float, float], start: list[float], scene: Stage) -> bool:
+def _is_free(point: tuple[float, float], start: list[float], scene: Draft) -> bool:
     """Return True if the straight way to a point keeps a metre off all walls and blocks."""
     env = scene.environment
     area = env.get("area")

@@ -8,7 +8,7 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.polygons import add_wall
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 from crowdbot.core.exchange.trial.stages import STAGES
 
 SCENE = RowTable(
@@ -33,7 +33,7 @@ _KNOWN = "the stage is known, and the original writes turned walls wrong and nev
 
 
 def read_stage(
-    scene_item: Item | None, obstacles: Item | None, scene: Stage, report: Report
+    scene_item: Item | None, obstacles: Item | None, scene: Draft, report: Report
 ) -> None:
     """Set the environment of a scene.
 
@@ -68,7 +68,7 @@ def _named(name: Item, known: str | None, report: Report) -> None:
         report.interpreted(name, "environment", note)
 
 
-def _read_obstacles(root: Item, scene: Stage, report: Report) -> None:
+def _read_obstacles(root: Item, scene: Draft, report: Report) -> None:
     for wrapper in root.every("obstacle"):
         for obstacle in wrapper.every("TrialObstacle"):
             for lines in obstacle.every("Lines"):
@@ -79,13 +79,13 @@ def _read_obstacles(root: Item, scene: Stage, report: Report) -> None:
                     _point(point, scene, report)
 
 
-def _line(item: Item, scene: Stage, report: Report) -> None:
+def _line(item: Item, scene: Draft, report: Report) -> None:
     x1, z1, x2, z2 = (item.need(f"@{name}").number() for name in ("x1", "y1", "x2", "y2"))
     report.interpreted(item, "environment.walls", OBSTACLES.rows[0].note)
     add_wall(scene, item, [z1, -x1 + 0.0], [z2, -x2 + 0.0], _thickness(item))
 
 
-def _point(item: Item, scene: Stage, report: Report) -> None:
+def _point(item: Item, scene: Draft, report: Report) -> None:
     x, z = item.need("@x1").number(), item.need("@y1").number()
     pillar = {"x": z, "y": -x + 0.0, "radius": 0.5 * _thickness(item)}
     report.interpreted(item, "environment.pillars", OBSTACLES.rows[1].note)

@@ -50,7 +50,7 @@ _ROOMS: Data = {
     "area": {"x": [-15, 9], "y": [-4, 13]},
 }  # fmt: skip
 _PLANE: Data = {"kind": "floor", "border": "open", "area": {"x": [-50, 50], "y": [-50, 50]}}
-#: Stage -> environment, and what is known about it.
+#: Draft -> environment, and what is known about it.
 STAGES: Mapping[str, tuple[Data, str]] = {
     "BigPlane": (_PLANE, ""),
     "Plane": (_PLANE, "its size is not published: 100 m x 100 m"),

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, not_negative
-from crowdbot.core.exchange.scene import Data, Stage
+from crowdbot.core.exchange.scene import Data, Draft
 from crowdbot.core.exchange.umans.presets import PRESETS, preset
 
 #: Speed and acceleration that stand for "no limit", such as the largest float32.
@@ -56,7 +56,7 @@ def point(item: Item) -> list[float]:
 
 
 def read_agents(
-    root: Item, policies: Mapping[int, tuple[Data, Item]], scene: Stage, report: Report
+    root: Item, policies: Mapping[int, tuple[Data, Item]], scene: Draft, report: Report
 ) -> None:
     """Add all agents of an ``Agents`` element to a scene.
 

@@ -6,7 +6,7 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.polygons import add_polygon
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
-from crowdbot.core.exchange.scene import Stage
+from crowdbot.core.exchange.scene import Draft
 from crowdbot.core.exchange.umans.agents import point
 
 OBSTACLES = RowTable(
@@ -18,7 +18,7 @@ OBSTACLES = RowTable(
 )
 
 
-def read_obstacles(root: Item, scene: Stage, report: Report) -> None:
+def read_obstacles(root: Item, scene: Draft, report: Report) -> None:
     """Add all polygons of an ``Obstacles`` element to a scene.
 
     Raises:

@@ -12,7 +12,7 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, positive
-from crowdbot.core.exchange.scene import Data, Stage, id_of
+from crowdbot.core.exchange.scene import Data, Draft, id_of
 from crowdbot.core.exchange.umans.agents import AGENT, DEFAULTS, read_agents
 from crowdbot.core.exchange.umans.obstacles import OBSTACLES, read_obstacles
 from crowdbot.core.exchange.umans.policies import COSTS, POLICY, cost_table, read_policies
@@ -53,7 +53,7 @@ class _Found:
         return self.elements.get(name, [])
 
 
-def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
+def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each combination of an agents and a policies element.
 
     Raises:
@@ -70,7 +70,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Stage]:
     scenes = []
     for agents, agents_path in crowds or [(None, None)]:
         for policies, policies_path in sets or [({}, None)]:
-            scene = Stage()
+            scene = Draft()
             _world(found, scene, report)
             for item, _ in found.of("Obstacles"):
                 read_obstacles(item, scene, report)
@@ -109,7 +109,7 @@ def _collect(item: Item, path: Path, found: _Found, report: Report) -> None:
                 _collect(part, path, found, report)
 
 
-def _world(found: _Found, scene: Stage, report: Report) -> None:
+def _world(found: _Found, scene: Draft, report: Report) -> None:
     for item, _ in found.of("World")[-1:]:
         fields = report.take(item, WORLD)
         scene.origins["environment",] = item.mark
@@ -120,7 +120,7 @@ def _world(found: _Found, scene: Stage, report: Report) -> None:
 
 
 def _name(
-    scene: Stage, agents: Path | None, policies: Path | None, files: Sequence[OpenedScene]
+    scene: Draft, agents: Path | None, policies: Path | None, files: Sequence[OpenedScene]
 ) -> None:
     named = [path.stem for path in (agents, policies) if path] or [files[0].path.stem]
     scene.id = id_of("-".join(named))
@@ -128,7 +128,7 @@ def _name(
     scene.notes.append("x and y are those of UMANS.")
 
 
-def _people_if_none(scene: Stage, policies: Policies, report: Report, at: Mark) -> None:
+def _people_if_none(scene: Draft, policies: Policies, report: Report, at: Mark) -> None:
     """Add two people for each policy where the files have none, so that something is simulated."""
     if scene.agents:
         return
