@@ -16,7 +16,7 @@ UNKNOWN = "no meaning of it is known here"
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """One part of a file.
+    """The treatment of one part of a file.
 
     Attributes:
         fate: what happened to it.

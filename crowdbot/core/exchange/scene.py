@@ -18,8 +18,8 @@ _NOT_IN_IDS = re.compile(r"[^A-Za-z0-9_.-]+")
 
 
 @dataclass(slots=True)
-class Stage:
-    """One scenario.
+class Draft:
+    """A scenario of ours that is read from foreign files.
 
     Attributes:
         id: its name, as far as files have one.
