@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
-#: The longest tests, 7 minutes of processor time together.
+#: The longest tests, 8 minutes of processor time together.
 LONG = (
+    "tests/test_check_vocabulary.py::test_the_repository_has_none",  # make style checks it, too
+    "tests/core/statistics/test_sign_flip.py::test_level_with_exchangeable_planners_and_power",
+    "tests/core/statistics/test_summary.py::test_taking_runs_for_draws_would_find_differences",
+    "tests/cli/test_study_page.py::test_a_participant_answers_is_interrupted_and_goes_on",
+    "tests/cli/test_verify_command.py::test_what_a_planner_may_take_is_part_of_an_honest_bundle",
+    "tests/cli/test_simulate_failures.py::test_a_planner_that_swallows_every_interruption",
+    "tests/core/realism/near_robots/test_fit.py::test_a_fit_is_written_as_a_part_that_realism_reads",
+    "tests/core/statistics/test_sample_size.py::test_so_many_draws_find_the_difference",
     "tests/cli/test_audit.py::test_a_suite_without_people_tells_nothing",
     "tests/cli/test_audit.py::test_floors_are_reused_like_any_other_run",
     "tests/cli/test_campaign.py::test_ctrl_c_ends_workers_and_keeps_what_is_finished",
@@ -40,6 +48,10 @@ LONG = (
 
 #: More cases of what `make test` tries with a few: 55 s of processor time.
 VARIANTS = (
+    "tests/core/planning/containment/test_contained.py::test_an_older_landlock_denies_as_much[4]",
+    "tests/core/planning/containment/test_contained.py::test_an_older_landlock_denies_as_much[5]",
+    "tests/core/planning/containment/test_what_is_left.py::test_what_is_left[killed1]",
+    "tests/core/planning/containment/test_what_is_left.py::test_what_is_left[killed2]",
     "tests/cli/test_planner_safety.py::test_a_planner_that_fails[file_options-",
     "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[exits in",
     "tests/cli/test_simulate_failures.py::test_a_failing_planner_leaves_a_complete_run[raises l",

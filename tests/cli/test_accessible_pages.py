@@ -145,6 +145,8 @@ PAGES: dict[str, tuple[Callable[[Path], None], ...]] = {
     "core/view": (scenario,),
     "core/why": (why,),
 }
+#: Pages whose scripts unpack their data before they draw.
+UNPACKED = (report, replay, comparison)
 MAKERS = [maker for makers in PAGES.values() for maker in makers]
 
 
@@ -176,6 +178,8 @@ def test_axe_finds_nothing(make: Callable[[Path], None], browser: Browser, tmp_p
     for scheme in schemes:
         page = browser.new_page(color_scheme=scheme, offline=True)
         page.goto(path.as_uri())
+        if make in UNPACKED:
+            page.wait_for_selector("html[data-ready]")
         for width in (360, 1280):
             page.set_viewport_size({"width": width, "height": 900})
             assert axe_findings(page) == [], (scheme, width)

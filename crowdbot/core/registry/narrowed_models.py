@@ -6,8 +6,10 @@ of `discover` instead, and its class's name; another process discovers the same 
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
+from weakref import WeakValueDictionary
 
 from pydantic import BaseModel
 
@@ -45,10 +47,12 @@ class Models(dict[str, type[BaseModel]]):
         return model
 
 
-#: Specs by category -> their classes, latest last. Building them takes pydantic a fifth of a
-#: second, and repeated discovery finds the same specs.
-_shared: dict[Specs, Models] = {}
-_KEPT = 8
+#: Specs by category -> their classes, as long as a registry has them: objects that are unpickled
+#: are of the same classes as those that were pickled.
+_shared: WeakValueDictionary[Specs, Models] = WeakValueDictionary()
+#: The latest ones, which stay: building them takes pydantic a fifth of a second, and repeated
+#: discovery finds the same specs.
+_latest: deque[Models] = deque(maxlen=8)
 
 
 def models_of(specs: Specs, source: RegistrySource | None, blank: Blank) -> Models:
@@ -59,10 +63,9 @@ def models_of(specs: Specs, source: RegistrySource | None, blank: Blank) -> Mode
         source: arguments of `discover` that find them; None if they were not discovered.
         blank: as in `Models`.
     """
-    if specs not in _shared:
-        if len(_shared) == _KEPT:
-            del _shared[next(iter(_shared))]
-        _shared[specs] = Models(blank)
-    models = _shared[specs]
+    models = _shared.get(specs)
+    if models is None:
+        models = _shared[specs] = Models(blank)
+        _latest.append(models)
     models.source = models.source or source
     return models

@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 import crowdbot
+from crowdbot.core.registry.narrowed_models import models_of
+from crowdbot.core.registry.registry import blank_of, registry_of
 from crowdbot.core.registry.registry_source import whereabouts
+from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.dsl.suite.expand import Expansion
 
 IDS = ("in-d0125-slow-c01-r02", "counter-d0250-dispersed-c20-r05")
@@ -58,3 +61,14 @@ def test_scores_and_trajectories() -> None:
 def test_plugins_that_were_not_discovered() -> None:
     with pytest.raises(pickle.PicklingError, match="not discovered"):
         whereabouts(None)
+
+
+def test_classes_stay_while_a_registry_has_them() -> None:
+    """However many other registries a process meets in between."""
+    given = crowdbot.load("challenge-2020", IDS[0])
+    for number in range(20):
+        specs = (("metric", type(f"Spec{number}", (ComponentSpec,), {})),)
+        models_of(specs, None, blank_of)
+    registry_of.cache_clear()
+    found = pickle.loads(pickle.dumps(given))  # noqa: S301
+    assert type(found) is type(given)

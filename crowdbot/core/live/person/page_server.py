@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
 from crowdbot.core.live.admission import PAGE_HEADERS, is_loopback
-from crowdbot.core.live.loop_thread import LoopThread
 from crowdbot.core.live.person.page_client import PageClient
 from crowdbot.core.live.person.seat import Seat
+from crowdbot.core.support.loop_thread import LoopThread
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
 from crowdbot.core.live.admission import Admission
-from crowdbot.core.live.loop_thread import LoopThread
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.plain import Ros
 from crowdbot.core.live.rosbridge.connection import Connection
@@ -24,6 +23,7 @@ from crowdbot.core.live.rosbridge.pace import Pace
 from crowdbot.core.live.rosbridge.rosapi import JOY, TWIST, RosapiWorld, rosapi
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.support.loop_thread import LoopThread
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
