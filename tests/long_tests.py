@@ -4,6 +4,11 @@ from __future__ import annotations
 
 #: The longest tests, 8 minutes of processor time together.
 LONG = (
+    "tests/core/statistics/test_power.py::test_so_many_draws_find_it_in_four_cases_of_five",
+    "tests/core/support/test_gc_throttle.py::test_many_new_objects_are_made_without_a_collection",
+    "tests/core/support/compiling/test_compile_parts.py::test_python_gets_an_array_from_what_was_a_part",
+    "tests/core/support/compiling/test_compile_parts.py::test_two_processes_do_not_compile_the_same",
+    "tests/test_old_names.py::test_a_planner_process_says_it_too",
     "tests/test_check_vocabulary.py::test_the_repository_has_none",  # make style checks it, too
     "tests/core/statistics/test_sign_flip.py::test_level_with_exchangeable_planners_and_power",
     "tests/core/statistics/test_summary.py::test_taking_runs_for_draws_would_find_differences",
