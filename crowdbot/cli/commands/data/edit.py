@@ -40,7 +40,7 @@ def edit(
         server = Server(desk, port)
     except OSError as error:
         raise InputError(f"--port {port}: {error.strerror or error}") from error
-    say(f"edit: {server.url}; Ctrl-C ends it", err=True)
+    say(f"edit: {server.url} (Ctrl-C ends it)", err=True)
     if browser:
         typer.launch(server.url)
     with suppress(KeyboardInterrupt):

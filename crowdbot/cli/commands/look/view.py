@@ -103,7 +103,7 @@ def _play(run: Path, port: int, origins: Sequence[str]) -> None:
 
     admission = Admission(server="foxglove", origins=origins)
     player = FoxglovePlayback(recording, "127.0.0.1", port, admission)
-    say(f"foxglove: ws://127.0.0.1:{player.port}; Ctrl-C ends it", err=True)
+    say(f"foxglove: ws://127.0.0.1:{player.port} (Ctrl-C ends it)", err=True)
     with suppress(KeyboardInterrupt):
         threading.Event().wait()
     player.close()
