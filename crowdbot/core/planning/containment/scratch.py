@@ -67,10 +67,14 @@ def remove_scratch(folder: str) -> None:
 
 
 def _flatten(folder: Path) -> None:
-    """Move folders that lie deep up to the top, since deleting goes down by recursion."""
+    """Move folders that lie deep up to the top, since deleting goes down by recursion.
+
+    A planner may have made them without the right to list or change them.
+    """
     waiting = [(folder, 0)]
     while waiting:
         place, depth = waiting.pop()
+        place.chmod(0o700)
         for one in list(os.scandir(place)):
             if not one.is_dir(follow_symlinks=False):
                 continue

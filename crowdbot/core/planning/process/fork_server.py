@@ -28,6 +28,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
+from crowdbot.core.planning.containment.disk_use import DiskUse
 from crowdbot.core.planning.containment.enforce import enforce, rules_of
 from crowdbot.core.planning.containment.rights import set_inspectable
 from crowdbot.core.planning.containment.scratch import make_folder, remove_scratch, use_scratch
@@ -126,6 +127,7 @@ class ForkServer:
         self._line, self._folder, self._pid, self._limited = line, folder, 0, limited
         self._status: int | None = None
         self._tasks = 0
+        self._disk = DiskUse("")
         self._why = ""
         self._scratch = ""
         self._rules: tuple[Any, int, int] = (None, -1, 0)
@@ -178,12 +180,17 @@ class ForkServer:
             if self._wait(0.0):
                 end_descendants(limited=self._limited)
                 return
-            if all_tasks() < self._tasks + _GROWTH:
-                continue
-            if count_descendants(os.getpid()) > _MOST_PROCESSES:
-                self._why = f"it started more than {_MOST_PROCESSES} processes"
+            self._why = self._excess()
+            if self._why:
                 end_descendants(limited=self._limited)
                 self._status = -signal.SIGKILL
+
+    def _excess(self) -> str:
+        """Describe what the planner has too much of; empty if nothing."""
+        many = all_tasks() >= self._tasks + _GROWTH
+        if many and count_descendants(os.getpid()) > _MOST_PROCESSES:
+            return f"it started more than {_MOST_PROCESSES} processes"
+        return self._disk.excess()
 
     def _import(self, request: Mapping[str, Any], descriptors: Sequence[int]) -> dict[str, Any]:
         """Import installed modules for all later planners."""
@@ -199,6 +206,7 @@ class ForkServer:
         self._status, self._why, self._tasks = None, "", all_tasks()
         self._folder = self._folder or make_folder(tempfile.gettempdir())
         self._scratch = make_folder(self._folder)
+        self._disk = DiskUse(self._scratch)
         rules = self._rules_of(request["contain"])
         self._pid = os.fork()
         if self._pid == 0:
@@ -269,6 +277,7 @@ def _be_planner(
         os.setsid()
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         scratch, rules = place
+        _be_ended_first()
         enforce(request["contain"], rules)
         _take_descriptors(descriptors)
         die_with_parent(parent)
@@ -331,6 +340,12 @@ def _take_descriptors(given: Sequence[int]) -> None:
     with contextlib.suppress(OSError):  # the limit may have been lowered since some were opened
         most = max(most, *(int(entry.name) + 1 for entry in os.scandir("/proc/self/fd")))
     os.closerange(_TARGETS[0] + len(lines), most)
+
+
+def _be_ended_first() -> None:
+    """Let the kernel end this process, before all others, when the machine has no memory left."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/oom_score_adj").write_text("1000")
 
 
 def _limit(memory: int | None) -> None:

@@ -187,7 +187,7 @@ class ProcessPlanner:
         message = reset_message(task, limits, sensors, seed)
         if self._shares and self._memory is not None:
             reserve(self._memory, sensors)
-            message["memory"] = self._memory.open()
+            message["memory"] = self._memory.size
         self._ask("return from reset", message, RESET_LIMIT, "ready")
 
     def step(self, obs: Observation) -> Command:
@@ -309,7 +309,7 @@ class ProcessPlanner:
         """Describe how a process without a reply ended."""
         status, where = self._end(grace=_DIES)
         if self._why:
-            how = f"{self._why}; all of them were ended"
+            how = f"{self._why}; it was ended, with all that it started"
         elif status is None:
             how = "its process closed the descriptors of its messages"
         elif status == _KILLED_ALL:

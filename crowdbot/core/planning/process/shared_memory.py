@@ -5,46 +5,52 @@ from __future__ import annotations
 import fcntl
 import mmap
 import os
+import resource
 import sys
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-#: Smaller arrays are sent in the message, bytes.
-SMALLEST = 1024
+#: Smaller arrays are sent in the message, bytes; so are those for which there is no place left.
+SMALLEST, LARGEST = 1024, 1 << 28
 _ALIGN = 64
-#: Linux: from now on no process may change the size or write through its own mapping.
+#: Linux: from now on no process may change the size, the seals, or write through its own mapping.
 _SEALS = 0x0001 | 0x0002 | 0x0004 | 0x0010
 _F_ADD_SEALS = 1033
 
 
 class SharedMemory:
-    """One block, created before the planner's process and sized once its sensors are known.
+    """One block, created and sealed before the planner's process: it could cut it or seal it first.
 
-    Each place in it belongs to one array of one sensor. The planner's side copies arrays, since the
-    next reading overwrites them.
+    Pages that are not written to take no memory. Each place belongs to one array of one sensor. The
+    planner's side copies arrays, since the next reading overwrites them.
     """
 
     def __init__(self) -> None:
         self.descriptor = os.memfd_create("crowdbot-planner", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
-        self._block: mmap.mmap | None = None
+        try:
+            self._largest = _largest()
+            os.ftruncate(self.descriptor, self._largest)
+            self._block = mmap.mmap(self.descriptor, self._largest)
+            fcntl.fcntl(self.descriptor, _F_ADD_SEALS, _SEALS)
+        except BaseException:
+            os.close(self.descriptor)
+            raise
         self._places: dict[tuple[str, str], int] = {}
         self._views: dict[tuple[str, str], tuple[NDArray[Any], dict[str, Any]]] = {}
         self._size = 0
 
     def place(self, sensor: str, part: str, size: int) -> None:
         """Reserve a place for an array of this many bytes; small ones get none."""
-        if size >= SMALLEST:
+        aligned = -(-size // _ALIGN) * _ALIGN
+        if size >= SMALLEST and self._size + aligned <= self._largest:
             self._places[sensor, part] = self._size
-            self._size += -(-size // _ALIGN) * _ALIGN
+            self._size += aligned
 
-    def open(self) -> int:
-        """Create the block, writable only by this process from now on; return its size, bytes."""
-        if self._size:
-            os.ftruncate(self.descriptor, self._size)
-            self._block = mmap.mmap(self.descriptor, self._size)
-            fcntl.fcntl(self.descriptor, _F_ADD_SEALS, _SEALS)
+    @property
+    def size(self) -> int:
+        """Return the length of all places together, bytes."""
         return self._size
 
     def put(self, sensor: str, part: str, array: NDArray[Any]) -> dict[str, Any]:
@@ -52,7 +58,7 @@ class SharedMemory:
         known = self._views.get((sensor, part))
         if known is None or known[0].shape != array.shape or known[0].dtype != array.dtype:
             at = self._places.get((sensor, part))
-            if at is None or self._block is None:
+            if at is None:
                 return in_message(np.ascontiguousarray(array))
             known = self._views[sensor, part] = self._view(at, array)
         known[0][...] = array
@@ -60,7 +66,6 @@ class SharedMemory:
 
     def _view(self, at: int, array: NDArray[Any]) -> tuple[NDArray[Any], dict[str, Any]]:
         """Return a writable view of an array's place, and its entry in a message."""
-        assert self._block is not None
         view = np.frombuffer(self._block, array.dtype, array.size, at).reshape(array.shape)
         told = {"dtype": array.dtype.str, "shape": list(array.shape), "offset": at}
         return view, {**told, "bytes": array.nbytes}
@@ -69,9 +74,13 @@ class SharedMemory:
         """Free the block."""
         os.close(self.descriptor)
         self._views.clear()  # they reference the block
-        if self._block is not None:
-            self._block.close()
-            self._block = None
+        self._block.close()
+
+
+def _largest() -> int:
+    """Return the size of a block; a user's limit of the size of files holds for it, too."""
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+    return LARGEST if limit == resource.RLIM_INFINITY else min(LARGEST, max(limit, mmap.PAGESIZE))
 
 
 def in_message(array: NDArray[Any]) -> dict[str, Any]:
