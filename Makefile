@@ -5,7 +5,7 @@
 #   make setup   only prepare .venv/
 #   make test-all  run every test, also the longest
 #   make durations  measure which tests are slow, into tests/durations.tsv; make check leaves them out
-#   make coverage  run all tests, then write docs/reference/coverage.md
+#   make coverage  run all tests, then write docs/developers/coverage.md
 #   make docs    the site of the documentation, in build/site; fails on a dead link
 #   make pictures  draw the pictures of README and documents anew, with the figures beside them
 #   make generate renew all pages, tables and pictures that are made from the code

@@ -41,6 +41,8 @@ html_show_copyright = False
 html_copy_source = False
 # Search would fetch each page that it finds for an excerpt, which browsers refuse in a folder.
 html_show_search_summary = False
+# Pages for developers of crowdbot are not found by users who search.
+unsearched = ("decisions/", "developers/")
 # Nothing is loaded from elsewhere: the site, its search too, works from a folder.
 html_theme_options = {"navigation_with_keys": True, "top_of_page_buttons": []}
 highlight_language = "text"

@@ -1,6 +1,6 @@
-"""What the theme of the site leaves to be desired for screen readers and keyboards, mended.
+"""Extension of Sphinx: mends pages for screen readers, and keeps some pages from the search.
 
-An extension of Sphinx: when all pages are written, it goes through them. axe-core finds in pages of
+When all pages are written, it goes through them. axe-core finds in pages of
 furo 2025.12: headings without a level, unnamed asides, blocks that scroll but take no focus, header
 cells without a text, and a search page without a heading.
 """
@@ -37,7 +37,16 @@ def _mend(app: Any, error: Exception | None) -> None:
             path.write_text(mended(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
+def _leave_out(app: Any, env: Any) -> None:
+    """Keep the pages that ``unsearched`` names by beginnings out of the index of the search."""
+    for name in env.found_docs:
+        if name.startswith(tuple(app.config.unsearched)):
+            env.metadata[name]["nosearch"] = ""
+
+
 def setup(app: Any) -> dict[str, bool]:
     """Called by Sphinx."""
+    app.add_config_value("unsearched", (), "html")
+    app.connect("env-updated", _leave_out)
     app.connect("build-finished", _mend)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

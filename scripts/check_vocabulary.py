@@ -1,4 +1,4 @@
-"""Finds retired words; what each thing is called is in docs/reference/glossary.md.
+"""Finds retired words; what each thing is called is in docs/developers/glossary.md.
 
     python scripts/check_vocabulary.py [FILE...]
 

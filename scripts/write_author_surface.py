@@ -1,4 +1,4 @@
-"""The page docs/reference/author_surface.md, made from the module that plugins import."""
+"""The page docs/developers/author_surface.md, made from the module that plugins import."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from crowdbot.plugin.homes import HOMES
 
 #: Tools that few components need.
 ROOMS = (for_metrics, for_sensors, for_crowds, for_environments, for_learning)
-PAGE = Path(__file__).parent.parent / "docs" / "reference" / "author_surface.md"
+PAGE = Path(__file__).parent.parent / "docs" / "developers" / "author_surface.md"
 
 _HEAD = """\
 # What plugins import
@@ -24,13 +24,13 @@ _HEAD = """\
 
 `crowdbot.plugin` holds all that a package of components needs: specs and components, which are
 imported to list and to validate, and contracts, values and tools for the modules with build
-functions. Beside it there are `crowdbot` (the [Python API](python_api.md)), `crowdbot.errors` and
-`crowdbot.testing`. Everything else may change from one version to the next. crowdbot's own
+functions. Beside it there are `crowdbot` (the [Python API](../reference/python_api.md)),
+`crowdbot.errors` and `crowdbot.testing`. Everything else may change from one version to the next. crowdbot's own
 components import from here, too.
 
 Names are imported when they are first used: a module that needs only `Command` does not wait for
 numba, and one that needs only names of the first two sections imports no numpy. The page
-[plugins](plugins.md) says what a component is, and what its methods are called with.
+[plugins](../reference/plugins.md) says what a component is, and what its methods are called with.
 """
 _HEAD_OF_ROOMS = """\
 ## Tools for some components

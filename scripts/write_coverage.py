@@ -1,4 +1,4 @@
-"""Runs the tests under coverage and writes docs/reference/coverage.md.
+"""Runs the tests under coverage and writes docs/developers/coverage.md.
 
 Examples:
     .venv/bin/python scripts/write_coverage.py
@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "reference" / "coverage.md"
+PAGE = ROOT / "docs" / "developers" / "coverage.md"
 DATA = ROOT / ".coverage"
 
 _HEAD = (

@@ -17,6 +17,12 @@ Metrics in *italics* are experimental and scored only when they are named. \
 [Errata](metrics/errata.md) lists what is wrong with the formulas of the challenge, and \
 [four scores](../explanation/four_scores.md) says why there are four.
 """
+_TREE = """```{toctree}
+:hidden:
+:glob:
+metrics/*
+```
+"""
 _FOUR = ("safe_efficiency", "contacts_per_km", "push_work", "intrusion")
 
 
@@ -32,7 +38,7 @@ def page() -> str:
         rows = [_row(c) for c in groups[category]]
         head = "| metric | symbol | better | what it measures |\n|---|---|---|---|"
         parts.append("\n".join([f"## {category}\n", head, *rows, ""]))
-    return "\n".join(parts)
+    return "\n".join([*parts, _TREE])
 
 
 def _row(component: Any) -> str:

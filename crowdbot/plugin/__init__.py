@@ -2,7 +2,7 @@
 
 Specs and components describe documents; they need no numpy, and a module of specs imports nothing
 else. Build functions use numpy: SI units, float64, read-only inputs, new outputs; world frame x
-along the corridor, y left, z up, yaw counter-clockwise (REP-103). docs/reference/author_surface.md
+along the corridor, y left, z up, yaw counter-clockwise (REP-103). docs/developers/author_surface.md
 describes each name. Names are imported on first use; core does not import this module.
 """
 

@@ -171,3 +171,14 @@ def test_excerpts_hold_the_text(line: str, text: str) -> None:
     shown = _excerpt(f"{line}{text}{line}", text)
     assert text in shown
     assert len(shown) <= 120 + 4
+
+
+def test_pages_for_developers_are_searched_only_when_asked(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert cli.main(["docs", "--search", "atomically"]) == 0
+    assert "developers/" not in capsys.readouterr().out
+    assert cli.main(["docs", "--search", "hash", "--developers"]) == 0
+    said = capsys.readouterr().out
+    assert "decisions/" in said
+    assert "developers/glossary:" in said

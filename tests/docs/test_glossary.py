@@ -10,7 +10,7 @@ from crowdbot.dsl.spec.component_specs import CATEGORIES
 from tests.docs.doc_pages import links, read, section
 from tests.paths import ROOT
 
-PAGE = "reference/glossary.md"
+PAGE = "developers/glossary.md"
 TEXT = read(PAGE)
 ROWS = [line for line in TEXT.splitlines() if re.match(r"\| (?!term |folder |---)", line)]
 FOLDERS = sorted(

@@ -10,7 +10,7 @@ from crowdbot.core.campaign.job import Job, Kind
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.run_record import RunRecord
 
-# Measured with the challenge's corridor and dwa on one core (docs/reference/performance.md): per
+# Measured with the challenge's corridor and dwa on one core (docs/developers/performance.md): per
 # simulated second, and per person in it. Only the ratios matter once there are runs.
 _SECONDS = {"run": (0.035, 0.00027), "robot_alone": (0.035, 0.0), "crowd_alone": (0.002, 0.00007)}
 _BYTES = {"run": (40e3, 1000.0), "robot_alone": (3e3, 0.0), "crowd_alone": (1e3, 480.0)}

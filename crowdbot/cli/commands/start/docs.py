@@ -23,7 +23,10 @@ _ORDER = (
     "gallery",
     "explanation",
     "decisions",
+    "developers",
 )
+#: Folders for developers of crowdbot, which a search leaves out unless asked.
+_DEVELOPERS = ("decisions/", "developers/")
 
 
 def docs(
@@ -34,6 +37,9 @@ def docs(
         str | None,
         typer.Option(metavar="TEXT", help="Print the lines of all pages that contain a text."),
     ] = None,
+    developers: Annotated[
+        bool, typer.Option("--developers", help="Also search the pages for crowdbot's developers.")
+    ] = False,
     path: Annotated[bool, typer.Option("--path", help="Print only where the page is.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
 ) -> None:
@@ -43,7 +49,7 @@ def docs(
     """
     folder = documents()
     if search is not None:
-        found = [] if not search.strip() else list(_lines(folder, search))
+        found = [] if not search.strip() else list(_lines(folder, search, developers))
         shown = [f"{f['page']}:{f['line']}: {_excerpt(str(f['text']), search)}" for f in found]
         say(json.dumps(found, indent=2, ensure_ascii=False) if as_json else "\n".join(shown))
         if not found:
@@ -117,11 +123,12 @@ def _excerpt(line: str, text: str) -> str:
     return f"{'… ' if before else ''}{part}{' …' if after else ''}"
 
 
-def _lines(folder: Path, text: str) -> list[dict[str, object]]:
+def _lines(folder: Path, text: str, developers: bool) -> list[dict[str, object]]:
     wanted = text.casefold()
     return [
         {"page": name, "line": number, "text": line.strip()}
         for name in pages(folder)
+        if developers or not name.startswith(_DEVELOPERS)
         for number, line in enumerate(
             (folder / f"{name}.md").read_text(encoding="utf-8").splitlines(), 1
         )
