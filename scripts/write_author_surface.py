@@ -25,8 +25,8 @@ _HEAD = """\
 `crowdbot.plugin` holds all that a package of components needs: specs and components, which are
 imported to list and to validate, and contracts, values and tools for the modules with build
 functions. Beside it there are `crowdbot` (the [Python API](../reference/python_api.md)),
-`crowdbot.errors` and `crowdbot.testing`. Everything else may change from one version to the next. crowdbot's own
-components import from here, too.
+`crowdbot.errors` and `crowdbot.testing`. Everything else may change from one version to the next.
+crowdbot's own components import from here, too.
 
 Names are imported when they are first used: a module that needs only `Command` does not wait for
 numba, and one that needs only names of the first two sections imports no numpy. The page
