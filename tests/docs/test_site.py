@@ -20,7 +20,8 @@ DOCS = ROOT / "docs"
 
 def _navigated() -> set[Path]:
     """Pages that the navigation reaches from the index."""
-    found, todo = set(), [DOCS / "index.md"]
+    found: set[Path] = set()
+    todo = [DOCS / "index.md"]
     while todo:
         page = todo.pop()
         trees = re.findall(
