@@ -8,6 +8,7 @@ from pathlib import Path
 
 from crowdbot.core.exchange.all_formats import FORMATS
 from crowdbot.core.exchange.checked import check
+from crowdbot.core.exchange.clearing import step_out
 from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
 from crowdbot.core.exchange.overlaps import enter_in_turn
@@ -62,6 +63,7 @@ def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Import
             root.used = True
             report.rest(root)
     for scene in scenes:
+        step_out(scene, report)
         enter_in_turn(scene, report)
     title = f"Imported from {' and '.join(read)}"
     lines = document(scenes, context.name, title)

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from crowdbot.core.exchange.report import Report, Trace
 from crowdbot.core.exchange.rows import Fate
-from crowdbot.core.exchange.scene import Draft
+from crowdbot.core.exchange.scene import USUAL_RADIUS, Draft
 from crowdbot.dsl.checks.agents import Disc, overlapping
 
-#: Time between two that overlap, s, and usual radius, m.
-_LATER, _RADIUS = 1e-3, 0.33
+#: Time between two that overlap, s.
+_LATER = 1e-3
 _NOTE = "overlaps another at the start, which is not allowed here: enters some milliseconds later"
 
 
 def enter_in_turn(scene: Draft, report: Report) -> None:
     """Delay agents who overlap others that enter at the same time; record each."""
-    radius = scene.crowd.get("body", {}).get("radius", _RADIUS)
+    radius = scene.crowd.get("body", {}).get("radius", USUAL_RADIUS)
     waves: dict[float, list[int]] = {}
     for number, agent in enumerate(scene.agents):
         waves.setdefault(agent.get("start_time", 0.0), []).append(number)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
@@ -29,11 +30,38 @@ def add_polygon(
     far = max(points, key=lambda p: math.dist(p, points[0]))
     end = max(points, key=lambda p: math.dist(p, far))
     if not all(_beside(p, far, end) <= _LEAST for p in points):
-        scene.part("blocks", name, {"corners": [list(p) for p in points]}, item.mark)
+        _add_block(scene, report, item, points, name)
         return
     note = f"it has no area: a wall {THIN * 100:g} cm thick along its points"
     report.interpreted(item, "environment.walls", note)
     add_wall(scene, item, far, end, name=name)
+
+
+def _add_block(
+    scene: Draft, report: Report, item: Item, points: Sequence[Corner], name: str
+) -> None:
+    """Add an outline as a block; one that crosses itself as the parts that it encloses."""
+    from shapely import Polygon, make_valid  # type: ignore[import-untyped,unused-ignore]
+
+    whole = Polygon([(p[0], p[1]) for p in points])
+    if whole.is_valid:
+        scene.part("blocks", name, {"corners": [list(p) for p in points]}, item.mark)
+        return
+    valid = make_valid(whole)
+    parts = [one for part in getattr(valid, "geoms", [valid])
+             for one in getattr(part, "geoms", [part])
+             if one.geom_type == "Polygon" and one.area > _LEAST]  # fmt: skip
+    for part in parts:
+        corners = without_repeats([list(p) for p in part.exterior.coords])
+        scene.part("blocks", name, {"corners": corners}, item.mark)
+    if not parts:
+        for start, end in pairwise([*points, points[0]]):
+            add_wall(scene, item, start, end, name=name)
+        note = f"its outline encloses nothing: walls {THIN * 100:g} cm thick along its points"
+        report.interpreted(item, "environment.walls", note)
+        return
+    note = f"its outline crosses or touches itself: the {len(parts)} parts that it encloses"
+    report.interpreted(item, "environment.blocks", note)
 
 
 def _beside(point: Corner, start: Corner, end: Corner) -> float:

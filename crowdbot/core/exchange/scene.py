@@ -12,6 +12,8 @@ from crowdbot.dsl.text.diagnostics import Mark
 Path = tuple[str, ...]
 Data = dict[str, Any]
 
+#: Radius of a person where a scene has none, m.
+USUAL_RADIUS = 0.33
 #: Room around everything that a scene without a border of its own gets, m.
 MARGIN = 10.0
 _NOT_IN_IDS = re.compile(r"[^A-Za-z0-9_.-]+")
@@ -123,6 +125,8 @@ class Draft:
         env = self.environment
         points += [p for w in env.get("walls", {}).values() for p in (w["start"], w["end"])]
         points += [p for b in env.get("blocks", {}).values() for p in b["corners"]]
+        for kind in ("streams", "spawns", "goal_areas"):
+            points += _corners(self.crowd.get(kind, {}))
         for kind in ("zones", "portals"):
             points += [(z["x"][k], z["y"][k]) for z in env.get(kind, {}).values() for k in (0, 1)]
         if env.get("zones"):
@@ -131,6 +135,19 @@ class Draft:
             points += [(p["x"] + k * p["radius"], p["y"] + k * p["radius"]) for k in (-1, 1)]
         xs, ys = [p[0] for p in points], [p[1] for p in points]
         return min(xs), max(xs), min(ys), max(ys)
+
+
+def _corners(parts: Data) -> list[tuple[float, float]]:
+    """Return two corners of each area of streams, spawns and goal areas."""
+    named = ("origin", "destination", "area")
+    areas = [part[name] for part in parts.values() for name in named if name in part]
+    areas += [place for part in parts.values() for place in part.get("via", [])]
+    return [
+        (a["centre"][0] + k * a["size"][0], a["centre"][1] + k * a["size"][1])
+        for a in areas
+        if "centre" in a
+        for k in (-0.5, 0.5)
+    ]
 
 
 def around(x0: float, x1: float, y0: float, y1: float) -> Data:

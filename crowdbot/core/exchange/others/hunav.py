@@ -15,7 +15,7 @@ from crowdbot.core.exchange.scene import Data, Draft, id_of
 #: Behaviours by number: name, and our like of it.
 _BEHAVIOURS = {
     1: ("regular", "the robot is one of the people"),
-    2: ("impassive", "people ignore the robot"),
+    2: ("impassive", "the robot is an obstacle to them: here they pay it the least attention"),
     3: ("surprised", "people stop and look at the robot: here they evade it"),
     4: ("scared", "people keep far from the robot: here they evade it"),
     5: ("curious", "people approach the robot: here they evade it"),
@@ -87,10 +87,27 @@ def _scene(file: OpenedScene, report: Report) -> Draft:
     names = parameters.need("agents").every()
     for name in names:
         _agent(name, parameters, policy, scene, report)
+    _others(file, parameters, report)
     if not names:
         parameters.need("agents").refuse("no agent is named here")
     _ignoring(scene)
     return scene
+
+
+def _others(file: OpenedScene, parameters: Item, report: Report) -> None:
+    """Record agents that the list does not name, and parameters of other nodes."""
+    for item in parameters.children:
+        if not item.used and any(part.name == "init_pose" for part in item.children):
+            report.left_out(item, "the list 'agents' does not name it: HuNavSim ignores it, too")
+        elif not item.used and item.name == "global_goals":
+            report.left_out(item, "no agent goes there")
+    for item in file.roots[0].children:
+        if not item.used and any(part.name == "ros__parameters" for part in item.children):
+            report.left_out(item, "parameters of another program")
+    for goals in (p for p in parameters.children if p.name == "global_goals" and p.used):
+        for goal in goals.children:
+            if not goal.used:
+                report.left_out(goal, "no agent goes there")
 
 
 def _agent(name: Item, parameters: Item, policy: str, scene: Draft, report: Report) -> None:

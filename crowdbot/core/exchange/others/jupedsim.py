@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -79,10 +80,14 @@ def _geometry(text: str, mark: Mark, scene: Draft) -> Any:
     from shapely import GEOSException, from_wkt  # type: ignore[import-untyped,unused-ignore]
 
     try:
-        shape = from_wkt(text)
+        with warnings.catch_warnings():  # of coordinates that are not numbers, refused below
+            warnings.simplefilter("ignore", RuntimeWarning)
+            shape = from_wkt(text)
     except (GEOSException, ValueError) as error:
         message = f"not well-known text: {str(error)[:200]}"
         raise SpecError([Diagnostic("E401", message, mark)]) from None
+    if not math.isfinite(shape.length) or not all(map(math.isfinite, shape.bounds)):
+        raise SpecError([Diagnostic("E402", "a coordinate is not a finite number", mark)])
     if shape.is_empty or not shape.area > 0.0:
         raise SpecError([Diagnostic("E402", "the walkable area has no area", mark)])
     scene.environment = {"kind": "floor_plan", "wkt": " ".join(text.split())}

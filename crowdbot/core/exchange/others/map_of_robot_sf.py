@@ -63,16 +63,10 @@ class RobotSfMap:
     people: list[Person] = field(default_factory=list)
 
     def zone(self, kind: str, number: int, route: RobotSfRoute) -> tuple[Item, Corners]:
-        """Return a zone, or a square at the route's end where the map has none.
-
-        Raises:
-            SpecError: E402, there are such zones, but not this one.
-        """
+        """Return a zone, or a square at the route's end where the map has none of that number."""
         known = self.zones.get(kind, {})
         if number in known:
             return known[number]
-        if known:
-            route.item.refuse(f"no {kind} {number}; there are: {', '.join(map(str, known))}")
         x, y = route.points[0 if "spawn" in kind else -1]
         return route.item, [[x - 1, y - 1], [x + 1, y - 1], [x + 1, y + 1], [x - 1, y + 1]]
 
@@ -83,6 +77,9 @@ def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[D
     Raises:
         SpecError: E402, a route names a zone that is not there.
     """
+    if not found.robot_routes:
+        found.robot_routes = _straight_routes(found, report)
+    _unused(found, report)
     routes = found.robot_routes[:_MOST_ROUTES]
     for route in found.robot_routes[_MOST_ROUTES:]:
         report.left_out(route.item, f"more than {_MOST_ROUTES} routes")
@@ -98,6 +95,33 @@ def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[D
         _people(found, scene, report)
         scenes.append(scene)
     return scenes
+
+
+def _straight_routes(found: RobotSfMap, report: Report) -> list[RobotSfRoute]:
+    """Return a route from each spawn zone of the robot to each of its goal zones."""
+    spawns, goals = (found.zones.get(f"robot_{n}_zone", {}) for n in ("spawn", "goal"))
+    made = []
+    for start, (item, corners) in spawns.items():
+        for end, (_, others) in goals.items():
+            points = [middle(rectangle_in(c)[0]) for c in (corners, others)]
+            made.append(RobotSfRoute(item, start, end, points))
+    if made:
+        note = "from each spawn zone to each goal zone: the map has no robot_route"
+        report.added("robots.task", note, found.item.mark)
+    return made
+
+
+def _unused(found: RobotSfMap, report: Report) -> None:
+    """Record zones that no route begins or ends in."""
+    for who, routes in (("robot", found.robot_routes), ("ped", found.ped_routes)):
+        for kind in ("spawn", "goal"):
+            named = {route.spawn if kind == "spawn" else route.goal for route in routes}
+            for number, (item, _) in found.zones.get(f"{who}_{kind}_zone", {}).items():
+                if number not in named:
+                    report.left_out(item, f"no route of {_NAMES[who]} has {kind}_id {number}")
+
+
+_NAMES = {"robot": "the robot", "ped": "people"}
 
 
 def _floor(found: RobotSfMap, scene: Draft, report: Report) -> None:

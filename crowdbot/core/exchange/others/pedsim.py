@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from crowdbot.core.exchange.clearing import FreeFloor, shape_of
 from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.opened import OpenedScene
@@ -40,6 +41,11 @@ AGENT = RowTable(
 #: Speeds by type: mean and standard deviation, m/s.
 _SPEEDS = {0: (1.34, 0.26), 1: (1.0, 0.2), 3: (0.9, 0.15)}
 _RADIUS, _THICK = 0.35, 0.05
+#: Root elements: of pedsim_ros, and of the library that it is made of.
+_ROOTS = {"scenario", "welcome"}
+#: A place, and half the width of a robot's goal, m.
+_Way = list[tuple[str, list[float]]]
+_HALF = 0.5
 
 
 def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
@@ -69,11 +75,28 @@ def _scene(file: OpenedScene, root: Item, report: Report) -> Draft:
     if scene.crowd.get("spawns"):
         scene.policy(social_forces(), "social_forces", root.mark)
         scene.crowd["body"] = {"radius": _RADIUS}
-        if scene.environment.get("walls"):
-            scene.crowd["routing"] = {"kind": "mesh"}
+        _find_ways(root, scene, report)
         report.interpreted(root, "crowd.policy", "its social force model is ours of 1995")
         report.added("crowd.body.radius", f"{_RADIUS} m, as pedsim has it", root.mark)
     return scene
+
+
+def _find_ways(root: Item, scene: Draft, report: Report) -> None:
+    """Let people find ways round walls, if all goals can be reached."""
+    if not scene.environment.get("walls"):
+        return
+    floor, areas = FreeFloor(scene), scene.crowd.get("goal_areas", {})
+    legs = [
+        (spawn["area"], areas[name]["area"])
+        for spawn in scene.crowd["spawns"].values()
+        for name in spawn.get("goals", {}).get("areas", ())
+    ]
+    if all(floor.joins(shape_of(start), shape_of(goal), _RADIUS) for start, goal in legs):
+        scene.crowd["routing"] = {"kind": "mesh"}
+        report.added("crowd.routing", "people find their way round walls", root.mark)
+    else:
+        note = "straight to their goals, as in pedsim: walls shut some of them off"
+        report.added("crowd.routing", note, root.mark)
 
 
 def _areas(root: Item, scene: Draft, report: Report) -> dict[str, tuple[str, list[float]]]:
@@ -156,15 +179,10 @@ def _spawn(
         report.carried(part, "crowd.spawns")
 
 
-def _robot(
-    item: Item, at: tuple[float, float], way: list[tuple[str, list[float]]], scene: Draft,
-    report: Report,
-) -> None:  # fmt: skip
+def _robot(item: Item, at: tuple[float, float], way: _Way, scene: Draft, report: Report) -> None:
     name = free_name("robot", scene.robots)
-    goal = way[-1][1] if way else [at[0] + 4.5, at[0] + 5.5, at[1] - 0.5, at[1] + 0.5]
-    middle = (0.5 * (goal[0] + goal[1]), 0.5 * (goal[2] + goal[3]))
-    half = 0.5
-    zone = {"x": [middle[0] - half, middle[0] + half], "y": [middle[1] - half, middle[1] + half]}
+    x, y = _robot_goal(item, at, way, scene, report)
+    zone = {"x": [x - _HALF, x + _HALF], "y": [y - _HALF, y + _HALF]}
     scene.part("zones", f"{name}_goal", zone, item.mark)
     scene.robots[name] = standing_robot(f"{name}_goal", (*at, 0.0))
     scene.origins["robots", name] = item.mark
@@ -173,10 +191,32 @@ def _robot(
         part.text()
 
 
+def _robot_goal(
+    item: Item, at: tuple[float, float], way: _Way, scene: Draft, report: Report
+) -> tuple[float, float]:
+    """Return the last way point to which a way leads, m; without one the last of all."""
+    if not way:
+        report.added("robots.task.goal", "5 m ahead: the robot has no way point", item.mark)
+        return at[0] + 5.0, at[1]
+    from shapely import Point  # type: ignore[import-untyped,unused-ignore]
+
+    floor, start = FreeFloor(scene), Point(at).buffer(_HALF)
+    middles = [(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3])) for _, b in reversed(way)]
+    if not floor.bounded:
+        return middles[0]
+    for number, goal in enumerate(middles):
+        if floor.joins(start, Point(goal).buffer(_HALF), _HALF) and math.dist(goal, at) > _HALF:
+            if number:
+                note = f"the way point '{way[-1 - number][0]}': walls shut off later ones"
+                report.interpreted(item, "robots.task.goal", note)
+            return goal
+    return middles[0]
+
+
 PEDSIM = SceneFormat(
     "pedsim",
     "pedsim_ros scenes",
-    lambda file: file.kind == "xml" and "scenario" in file.tags,
+    lambda file: file.kind == "xml" and bool(_ROOTS & file.tags),
     read,
     (SCENARIO, AGENT),
     "attractions, lines of waiting people, behaviours of waypoints",

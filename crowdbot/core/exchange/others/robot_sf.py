@@ -23,15 +23,17 @@ from crowdbot.core.exchange.scene import Draft, id_of
 SVG = RowTable(
     "svg",
     (
-        Row("@width, @height", "environment.area, border", "one unit is 1 m, y as it is written"),
+        Row("@width, @height, @viewBox", "environment.area, border",
+            "one unit is 1 m, y as it is written, from the corner of the viewBox"),
         Row("label obstacle", "environment.blocks"),
         Row("label robot_spawn_zone, robot_goal_zone", "robots.task"),
         Row("label robot_route_I_J", "robots.task", "each route is a scenario"),
         Row("label ped_spawn_zone, ped_goal_zone, ped_route_I_J", "crowd.streams",
             "0.04 people/m^2 on a way 3 m wide"),
-        Row("label ped_crowded_zone", "crowd.streams", "people who stroll within"),
+        Row("label ped_crowded_zone, crowded_zone", "crowd.streams", "people who stroll within"),
         Row("label single_ped_ID_start, single_ped_ID_goal", "crowd.agents"),
         Row("class poi, other labels", "", "places that no one goes to"),
+        Row("shapes without a label", "", "robot_sf does not read them"),
         Row("@transform, styles, layers", "", "robot_sf reads raw coordinates, and so does this"),
     ),
 )  # fmt: skip
@@ -48,10 +50,11 @@ MAP = RowTable(
     ),
 )  # fmt: skip
 _ZONE = re.compile(r"(robot_spawn_zone|robot_goal_zone|ped_spawn_zone|ped_goal_zone|"
-                   r"ped_crowded_zone)(?:_(\d{1,4}))?")  # fmt: skip
-_ROUTE = re.compile(r"(robot|ped)_route_(\d{1,4})_(\d{1,4})")
+                   r"ped_crowded_zone|crowded_zone)(?:_(\d{1,4}))?")  # fmt: skip
+_ROUTE = re.compile(r"(robot|ped)_route(?:_(\d{1,4})_(\d{1,4}))?")
 _SINGLE = re.compile(r"single_ped_(\w{1,60})_(start|goal)")
 _DRAWN = ("rect", "path", "circle", "ellipse", "polygon", "polyline", "line")
+_APART = re.compile(r"[\s,]+")
 _LENGTH = re.compile(r"\s*([0-9.eE+-]+)\s*(?:px|m)?\s*")
 
 
@@ -72,26 +75,74 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
 
 def _svg(root: Item, report: Report) -> RobotSfMap:
     found = RobotSfMap(root)
-    width, height = _length(root, "@width"), _length(root, "@height")
-    if width and height:
-        found.bounds = (0.0, width, 0.0, height)
-        report.carried(root, "environment.area")
+    corner = _bounds(root, found, report)
     starts: dict[str, tuple[Item, list[float]]] = {}
     goals: dict[str, list[float]] = {}
     for item in list(root.walk()):
-        label = item.find("@label") if item.name in _DRAWN else None
-        if label is not None:
-            _labelled(item, label.text(), found, (starts, goals), report)
+        label = _label(item) if item.name in _DRAWN else ""
+        if label:
+            _labelled(item, label, found, (starts, goals), report)
     for ident, (item, start) in starts.items():
         ends = [goals.pop(ident)] if ident in goals else []
         found.people.append(Person(item, [start, *ends]))
+    _move(found, corner)
     for item in root.walk():
         if item.used and item.name in _DRAWN:
             _style(item, report)
+        elif item.name in _DRAWN:
+            report.left_out(item, SVG.rows[-2].note)
     for item in root.walk():
         if not item.used:
             report.left_out(item, SVG.rows[-1].note)
     return found
+
+
+def _bounds(root: Item, found: RobotSfMap, report: Report) -> tuple[float, float]:
+    """Set the bounds of a map; return the corner that its coordinates count from, m."""
+    box = root.find("@viewBox")
+    numbers = [Item("@viewBox", box.mark, t).number() for t in _APART.split(box.text().strip())
+               ] if box else []  # fmt: skip
+    if len(numbers) not in (0, 4):
+        (box or root).refuse("a viewBox has to be four numbers")
+    left, top, wide, high = numbers or [0.0] * 4
+    width, height = _length(root, "@width") or wide, _length(root, "@height") or high
+    if width > 0.0 and height > 0.0:
+        found.bounds = (0.0, width, 0.0, height)
+        report.carried(root, "environment.area")
+        if box is not None and (wide, high) != (width, height):
+            note = f"counts only for its corner: the map is {width:g} m x {height:g} m, not scaled"
+            report.interpreted(box, "environment.area", note)
+    return left, top
+
+
+def _move(found: RobotSfMap, corner: tuple[float, float]) -> None:
+    """Let the coordinates of a map count from a corner (m)."""
+    if corner == (0.0, 0.0):
+        return
+    lists = [corners for _, corners in found.obstacles]
+    lists += [c for zones in found.zones.values() for _, c in zones.values()]
+    lists += [route.points for route in [*found.robot_routes, *found.ped_routes]]
+    lists += [person.points for person in found.people]
+    for points in lists:
+        points[:] = [[x - corner[0], y - corner[1]] for x, y in points]
+
+
+def _label(item: Item) -> str:
+    """Return the label of a shape; without one its id, if that is a name of the format."""
+    label = item.find("@label")
+    if label is not None:
+        return label.text()
+    ident = next((part for part in item.children if part.name == "@id"), None)
+    text = "" if ident is None else str(ident.value)
+    known = any(form.fullmatch(text) for form in (_ZONE, _ROUTE, _SINGLE))
+    return text if known else ""
+
+
+def _number(item: Item) -> int | None:
+    """Return the number at the end of a zone's id."""
+    ident = next((part for part in item.children if part.name == "@id"), None)
+    zone = _ZONE.fullmatch(str(ident.value)) if ident is not None else None
+    return int(zone[2]) if zone and zone[2] else None
 
 
 def _length(root: Item, name: str) -> float:
@@ -111,16 +162,20 @@ def _labelled(
         found.obstacles.append((item, points_of(item, report)))
     elif zone := _ZONE.fullmatch(label):
         item.used = True
-        known = found.zones.setdefault(zone[1], {})
-        number = int(zone[2]) if zone[2] else len(known)
+        kind = "ped_crowded_zone" if zone[1] == "crowded_zone" else zone[1]
+        known = found.zones.setdefault(kind, {})
+        number = int(zone[2]) if zone[2] else _number(item)
+        if number is None or number in known:
+            number = next(k for k in range(len(known) + 1) if k not in known)
         known[number] = (item, points_of(item, report))
+        report.carried(item, "zones")
     elif route := _ROUTE.fullmatch(label):
         item.used = True
         points = points_of(item, report)
         if len(points) < 2:
             item.refuse("a route of fewer than two points")
         into = found.robot_routes if route[1] == "robot" else found.ped_routes
-        into.append(RobotSfRoute(item, int(route[2]), int(route[3]), points))
+        into.append(RobotSfRoute(item, int(route[2] or 0), int(route[3] or 0), points))
     elif single := _SINGLE.fullmatch(label):
         item.used = True
         at = [item.need("@cx").number(), item.need("@cy").number()]
@@ -130,7 +185,7 @@ def _labelled(
             singles[1][single[1]] = at
             report.carried(item, "crowd.agents.goals")
     else:
-        report.left_out(item, SVG.rows[-2].note)
+        report.left_out(item, SVG.rows[-3].note)
 
 
 def _style(item: Item, report: Report) -> None:
@@ -152,17 +207,11 @@ def _style(item: Item, report: Report) -> None:
 
 def _data(root: Item, report: Report) -> RobotSfMap:
     found = RobotSfMap(root)
-    margins = [root.find(name) for name in ("x_margin", "y_margin")]
-    if all(margins):
-        numbers = [part.number() for m in margins if m for part in m.every()]
-        if len(numbers) != 4 or not (numbers[0] < numbers[1] and numbers[2] < numbers[3]):
-            root.refuse("x_margin and y_margin have to be two rising numbers each")
-        found.bounds = (numbers[0], numbers[1], numbers[2], numbers[3])
-        for m in margins:
-            if m is not None:
-                report.carried(m, "environment.area")
-    for item in _entries(root, "obstacles"):
-        vertices = item.find("vertices") if item.children[:1] else None
+    _margins(root, found, report)
+    for item in [*_entries(root, "obstacles"), *_entries(root, "Obstacles")]:
+        if (ident := item.find("ID")) is not None:
+            ident.take_all()
+        vertices = item.find("vertices") or item.find("Vertex")
         found.obstacles.append((item, pairs(vertices or item)))
     for kind in ("robot_spawn", "robot_goal", "ped_spawn", "ped_goal", "ped_crowded"):
         listed = _entries(root, f"{kind}_zones")
@@ -180,6 +229,19 @@ def _data(root: Item, report: Report) -> RobotSfMap:
     for item in _entries(root, "single_pedestrians"):
         found.people.append(_single(item, report))
     return found
+
+
+def _margins(root: Item, found: RobotSfMap, report: Report) -> None:
+    """Set the bounds of a map in JSON or YAML."""
+    margins = [root.find(name) for name in ("x_margin", "y_margin")]
+    if all(margins):
+        numbers = [part.number() for m in margins if m for part in m.every()]
+        if len(numbers) != 4 or not (numbers[0] < numbers[1] and numbers[2] < numbers[3]):
+            root.refuse("x_margin and y_margin have to be two rising numbers each")
+        found.bounds = (numbers[0], numbers[1], numbers[2], numbers[3])
+        for m in margins:
+            if m is not None:
+                report.carried(m, "environment.area")
 
 
 def _entries(root: Item, name: str) -> list[Item]:
