@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from crowdbot.core.geometry.rough_angle import rough_angle
     from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
     from crowdbot.core.planning.weights.weights_file import read_weights
+    from crowdbot.core.realism.imagined_crowd import ImaginedCrowd
     from crowdbot.core.recording.from_mcap import Trajectories
     from crowdbot.core.recording.recording import Recording, RecordingInfo
     from crowdbot.core.robots.description import Description, read_description
@@ -263,6 +264,7 @@ __all__ = [
     "Footprint",
     "Heights",
     "HolonomicDrive",
+    "ImaginedCrowd",
     "Incidence",
     "Indices",
     "InputError",

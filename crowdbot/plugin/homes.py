@@ -29,6 +29,7 @@ HOMES = {
     "crowdbot.core.geometry.rough_angle": "rough_angle",
     "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Truth",
     "crowdbot.core.planning.weights.weights_file": "read_weights",
+    "crowdbot.core.realism.imagined_crowd": "ImaginedCrowd",
     "crowdbot.core.recording.from_mcap": "Trajectories",
     "crowdbot.core.recording.recording": "Recording RecordingInfo",
     "crowdbot.core.robots.description": "Description read_description",

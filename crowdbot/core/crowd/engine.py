@@ -38,6 +38,8 @@ NOBODY, DISCS = np.zeros((0, 8)), np.zeros((0, 0, 2))
 NONE, NO_STIFFNESSES = np.zeros(0, np.int64), np.zeros(0)
 _NOT_SHOWN = np.zeros((0, 5))
 _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot used by policies
+#: Time of decisions in a situation of one's own, in ticks: late enough that people have reacted.
+_LATER = 60 * TICKS_PER_SECOND
 _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # columns of its motion
 
 
@@ -290,6 +292,36 @@ class CrowdEngine:
                 times.append(now * TICK)
                 positions.append(np.where(here[:, None], rows[:, s.X : s.Y + 1], np.nan))
         return np.array(times), np.array(positions)
+
+    def decide(
+        self,
+        position: Array,
+        velocity: Array,
+        goal: Array,
+        present: NDArray[np.bool_],
+        robots: Array = NOBODY,
+    ) -> Array:
+        """Return what people want in a situation of one's own, as accelerations (N, 2), m/s^2.
+
+        They face where they walk to, and have noticed robots that are within sight.
+
+        Args:
+            position, velocity, goal: (N, 2), m and m/s.
+            present: (N,) False for people to leave out; their acceleration is 0.
+            robots: (R, 8) discs, as for `advance`.
+        """
+        flat = s.blank(len(self.agents), len(robots))
+        (header, rows), _ = s.view(flat), s.people_in(flat)
+        header[s.TICK] = _LATER
+        rows[:, s.X : s.Y + 1], rows[:, s.VX : s.VY + 1] = position, velocity
+        rows[:, s.GOAL_X : s.GOAL_Y + 1] = goal
+        rows[:, self.aim : self.aim + 2] = goal
+        rows[:, s.WAITING] = np.where(present, s.PRESENT, s.NOT_YET)
+        away = goal - position
+        distance = np.hypot(away[:, :1], away[:, 1:])
+        rows[:, s.DIR_X : s.DIR_Y + 1] = away / np.maximum(distance, 1e-9)
+        self._decide(flat, robots, _alike(DISC, len(robots)) if len(robots) else DISCS)
+        return np.where(present[:, np.newaxis], rows[:, s.AX : s.AY + 1], 0.0)
 
     def _decide(self, flat: Array, robots: Array, outlines: Array) -> None:
         (_, rows), people = s.view(flat), s.people_in(flat)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Array, Command, Indices, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_aside
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.people_mpc import plans_build as plans
@@ -15,21 +15,30 @@ from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.shared.surroundings_build import (
+    PlannerScene,
     PlannerSurroundings,
     in_base,
-    people_near,
+    rows_near,
 )
 from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED = 0.1
 #: At most this many people are predicted, the nearest.
-_PEOPLE = 40
+MOST_PEOPLE = 40
+#: The prediction that people keep their velocity.
+KEPT = np.zeros((0, 0, 2))
 #: Free space beside the robot on the way past what stands, m.
 _BESIDE = 0.12
 
 
 class PeopleMpc:
-    """Remembers its last plan; `PlannerSurroundings` remembers people and `Way` what stands."""
+    """Remembers its last plan; `PlannerSurroundings` remembers people and `Way` what stands.
+
+    Subclasses predict people otherwise, by `predicted`.
+    """
+
+    #: Name of what it logs.
+    name = "people_mpc"
 
     def __init__(self, spec: PeopleMpcSpec) -> None:
         self._spec = spec
@@ -39,7 +48,7 @@ class PeopleMpc:
         self._robot = covering_discs(spec.robot_radius, None)
         self._way = Way(1.0)
         self._p: Array = np.zeros(plans.PARAMETERS)
-        self._last, self._aside = (0.0, 0.0, 0.0), 0.0
+        self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, 1.0
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -52,10 +61,10 @@ class PeopleMpc:
         self._robot = covering_discs(spec.robot_radius, task.robot)
         self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = _parameters(spec, limits)
-        self._last, self._aside = (0.0, 0.0, 0.0), 0.0
+        self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, 1.0
         self._firsts((0.0, 0.0, 0.0), 1.0, 0.0)
         world = plans.PlanWorld(
-            np.ones((1, 5)), self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
+            np.ones((1, 5)), KEPT, self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
         )
         state = (0.0,) * 6
         plans.best_plan(world, self._p, state, np.zeros((1, 3)), self._last, 0.0)
@@ -77,23 +86,42 @@ class PeopleMpc:
         )
         firsts = self._firsts(scene.twist, top, error)
         self._field.fill(scene.points, pose.x, pose.y)
-        people = people_near(scene, self._p[plans.V_MAX], self._spec.horizon, _PEOPLE)
-        world = plans.PlanWorld(people, self._field.values, self._field.corner, self._robot, aim)
+        rows = rows_near(scene, self._p[plans.V_MAX], self._spec.horizon, MOST_PEOPLE)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
+        world = plans.PlanWorld(
+            np.ascontiguousarray(scene.people[rows]), self.predicted(obs, scene, rows, aim),
+            self._field.values, self._field.corner, self._robot, aim,
+        )  # fmt: skip
         at, aside, pace, cost = plans.best_plan(
             world, self._p, state, firsts, self._last, self._aside
         )
-        self._last, self._aside = (0.0, 0.0, 0.0), 0.0
+        self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, plans.PACES[pace]
         if at >= 0:
             v, w, vy = firsts[at].tolist()
             self._last, self._aside = (v, w, vy), plans.ASIDE[aside]
-            chosen = plans.path_of(
-                self._p, state, aim, self._last, plans.ASIDE[aside], plans.PACES[pace]
-            )
-            obs.draw("plan", in_base(pose, chosen))
-        obs.log("people_mpc/cost", min(cost, 100.0))
-        obs.log("people_mpc/pace", plans.PACES[pace])
+            obs.draw("plan", in_base(pose, self.path(scene, aim)))
+        obs.log(f"{self.name}/cost", min(cost, 100.0))
+        obs.log(f"{self.name}/pace", self._pace)
         return Command(*self._last)
+
+    def predicted(
+        self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
+    ) -> Array:
+        """Return where people will be, (T, N, 2) as of `plans.PlanWorld`; here: at their velocity.
+
+        Args:
+            obs: for its time and signals.
+            scene: the surroundings.
+            rows: (N,) the people of the scene who count.
+            aim: point that the robot drives to, m.
+        """
+        del obs, scene, rows, aim
+        return KEPT
+
+    def path(self, scene: PlannerScene, aim: tuple[float, float]) -> Array:
+        """Return the places (T, 2) of the chosen plan after each step, m."""
+        state = (scene.pose.x, scene.pose.y, scene.pose.yaw, *scene.twist)
+        return plans.path_of(self._p, state, aim, self._last, self._aside, self._pace)
 
     def _firsts(self, twist: tuple[float, float, float], top: float, error: float) -> Array:
         """Return (C, 3) first velocities v, w, vy that the robot reaches within the window."""

@@ -1,4 +1,4 @@
-"""Plans of the people MPC, rolled out among people who keep their velocity; compiled."""
+"""Plans of the people MPC, rolled out among people whose motion is predicted; compiled."""
 
 from __future__ import annotations
 
@@ -34,6 +34,8 @@ class PlanWorld(NamedTuple):
 
     Attributes:
         people: (N, 5) x, y, vx, vy, radius; m, m/s.
+        predicted: (T, N, 2) where they will be after each `STEP`, m; empty: they keep their
+            velocity.
         field: distances to what stands, `DistanceField.values`.
         corner: of the field, m.
         robot: (K, 3) discs that hold the robot, in its frame, m.
@@ -41,6 +43,7 @@ class PlanWorld(NamedTuple):
     """
 
     people: Array
+    predicted: Array
     field: Array
     corner: tuple[float, float]
     robot: Array
@@ -70,14 +73,19 @@ def gaps(world: PlanWorld, x: float, y: float, yaw: float, t: float) -> tuple[fl
     """Return the gap from the robot to the nearest person in ``t`` seconds, and to walls, m."""
     person, wall = math.inf, math.inf
     c, s = math.cos(yaw), math.sin(yaw)
+    step = min(round(t / STEP), world.predicted.shape[0]) - 1
+    known = step >= 0
     for k in range(world.robot.shape[0]):
         px = x + c * world.robot[k, 0] - s * world.robot[k, 1]
         py = y + s * world.robot[k, 0] + c * world.robot[k, 1]
         r = world.robot[k, 2]
         wall = min(wall, distance_at(world.field, world.corner, px, py) - r)
         for i in range(world.people.shape[0]):
-            dx = world.people[i, 0] + t * world.people[i, 2] - px
-            dy = world.people[i, 1] + t * world.people[i, 3] - py
+            if known:
+                dx, dy = world.predicted[step, i, 0] - px, world.predicted[step, i, 1] - py
+            else:
+                dx = world.people[i, 0] + t * world.people[i, 2] - px
+                dy = world.people[i, 1] + t * world.people[i, 3] - py
             most = person + r + world.people[i, 4]
             square = dx * dx + dy * dy
             if most > 0.0 and square > most * most:

@@ -10,6 +10,7 @@ import numpy as np
 
 from crowdbot.plugin import (
     Array,
+    Indices,
     LidarPoints,
     Observation,
     PeopleTracker,
@@ -144,13 +145,16 @@ def people_near(scene: PlannerScene, speed: float, horizon: float, most: int) ->
         horizon: s.
         most: how many.
     """
+    return np.ascontiguousarray(scene.people[rows_near(scene, speed, horizon, most)])
+
+
+def rows_near(scene: PlannerScene, speed: float, horizon: float, most: int) -> Indices:
+    """Return the rows (N,) of people who can come near in time; as `people_near`."""
     people = scene.people
     away = np.hypot(people[:, 0] - scene.pose.x, people[:, 1] - scene.pose.y)
     reach = (np.hypot(people[:, 2], people[:, 3]) + speed) * horizon + 1.0
     near = np.flatnonzero(away < reach)
-    if len(near) > most:
-        near = near[np.argsort(away[near], kind="stable")[:most]]
-    return np.ascontiguousarray(people[near])
+    return near[np.argsort(away[near], kind="stable")[:most]] if len(near) > most else near
 
 
 def _truth(obs: Observation) -> Truth:

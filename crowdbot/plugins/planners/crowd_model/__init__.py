@@ -1,0 +1,1 @@
+"""The robot as a person of the crowd."""

@@ -1,0 +1,34 @@
+"""Crowd model: the robot decides as a person of the crowd engine."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from crowdbot.plugin import Component, PlannerRole
+from crowdbot.plugins.planners.shared.rungs import RungSpec
+
+
+class CrowdModelSpec(RungSpec):
+    """Knows the truth by default; its drive follows the velocity that a person would choose."""
+
+    role: ClassVar[PlannerRole] = "ceiling"
+
+    kind: Literal["crowd_model"] = "crowd_model"
+    tracks: Literal["lidar", "tracker", "truth"] = Field(
+        default="truth",
+        description="People: of the last scans, as the people tracker follows them, or the truth.",
+    )
+    localisation: Literal["odometry", "corrected", "truth"] = Field(
+        default="truth",
+        description="The robot's pose: by wheels, with the heading of walls, or the truth.",
+    )
+    crowd: str = Field(default="calibrated", description="Crowd as whose person the robot decides.")
+
+
+CROWD_MODEL = Component(
+    spec=CrowdModelSpec,
+    build="crowdbot.plugins.planners.crowd_model.crowd_model_build:build",
+    summary="the robot decides as a person of the crowd engine, privileged by default",
+)

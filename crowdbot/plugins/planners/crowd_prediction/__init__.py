@@ -1,0 +1,1 @@
+"""Model-predictive control among people whom the crowd engine predicts on board."""

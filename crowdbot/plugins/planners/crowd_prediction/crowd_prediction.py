@@ -1,0 +1,35 @@
+"""Crowd prediction: plans among people who are predicted by the crowd engine, robot included."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from crowdbot.plugin import Component, PositiveDuration
+from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
+
+
+class CrowdPredictionSpec(PeopleMpcSpec):
+    """Plans as `people_mpc`; people are predicted to decide as those of a crowd.
+
+    The prediction is corrected by what the tracker sees: it counts as much as it was right.
+    """
+
+    kind: Literal["crowd_prediction"] = "crowd_prediction"  # type: ignore[assignment]
+    crowd: str = Field(
+        default="calibrated", description="Crowd by whose engine people are predicted."
+    )
+    settle_time: PositiveDuration = Field(
+        default=1.0, description="Time over which a person's wanted velocity is averaged, s."
+    )
+    memory: PositiveDuration = Field(
+        default=5.0, description="Time over which errors of earlier predictions count, s."
+    )
+
+
+CROWD_PREDICTION = Component(
+    spec=CrowdPredictionSpec,
+    build="crowdbot.plugins.planners.crowd_prediction.crowd_prediction_build:build",
+    summary="plans among people whom the crowd engine predicts on board, fitted to what is tracked",
+)
