@@ -19,7 +19,7 @@ _MOST_LINES = 400
 _NOBODY = np.zeros((0, 5))
 
 
-class CrowdModel(VelocityPlanner):
+class CrowdModelPlanner(VelocityPlanner):
     """Person 0 of an imagined crowd is the robot; the others only stand around it."""
 
     def __init__(self, spec: CrowdModelSpec) -> None:
@@ -75,6 +75,6 @@ class CrowdModel(VelocityPlanner):
         return best_velocity(self._lines, count, hard, top, wanted, self._scratch)
 
 
-def build(spec: CrowdModelSpec) -> CrowdModel:
+def build(spec: CrowdModelSpec) -> CrowdModelPlanner:
     """Build a planner from its spec."""
-    return CrowdModel(spec)
+    return CrowdModelPlanner(spec)

@@ -78,7 +78,7 @@ def test_the_last_rung_is_privileged_and_the_others_are_not(kind: str, rung: str
     assert component.spec(**{**seeing, rung: "truth"}).privileged is True
     assert component.spec(**seeing).privileged is False
     lower = {"tracks": "lidar", "localisation": "odometry"}[rung]
-    assert component.spec(**{rung: lower}).privileged is False
+    assert component.spec(**{**seeing, rung: lower}).privileged is False
 
 
 @pytest.mark.parametrize(
