@@ -11,7 +11,7 @@ from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner, veloc
 from crowdbot.plugins.planners.shared.half_planes_build import best_velocity
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, people_near
 
-#: People within what they and the robot walk in this time count, s; at most so many.
+#: People within what they and the robot walk in this time count, s; the nearest 40.
 _HORIZON, _PEOPLE = 4.0, 40
 #: Time over which the decided acceleration acts, s, and for which no wall is touched, s.
 _STEP, _WALLS = 0.25, 1.0

@@ -14,12 +14,12 @@ from crowdbot.plugins.planners.people_mpc.people_mpc_build import PeopleMpc
 from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
 
-#: Predictions are drawn each so many steps.
+#: Predictions are drawn at intervals of this many steps.
 _SHOWN_STEP = 6
 
 
 class CrowdPrediction(PeopleMpc):
-    """Predicts people with the robot on its last plan among them, then plans anew."""
+    """Predicts people with the robot on its last plan among them, then plans again."""
 
     name = "crowd_prediction"
 

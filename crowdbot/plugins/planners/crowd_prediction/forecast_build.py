@@ -22,7 +22,7 @@ _SPEEDS, _EACH = np.linspace(0.3, 1.96, 12), 4
 _STANDS = 0.2
 #: Distance of the goals of people, m.
 _FAR = 20.0
-#: Decisions are made after so many steps.
+#: Steps between two decisions.
 _STEPS = 2
 #: Age at which a prediction is compared with the present, s.
 _CHECKED = 1.0
@@ -58,7 +58,7 @@ class CrowdForecast:
 
     @property
     def trust(self) -> float:
-        """How much the crowd's prediction counts, 0 to 1."""
+        """Return the weight of the crowd's prediction, 0 to 1."""
         kept, crowd = self._errors
         return float(kept**2 / (kept**2 + crowd**2))
 
