@@ -3,6 +3,7 @@
 One process measures both in turn: a decision of 200 people, a tick, the rays of a lidar and of a
 layered one, a depth image, and the search for ways. The building has rooms of 3.5 m x 5 m with
 doors along corridors, as many segments as asked for; both floors have the same size and people.
+The sensors' empty hall is of 8 m x 6 m, so that its rays hit walls, too.
 
     python benchmarks/buildings.py --segments 2000
 """
@@ -119,7 +120,15 @@ def rays(walls: Array, middles: Array) -> dict[str, Callable[[], object]]:
     }
 
 
-def measured(walls: Array, middles: Array, count: int, rounds: int) -> dict[str, float]:
+def room(middles: Array) -> tuple[Array, Array]:
+    """Walls (4, 4) of a small hall, and as many times its middle (R, 2) as there are rooms."""
+    walls = [[-4.0, -3.0, 4.0, -3.0], [4.0, -3.0, 4.0, 3.0], [4.0, 3.0, -4.0, 3.0]]
+    return np.array([*walls, [-4.0, 3.0, -4.0, -3.0]]), np.zeros_like(middles)
+
+
+def measured(
+    walls: Array, middles: Array, seen: tuple[Array, Array], count: int, rounds: int
+) -> dict[str, float]:
     """Microseconds of each thing."""
     agents = people(middles, count)
     straight, routed = crowd(walls, agents, None), crowd(walls, agents, WayFinding())
@@ -130,7 +139,7 @@ def measured(walls: Array, middles: Array, count: int, rounds: int) -> dict[str,
         f"decision of {count} people": decision,
         "ways, one decision": least(routed["with"], rounds) - tick - decision,
     }
-    return found | {name: least(run, rounds) for name, run in rays(walls, middles).items()}
+    return found | {name: least(run, rounds) for name, run in rays(*seen).items()}
 
 
 def main() -> None:
@@ -142,8 +151,8 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args()
     walls, middles, side = building(given.segments)
-    empty = measured(hall(side), middles, given.people, given.rounds)
-    full = measured(walls, middles, given.people, given.rounds)
+    empty = measured(hall(side), middles, room(middles), given.people, given.rounds)
+    full = measured(walls, middles, (walls, middles), given.people, given.rounds)
     if given.json:
         print(json.dumps({"empty": empty, "full": full}, indent=1))
         return

@@ -11,7 +11,6 @@ from crowdbot.core.crowd.engine import CrowdEngine, DecisionGroup
 from crowdbot.core.crowd.velocity_search.agent_costs import WORK
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts, layers
-from crowdbot.core.geometry.segment_grid import grid_of
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array
 
@@ -147,7 +146,7 @@ def _group_table(
     seen = np.concatenate([[costs.largest], pillars[:, 2], robots[:shown, 5]])
     reach = costs.reach_of(float(np.max(seen)))
     tables = costs.tables(people + len(pillars) + shown, len(walls), dt)
-    search, grid = sampler.arguments(dt), grid_of(walls, reach)
+    search, grid = sampler.arguments(dt), costs.wall_grid(walls, float(np.max(seen)))
     options, own = search.options, ArrayTable(GROUP_FIELDS)
     scratch = tables._asdict()
     own.put(settings=scratch.pop("settings"))

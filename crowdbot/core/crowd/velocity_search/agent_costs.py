@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.velocity_search.cost_calls import call_base, call_excess, call_prepare
 from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
-from crowdbot.core.crowd.velocity_search.surroundings import Surroundings
+from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, wall_distance
 from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
@@ -53,7 +53,7 @@ def prepare(
     )
     wall_count = gather_walls(
         around.walls, around.grid_frame, around.grid_first, around.grid_cells,
-        agent.px, agent.py, around.reach, found,
+        around.settings[0].wall_grid, agent.px, agent.py, wall_distance(around), found,
     )  # fmt: skip
     terms = 0
     for k in range(weights.shape[0]):

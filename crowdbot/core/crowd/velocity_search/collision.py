@@ -45,13 +45,18 @@ class DiscRow:
 
 
 class SegmentRow:
-    """A wall segment in ``work``, after the discs: both ends; ``earliest`` as in `DiscRow`."""
+    """A wall segment in ``work``, after the discs: both ends.
+
+    Attributes:
+        later: in the last sorted row, the least ``earliest`` of the rows after it, s.
+        earliest: as in `DiscRow`.
+    """
 
     ax: float
     ay: float
     bx: float
     by: float
-    unused: float
+    later: float
     earliest: float
 
 
@@ -62,6 +67,8 @@ _SAFE = 1.0 - 1e-12
 #: Number of discs sorted by that time; all others come later. Sorting hundreds would take longer
 #: than skipping them.
 _SORTED = 12
+#: The same for segments.
+_SORTED_SEGMENTS = 32
 #: Number of discs in lower bounds: later ones are seldom the first.
 _FEW = 3
 
@@ -104,7 +111,7 @@ def list_approaching(
     spread: float,
     horizon: float,
 ) -> int:
-    """As `list_obstacles`, without discs that cannot be touched until ``horizon``, s.
+    """As `list_obstacles`, without what cannot be touched until ``horizon``, s.
 
     Most discs in a range of 100 m move away or are too far. With parity all are written, since
     `first_contact` uses them.
@@ -113,7 +120,7 @@ def list_approaching(
         ux, uy, spread: disc with all velocities in later calls of `first_collision`, m/s.
     """
     own, header = as_record(params, COST_PARAMS), as_record(work, _HEADER)
-    rows, segments = as_rows(work, _DISC), as_rows(work, _SEGMENT)
+    rows = as_rows(work, _DISC)
     range_, surface, touched, discs = own.range, own.from_surface, 0, 0
     most = horizon if agent.parity == 0.0 else math.inf
     for j in range(near_count):
@@ -142,8 +149,32 @@ def list_approaching(
         disc = rows[row]
         disc.x, disc.y, disc.vx, disc.vy = near[j].rx, near[j].ry, vx, vy
         disc.gap2, disc.earliest = gap2, earliest
-    row = discs
-    limit = range_ + surface * agent.radius
+    limit, fastest = range_ + surface * agent.radius, spread + math.hypot(ux, uy)
+    count, touching = _list_segments(discs, agent, walls, wall_count, limit, fastest, most, work)
+    header.discs, header.segments, header.touched = discs, count, touched + touching
+    return discs + count
+
+
+@array_kernel
+def _list_segments(
+    discs: int,
+    agent: AgentRecord,
+    walls: Rows[WallRecord],
+    wall_count: int,
+    limit: float,
+    fastest: float,
+    most: float,
+    work: Pointer,
+) -> tuple[int, int]:
+    """Write the segments after the discs, the soonest ones sorted; return how many, and touched.
+
+    Args:
+        limit: largest distance, m.
+        fastest: largest speed, m/s.
+        most: time after which no contact counts, s.
+    """
+    segments, count, touched, later = as_rows(work, _SEGMENT), 0, 0, math.inf
+    last = discs + _SORTED_SEGMENTS
     for s in range(wall_count):
         d2 = walls[s].d2
         if d2 > limit * limit:
@@ -151,15 +182,28 @@ def list_approaching(
         if d2 <= agent.radius**2:
             touched += 1
             continue
-        row += 1
+        gap = math.sqrt(d2) - agent.radius
+        earliest = _SAFE * gap / fastest if fastest > 0.0 else math.inf
+        if earliest > most:
+            continue
+        count += 1
+        row = discs + count
+        if row > last:
+            later = min(later, max(earliest, segments[last].earliest))
+            if segments[last].earliest > earliest:  # that one goes to the end
+                segments[row] = segments[last]
+                row = last
+        while discs + 1 < row <= last and segments[row - 1].earliest > earliest:
+            segments[row] = segments[row - 1]
+            row -= 1
         segment = segments[row]
         segment.ax, segment.ay, segment.bx, segment.by = (
             walls[s].ax, walls[s].ay, walls[s].bx, walls[s].by,
         )  # fmt: skip
-        gap, fastest = math.sqrt(d2) - agent.radius, spread + math.hypot(ux, uy)
-        segment.earliest = _SAFE * gap / fastest if fastest > 0.0 else math.inf
-    header.discs, header.segments, header.touched = discs, row - discs, touched
-    return row
+        segment.earliest = earliest
+    if count >= _SORTED_SEGMENTS:
+        segments[last].later = later
+    return count, touched
 
 
 @array_kernel
@@ -184,9 +228,12 @@ def first_collision(ux: float, uy: float, until: float, agent: AgentRecord, work
             first = t
             if first < until:
                 return first
+    last = discs + _SORTED_SEGMENTS
     for j in range(discs + 1, discs + 1 + int(header.segments)):
         segment = segments[j]
         if segment.earliest >= first:
+            if j <= last:
+                break
             continue
         ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
         if agent.parity != 0.0:
@@ -196,6 +243,8 @@ def first_collision(ux: float, uy: float, until: float, agent: AgentRecord, work
         else:
             t = time_to_segment(ux, uy, agent.radius, ax, ay, bx, by)
         first = min(first, t)
+        if first < until or (j == last and segment.later >= first):
+            break
     return first
 
 

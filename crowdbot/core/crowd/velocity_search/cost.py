@@ -85,6 +85,9 @@ class CompiledCost:
         ordered: True if excess must be called for every candidate in order, because it draws random
             numbers.
         call: call boundary to its plugin, with its name, or None.
+        wall_reach: metres, and seconds at the fastest speed of a decision: a wall whose distance
+            from the agent's surface is larger than the sum of both never changes a result. None:
+            every wall in range may.
     """
 
     base: Callable[..., Any]
@@ -97,6 +100,7 @@ class CompiledCost:
     lower_bound: Callable[..., Any] | None = None
     ordered: bool = False
     call: PluginCall | None = None
+    wall_reach: tuple[float, float] | None = None
 
     def reach(self, radius: float, largest_radius: float) -> float:
         """Return the centre distance beyond which no neighbour counts, m."""

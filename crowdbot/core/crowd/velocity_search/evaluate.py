@@ -69,7 +69,7 @@ class Evaluator:
             px, py, radius = (float(agent[name][0]) for name in ("px", "py", "radius"))
             walls = gather_walls(
                 around.walls, around.grid_frame, around.grid_first, around.grid_cells,
-                px, py, around.reach, around.found,
+                around.reach, px, py, around.reach, around.found,
             )  # fmt: skip
             seen, tried = immutable_fields(_agent_view(agent)), immutable(velocities[i])
             for cost in self.costs.vectorised:

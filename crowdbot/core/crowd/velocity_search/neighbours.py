@@ -137,22 +137,22 @@ def gather(
 
 @inline_kernel
 def gather_walls(
-    walls: Array, frame: Array, first: Indices, cells: Indices,
+    walls: Array, frame: Array, first: Indices, cells: Indices, covered: float,
     px: float, py: float, distance: float, found: Rows[WallRecord],
 ) -> int:  # fmt: skip
     """Write the segments within ``distance`` to ``found``; return their number.
 
     Args:
         walls: (S, 4) ends of segments, m.
-        frame, first, cells: their `SegmentGrid`, whose reach is at least the distance.
+        frame, first, cells, covered: their `SegmentGrid`, and its reach; farther, all are tried.
         found: (>= S,) output.
     """
-    count = 0
-    cell = cell_of(frame, px, py)
-    if cell < 0:
-        return 0
-    for k in range(first[cell], first[cell + 1]):
-        s = cells[k]
+    count, begin, end, listed = 0, 0, walls.shape[0], distance <= covered
+    if listed:
+        cell = cell_of(frame, px, py)
+        begin, end = (first[cell], first[cell + 1]) if cell >= 0 else (0, 0)
+    for k in range(begin, end):
+        s = cells[k] if listed else k
         ax, ay, bx, by = walls[s, 0] - px, walls[s, 1] - py, walls[s, 2] - px, walls[s, 3] - py
         if min(ax, bx) > distance or max(ax, bx) < -distance:
             continue

@@ -34,11 +34,20 @@ class DecisionTraitsRecord:
 
 
 class SettingsRecord:
-    """Settings for all agents; fields as of `AgentRecord`."""
+    """Settings for all agents; fields as of `AgentRecord`.
+
+    Attributes:
+        wall_metres, wall_seconds: centre distance beyond which no wall matters is the first plus
+            the second times the fastest speed of a decision.
+        wall_grid: the reach of the `SegmentGrid`, m.
+    """
 
     time_step: float
     relaxation: float
     parity: float
+    wall_metres: float
+    wall_seconds: float
+    wall_grid: float
 
 
 TRAITS = record_type(DecisionTraitsRecord)
@@ -105,6 +114,14 @@ def sort_surroundings(
     height = strip_height(discs, count, reach)
     low, starts = sort_discs(discs, count, height, table)
     return count, height, low, starts
+
+
+@inline_kernel
+def wall_distance(around: Surroundings) -> float:
+    """Return the centre distance beyond which no wall matters to the agent that decides, m."""
+    settings, agent = around.settings[0], around.deciding[0]
+    speed = max(agent.fastest, agent.preferred, math.hypot(agent.vx, agent.vy))
+    return min(around.reach, settings.wall_metres + settings.wall_seconds * speed)
 
 
 @inline_kernel

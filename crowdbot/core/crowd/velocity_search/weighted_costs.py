@@ -53,12 +53,16 @@ from crowdbot.core.crowd.velocity_search.surroundings import (
     Surroundings,
     sort_surroundings,
 )
-from crowdbot.core.geometry.segment_grid import grid_of
+from crowdbot.core.geometry.segment_grid import SegmentGrid, grid_of
 from crowdbot.core.support.records import Rows, rows_of
 from crowdbot.core.types.arrays import Array
 
 _Addresses = NDArray[np.intp]
 _NO_BOX = np.zeros(4)
+#: Speeds up to this multiple of the largest maximum find their walls by the grid.
+_PUSHED = 1.25
+#: Added against rounding.
+_SLACK = 1e-6
 
 # Columns of the table of addresses: part of a cost function and its signature.
 _PARTS = (
@@ -156,6 +160,36 @@ class WeightedCosts:
         """Centre distance beyond which no disc up to a radius matters to a person, m."""
         return max((c.reach(self.largest, largest) for c in self._all), default=0.0)
 
+    def wall_grid(self, walls: Array, largest: float) -> SegmentGrid:
+        """Return the grid in which decisions look for walls, and note how far they look.
+
+        Args:
+            walls: (S, 4), m.
+            largest: the largest radius of a disc, m.
+        """
+        reach, (metres, seconds) = self.reach_of(largest), self._walls_matter(largest)
+        quick = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
+        covered = min(reach, metres + seconds * quick)
+        if self.parity or self.vectorised:
+            metres, seconds, covered = reach, 0.0, reach
+        own = self._settings
+        own["wall_metres"][:], own["wall_seconds"][:], own["wall_grid"][:] = (
+            metres,
+            seconds,
+            covered,
+        )
+        return grid_of(walls, covered)
+
+    def _walls_matter(self, largest: float) -> tuple[float, float]:
+        """Return the centre distance (m) of walls that may change a result: a part, and seconds."""
+        each = [
+            (c.reach(self.largest, largest), 0.0)
+            if c.wall_reach is None
+            else (c.wall_reach[0] + self.largest + _SLACK, c.wall_reach[1] * (1.0 + _SLACK))
+            for c in self.compiled
+        ]
+        return max((m for m, _ in each), default=0.0), max((s for _, s in each), default=0.0)
+
     def tables(self, discs: int, walls: int, dt: float) -> DecisionTables:
         """Return the tables for decisions every ``dt`` seconds; larger ones where needed."""
         self._make_room(discs, walls)
@@ -183,10 +217,11 @@ class WeightedCosts:
             self._discs, self._table,
         )  # fmt: skip
         self._time_step[0], self._broken[0] = view.dt, 0.0
+        grid = self.wall_grid(view.walls, self._largest_seen)
         return Surroundings(
             self._table[:count], starts, low, height,
             view.present if view.decides is None else view.present & view.decides,
-            view.goal, view.walls, *grid_of(view.walls, reach), reach, self.traits,
+            view.goal, view.walls, *grid, reach, self.traits,
             self._settings, self.random, self._near, self._found, self._deciding,
         )  # fmt: skip
 

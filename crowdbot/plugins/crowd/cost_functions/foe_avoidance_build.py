@@ -183,4 +183,6 @@ def build(spec: FoeAvoidanceSpec) -> CompiledCost:
             from_surface=1.0 if spec.range.measure == "surface" else 0.0,
         ),
         weight=spec.weight,
+        # Nothing is seen that is reached later than in 10 s.
+        wall_reach=(2.0, 10.0),
     )

@@ -48,4 +48,5 @@ def build(spec: GoalReachingForceSpec) -> CompiledCost:
         optimum=target,
         params=record_values(COST_PARAMS, range=spec.range.value, from_surface=0.0),
         weight=spec.weight,
+        wall_reach=(0.0, 0.0),
     )

@@ -152,4 +152,5 @@ def build(spec: KaramouzasSpec) -> CompiledCost:
             t_max=spec.t_max,
         ),
         weight=spec.weight,
+        wall_reach=(0.0, max(spec.t_max, _LATE)),
     )

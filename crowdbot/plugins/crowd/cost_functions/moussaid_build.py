@@ -106,4 +106,5 @@ def build(spec: MoussaidSpec) -> CompiledCost:
             _PARAMS, range=spec.range.value, from_surface=surface, d_max=spec.d_max
         ),
         weight=spec.weight,
+        wall_reach=(spec.d_max * (1.0 + 1e-6), 0.0),
     )

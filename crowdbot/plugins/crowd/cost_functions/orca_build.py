@@ -187,4 +187,6 @@ def build(spec: OrcaSpec) -> CompiledCost:
             limit=float(spec.limit == "preferred_speed"),
         ),
         weight=spec.weight,
+        # Beyond, the half-planes hold every velocity: their borders touch the cut-off disc.
+        wall_reach=(1.0, 1.5 * max(spec.time_horizon, _BRAKING)),
     )

@@ -97,4 +97,5 @@ def build(spec: PledestriansSpec) -> CompiledCost:
             cost_of_way=2.0 * math.sqrt(spec.w_a * spec.w_b),
         ),
         weight=spec.weight,
+        wall_reach=(0.0, spec.t_min),
     )

@@ -28,7 +28,7 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
     to_target,
 )
 from crowdbot.plugins.crowd.cost_functions.power_law import PowerLawSpec
-from crowdbot.plugins.crowd.cost_functions.wall_points_build import counts
+from crowdbot.plugins.crowd.cost_functions.wall_points_build import counts, mark_repeated
 
 _SOONEST = 0.001  # s; collisions sooner than this exert no force
 
@@ -82,8 +82,10 @@ def _prepare(
             wx, wy = vx - near[j].nvx, vy - near[j].nvy
             ax, ay = _repulsion(near[j].rx, near[j].ry, wx, wy, near[j].reach, params)
             fx, fy = fx + ax, fy + ay
+    if agent.parity == 0.0:
+        mark_repeated(walls, wall_count, work)
     for s in range(0 if agent.parity != 0.0 else wall_count):
-        if counts(s, agent, walls, params):
+        if counts(s, agent, walls, params, work):
             ax, ay = _repulsion(walls[s].nx, walls[s].ny, vx, vy, agent.radius, params)
             fx, fy = fx + ax, fy + ay
     return int(aim(fx, fy, agent, work))

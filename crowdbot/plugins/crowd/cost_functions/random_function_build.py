@@ -67,5 +67,6 @@ def build(spec: RandomFunctionSpec) -> CompiledCost:
         gradient=_gradient,
         params=record_values(COST_PARAMS, range=spec.range.value, from_surface=0.0),
         weight=spec.weight,
+        wall_reach=(0.0, 0.0),
         ordered=True,
     )

@@ -32,7 +32,7 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
     to_target,
 )
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
-from crowdbot.plugins.crowd.cost_functions.wall_points_build import SAME, counts
+from crowdbot.plugins.crowd.cost_functions.wall_points_build import SAME, counts, mark_repeated
 
 _CLOSEST = 0.001  # m; nothing nearer exerts a force
 _SEEN = math.cos(math.radians(100.0))  # half the field of view
@@ -141,8 +141,10 @@ def _prepare(
         else:
             push = _people(agent, near, j, params)
         fx, fy = fx + push[0], fy + push[1]
+    if not parity:
+        mark_repeated(walls, wall_count, work)
     for s in range(wall_count):
-        if _faces(s, agent, walls, params) if parity else counts(s, agent, walls, params):
+        if _faces(s, agent, walls, params) if parity else counts(s, agent, walls, params, work):
             distance = math.sqrt(walls[s].d2)
             push = _wall(-walls[s].nx, -walls[s].ny, distance, parity, params)
             fx, fy = fx + push[0], fy + push[1]

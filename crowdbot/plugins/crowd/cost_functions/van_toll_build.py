@@ -93,4 +93,5 @@ def build(spec: VanTollSpec) -> CompiledCost:
             max_distance=spec.max_distance,
         ),
         weight=spec.weight,
+        wall_reach=(spec.max_distance * (1.0 + 1e-6), 0.0),
     )

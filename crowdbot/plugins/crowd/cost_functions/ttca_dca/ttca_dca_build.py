@@ -127,4 +127,5 @@ def build(spec: TtcaDcaSpec) -> CompiledCost:
         lower_bound=_lower_bound,
         params=params,
         weight=spec.weight,
+        wall_reach=None if spec.walls else (0.0, 0.0),
     )

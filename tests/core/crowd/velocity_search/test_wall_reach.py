@@ -1,0 +1,104 @@
+"""Walls that cannot matter are left out of a decision: no bit of a choice depends on them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from crowdbot.api import registry
+from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.build import build_cost
+from crowdbot.core.crowd.policy import CrowdPolicy
+from crowdbot.core.crowd.velocity_search.cost import CompiledCost
+from crowdbot.core.crowd.velocity_search.records import AGENT, COST_PARAMS, WALL, WORK_COLUMNS
+from crowdbot.core.support.records import record_values, rows_of
+from crowdbot.core.types.arrays import Array
+from crowdbot.plugin import Pointer
+from crowdbot.plugins.crowd.cost_functions.wall_points_build import SAME, counts, mark_repeated
+from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
+from crowdbot.plugins.crowd.policies.velocity_space_build import VelocitySpace
+
+FAR = {"range": {"value": 100.0, "measure": "surface"}}
+BOUNDED = [
+    "foe_avoidance", "goal_reaching_force", "karamouzas", "moussaid", "orca", "pledestrians",
+    "random_function", "ttca_dca", "van_toll",
+]  # fmt: skip
+METHODS = {"orca": "global", "foe_avoidance": "gradient"}
+
+
+def _rooms(rng: np.random.Generator) -> Array:
+    """Walls (180, 4) of random boxes in a square of 60 m."""
+    low = rng.uniform(-30.0, 29.0, (45, 2))
+    high = low + rng.uniform(0.1, 4.0, (45, 2))
+    corners = [
+        np.stack([low[:, 0], low[:, 1], high[:, 0], low[:, 1]], axis=1),
+        np.stack([high[:, 0], low[:, 1], high[:, 0], high[:, 1]], axis=1),
+        np.stack([high[:, 0], high[:, 1], low[:, 0], high[:, 1]], axis=1),
+        np.stack([low[:, 0], high[:, 1], low[:, 0], low[:, 1]], axis=1),
+    ]
+    return np.concatenate(corners)
+
+
+def _choices(kind: str, whole: bool) -> Array:
+    """States after 0.3 s with the wall reach of a function, or with all walls."""
+    known, rng = registry(), np.random.default_rng(4)
+    function: Any = build_cost(
+        known, known.find("cost function", kind).spec.model_validate({"kind": kind} | FAR)
+    )
+    assert isinstance(function, CompiledCost)
+    assert function.wall_reach is not None
+    shown = replace(function, wall_reach=None) if whole else function
+    spec = VelocitySpaceSpec.model_validate(
+        {"kind": "velocity_space", "relaxation_time": 0.4, "method": METHODS.get(kind, "sampling")}
+    )
+
+    def make(agents: Agents) -> CrowdPolicy:
+        return VelocitySpace(spec, [shown], agents)
+
+    walls, count = _rooms(rng), 40
+    x, y = rng.uniform(-25.0, 25.0, (2, count))
+    goals = rng.uniform(-25.0, 25.0, (count, 2))
+    agents = Agents.of(
+        x=x, y=y, radius=0.25, preferred_speed=rng.uniform(0.5, 1.6, count),
+        routes=[[(float(a), float(b))] for a, b in goals],
+    )  # fmt: skip
+    engine = CrowdEngine(agents, CrowdWorld(walls=walls), make)
+    flat = engine.initial_state()
+    people = s.view(flat)[1]
+    people[:, s.VX : s.VY + 1] = rng.normal(0.0, 1.5, (count, 2))
+    for _ in range(24):
+        engine.advance(flat)
+    return flat
+
+
+@pytest.mark.parametrize("kind", BOUNDED)
+def test_walls_out_of_reach_change_no_bit(kind: str) -> None:
+    assert np.array_equal(_choices(kind, whole=False), _choices(kind, whole=True))
+
+
+def test_walls_are_points_that_count_once() -> None:
+    rng = np.random.default_rng(2)
+    walls = rows_of(300, WALL)
+    x, y = rng.choice([-2.0, -1e-6, 0.0, 1e-6, 0.75, 3.0], (2, 300))
+    walls["nx"][:] = x + rng.choice([0.0, 0.4 * SAME, 0.9 * SAME, 3.0 * SAME], 300)
+    walls["ny"][:] = y + rng.choice([0.0, -0.7 * SAME], 300)
+    walls["d2"][:] = 1.0
+    point = np.stack([walls["nx"], walls["ny"]], axis=1)
+    gap = np.abs(point[:, np.newaxis] - point[np.newaxis]).max(axis=2)
+    expected = ~np.any(np.tril(gap <= SAME, -1), axis=1)
+    assert 30 < np.count_nonzero(expected) < 200
+    work = np.zeros(1 + 7 * WORK_COLUMNS * 300)
+    params = record_values(COST_PARAMS, range=5.0, from_surface=0.0)
+    for number in (300, 12):
+        assert _counted(walls, number, params, work) == list(expected[:number])
+
+
+def _counted(walls: Any, number: int, params: Array, work: Array) -> list[bool]:
+    agent: Any = rows_of(1, AGENT)[0]
+    pointers: tuple[Pointer, Pointer] = (params, work)
+    mark_repeated(walls, number, pointers[1])
+    return [counts(k, agent, walls, *pointers) for k in range(number)]
