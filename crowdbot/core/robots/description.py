@@ -17,6 +17,7 @@ import numpy as np
 
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
 from crowdbot.core.robots.sdf_frames import written_out
+from crowdbot.core.robots.sdf_nested import without_nested
 from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
 from crowdbot.core.support.text_files import LARGEST
 from crowdbot.core.types.arrays import Array
@@ -224,18 +225,31 @@ def parse_description(text: str) -> Description:
         raise PluginError(f"the robot's description has xacro macros; {_EXPAND}")
     if top.tag == "robot":
         return Description(text, "urdf", top)
-    model = top if top.tag == "model" else top.find("model")
+    model = top if top.tag == "model" else _only_model(top)
     if top.tag not in ("sdf", "model") or model is None:
         raise PluginError(
             f"the robot's description is neither URDF (<robot>) nor SDFormat (<sdf><model>): "
             f"<{top.tag}>"
         )
-    for tag in ("model", "include"):
-        if model.find(tag) is not None:
-            raise PluginError(f"the robot's model has a <{tag}> inside; write it out")
     version = top.get("version", "1.9")
-    made, notes = written_out(model, version)
-    return Description(text, "sdf", made, version if made is model else "1.9", tuple(notes))
+    flat, nested = without_nested(model)
+    made, notes = written_out(flat, version)
+    return Description(text, "sdf", made, version if made is model else "1.9", (*nested, *notes))
+
+
+def _only_model(top: Xml.Element) -> Xml.Element | None:
+    """Return the model of a file of SDFormat, also of a world with nothing else.
+
+    Raises:
+        PluginError: a world has several models, or only includes of other files.
+    """
+    found = top.findall("model") or top.findall("world/model")
+    if len(found) > 1:
+        names = ", ".join(f"'{name_of(model)}'" for model in found)
+        raise PluginError(f"the file has {len(found)} models, not one robot: {names}")
+    if not found and (uri := top.findtext("world/include/uri")) is not None:
+        raise PluginError(f"the world includes its model, '{uri.strip()}'; name that model's file")
+    return found[0] if found else None
 
 
 def _is_macro(element: Xml.Element) -> bool:

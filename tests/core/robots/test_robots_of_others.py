@@ -83,6 +83,22 @@ CARTS = {
         axis="<xyz>0 1 0</xyz><use_parent_model_frame>1</use_parent_model_frame>",
     ),
 }  # fmt: skip
+#: Both wheels in a model of their own, in the world of a file; it hangs lower, and is turned.
+NESTED = (
+    CARTS["links at the axle"]
+    .replace('<sdf version="1.9">', '<sdf version="1.9"><world name="w">')
+    .replace("</model></sdf>", "</model></world></sdf>")
+    .replace('<link name="left_wheel">', '<model name="drive"><pose>0 0 0.02 0 0 1</pose>'
+             '<frame name="low"><pose>0 0 -0.02 0 0 -1</pose></frame><link name="left_wheel">')
+    .replace("<pose>0 0.15 0.05", '<pose relative_to="low">0 0.15 0.05')
+    .replace("<pose>0 -0.15 0.05", '<pose relative_to="low">0 -0.15 0.05')
+    .replace("</link><joint name=\"left\"", "</link></model><joint name=\"left\"")
+    .replace('<link name="right_wheel">', '<model name="drive2"><frame name="low"/>'
+             '<link name="right_wheel">')
+    .replace("</link><joint name=\"right\"", "</link></model><joint name=\"right\"")
+    .replace("<child>left_wheel", "<child>drive::left_wheel")
+    .replace("<child>right_wheel", "<child>drive2::right_wheel")
+)  # fmt: skip
 LIMITS = RobotLimits(v_min=-0.3, v_max=0.6, w_max=1.5, a_max=1.0, alpha_max=3.0)
 
 
@@ -104,6 +120,32 @@ def test_frames_of_sdformat(name: str) -> None:
     assert model.base_height == pytest.approx(0.0)
     assert found.pose("left_wheel", "base_link")[:3, 3] == pytest.approx([0.0, 0.15, 0.05])
     assert any("ball joint is held; its caster slides: caster" in note for note in model.notes)
+
+
+def test_models_inside_a_model() -> None:
+    found = read_description(NESTED)
+    model = check_model(_model(found, NESTED))
+    assert isinstance(model.drive, DifferentialDrive)
+    assert (model.drive.track, model.base_height) == pytest.approx((0.3, 0.0))
+    left = found.pose("drive__left_wheel", "base_link")
+    assert left == pytest.approx(read_description(CARTS["links at the axle"]).pose(
+        "left_wheel", "base_link"), abs=1e-9)  # fmt: skip
+    assert any("drive__PART, drive2__PART" in note for note in found.notes)
+    last = drive(model, WHEELS, Command(0.2, 0.5), 1.0)[-1]
+    assert last.yaw > 0.2
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("<frame", "<include><uri>model://arm</uri></include><frame", "includes 'model://arm'"),
+        ('"drive2"', '"drive2" placement_frame="low"', "'drive2' is placed by its frame 'low'"),
+        ('</world>', '<model name="box"/></world>', "2 models, not one robot: 'cart', 'box'"),
+    ],
+)  # fmt: skip
+def test_models_that_are_not_inside(old: str, new: str, message: str) -> None:
+    with pytest.raises(PluginError, match=message):
+        read_description(NESTED.replace(old, new, 1))
 
 
 def test_frames_that_are_not_there() -> None:
