@@ -20,7 +20,10 @@ _LISTS = (
 )  # fmt: skip
 _TABLE = ("id", "x", "y")
 #: Fields that may name a person, in the order they are tried.
-NAMES = ("track_id", "id", "tracking_id", "object_id", "uuid", "name", "identifier")
+NAMES = (
+    "track_id", "id", "tracking_id", "object_id", "person_id", "human_id", "agent_id",
+    "pedestrian_id", "ped_id", "uuid", "name", "identifier", "label",
+)  # fmt: skip
 #: Package -> what the field ``type`` of its agents means.
 _TYPES = {"hunav_msgs": {2: "robot", 3: "other"}, "pedsim_msgs": {2: "robot"}}
 #: derived_object_msgs: what the field ``classification`` means; 0 to 3 are unknown.
@@ -76,7 +79,23 @@ def _items(message: Any) -> Sequence[Any] | None:
         return [message]
     if hasattr(message, "person"):
         return [message.person]
-    return next((getattr(message, n) for n in _LISTS if hasattr(message, n)), None)
+    named = next((getattr(message, n) for n in _LISTS if hasattr(message, n)), None)
+    return _only_list(message) if named is None else named
+
+
+def _only_list(message: Any) -> Sequence[Any] | None:
+    """Return the list of bodies of a message with names of its own; None without, or of several.
+
+    Lists are told by their items, which have places; a message may have other lists, of texts.
+    """
+    fields = getattr(message, "__dataclass_fields__", {})
+    values = [getattr(message, name) for name in fields]
+    lists = [value for value in values if isinstance(value, list)]
+    bodies = [found for found in lists if any(place_of(item) is not None for item in found)]
+    if len(bodies) == 1:
+        return bodies[0]
+    empty = [found for found in lists if not found]
+    return empty[0] if not bodies and empty else None
 
 
 def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterator[Seen]:
@@ -96,7 +115,7 @@ def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterat
         place = place_of(item)
         if place is None:
             raise InputError(
-                f"{path}: {topic} holds {message.__msgtype__}, whose people have no position"
+                f"{path}: {topic} holds {message.__msgtype__}, whose items have no position"
             )
         own_stamp, own_frame = header_of(item)
         yield Seen(
@@ -122,8 +141,11 @@ def _of_table(message: Any, log: int, number: int) -> Iterator[Seen]:
 def _values(item: Any) -> dict[str, float]:
     values: dict[str, float] = {}
     linear = linear_of(item)
+    plain = [getattr(item, name, None) for name in ("vx", "vy")]
     if linear is not None:
         values = {"vx": float(linear.x), "vy": float(linear.y)}
+    elif all(isinstance(v, int | float) for v in plain):
+        values = {"vx": float(item.vx), "vy": float(item.vy)}
     radius = getattr(item, "radius", None)
     if isinstance(radius, int | float) and math.isfinite(radius) and radius > 0.0:
         values["radius"] = float(radius)
