@@ -12,6 +12,11 @@ _PLACES = (
     "position", "pos", "pose", "pose_with_covariance", "transform", "translation", "kinematics",
     "bbox", "center",
 )  # fmt: skip
+#: Types of messages that are a place; a vector may be a speed.
+_PLACE_TYPES = (
+    "Point", "Point32", "PointStamped", "Pose", "PoseStamped", "Pose2D", "PoseWithCovariance",
+    "PoseWithCovarianceStamped", "Transform", "TransformStamped",
+)  # fmt: skip
 _YAWS = ("theta", "yaw", "heading")
 _DEPTH = 5
 
@@ -47,7 +52,15 @@ def place_of(item: Any, depth: int = _DEPTH) -> BagPose | None:
         if found is not None:
             turn = getattr(item, "orientation", getattr(item, "rotation", None))
             return found if turn is None else BagPose(found.xyz, yaw_of(turn))
-    return None
+    return place_of(_only_place(item), depth - 1)
+
+
+def _only_place(item: Any) -> Any:
+    """Return the one part of a message whose type is a place, whatever its name; None if not."""
+    parts = [getattr(item, name) for name in getattr(item, "__dataclass_fields__", {})]
+    kinds = [str(getattr(part, "__msgtype__", "")).rpartition("/")[2] for part in parts]
+    found = [part for part, kind in zip(parts, kinds, strict=True) if kind in _PLACE_TYPES]
+    return found[0] if len(found) == 1 else None
 
 
 def _is_point(item: Any) -> bool:

@@ -105,8 +105,11 @@ def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterat
         return
     items = _items(message)
     if items is None:
+        fields = [n for n in getattr(message, "__dataclass_fields__", {}) if n != "__msgtype__"]
         raise InputError(
-            f"{path}: {topic} holds {message.__msgtype__}, which has no list of people"
+            f"{path}: {topic} holds {message.__msgtype__}, which has no list of people: one field "
+            "with a list of things that have a place; it has "
+            f"{', '.join(fields) or 'none'}"
         )
     if all(is_marker(item) for item in items):
         yield from shapes(items, log, number)
