@@ -196,8 +196,13 @@ def _is_of_place(shape: Any, properties: dict[str, Any], name: str, aside: Count
         return False
     if shape.geom_type in _POINTS:
         aside["that are points"] += 1
-        return False
-    return True
+    elif shape.is_empty:
+        aside["with an empty geometry"] += 1
+    elif shape.length == 0.0:
+        aside["without length"] += 1
+    else:
+        return True
+    return False
 
 
 def kind_of(properties: dict[str, Any]) -> str:

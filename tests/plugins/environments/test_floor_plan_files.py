@@ -52,6 +52,13 @@ def test_null_geometry_and_null_heights(tmp_path: Path, caplog: Log) -> None:
     assert "plan.geojson: left out: 1 feature(s) without geometry" in caplog.text
 
 
+def test_shapes_without_size_are_told(tmp_path: Path, caplog: Log) -> None:
+    empty, dot = "POLYGON EMPTY", "LINESTRING (3 1, 3 1)"
+    parts = _plan(file=_geojson(tmp_path, (HALL, {}), (empty, {}), (dot, {"kind": "wall"})))
+    assert not parts.solids
+    assert "1 feature(s) with an empty geometry, 1 feature(s) without length" in caplog.text
+
+
 def test_null_in_a_collection(tmp_path: Path) -> None:
     box = shapely.geometry.mapping(shapely.from_wkt(HALL))
     content = {"type": "GeometryCollection", "geometries": [None, box]}
