@@ -19,12 +19,25 @@ FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
 #: Our name -> other names that are usual, in lower case; taken if ours is not there.
 _USUAL: Mapping[str, Sequence[str]] = {
     "t": ("time", "timestamp", *FRAMES),
-    "id": ("persid", "personid", "person_id", "ped_id", "pedestrian_id", "agent_id", "track_id"),
-}
+    "id": (
+        "persid", "personid", "person_id", "ped_id", "pedestrian_id", "agent_id", "track_id",
+        "pers", "person", "pedestrian", "pedestrianid", "agent", "agentid", "trackid", "human_id",
+    ),
+}  # fmt: skip
 _LENGTHS = ("x", "y", "vx", "vy", "radius")
+#: Columns that may be in another unit than ours, by themselves.
+_OTHERS = ("t", "theta")
 #: Unit of lengths -> metres.
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-_UNIT = re.compile(r"^(.*?)\s*(?:/|\[|\(|_in_)\s*(m|cm|mm)(?:/s)?\s*[\])]?$", re.IGNORECASE)
+#: Unit of times and angles -> seconds, rad.
+_SCALES = {
+    "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9,
+    "rad": 1.0, "deg": math.pi / 180.0, "°": math.pi / 180.0, "degrees": math.pi / 180.0,
+}  # fmt: skip
+_UNIT = re.compile(
+    rf"^(.*?)\s*(?:/|\[|\(|_in_)\s*({'|'.join([*_METRES, *_SCALES])})(?:/s)?\s*[\])]?$",
+    re.IGNORECASE,
+)
 _TOLD = re.compile(
     r"\b(?:in|units?|lengths?|positions?)\s*(?:is|are|in|[:=])*\s*\(?"
     r"(mm|cm|m|millimet(?:er|re)s?|centimet(?:er|re)s?|met(?:er|re)s?)\b", re.IGNORECASE
@@ -91,18 +104,34 @@ def without_unit(column: str) -> str:
     return match[1] if match is not None and match[1] else column
 
 
-def unit_in(text: str) -> float | None:
-    """Return metres in the unit that a column's name or a comment states; None if none does."""
-    match = _UNIT.match(text) or _TOLD.search(text)
-    if match is not None:
-        word = match[match.lastindex or 0].lower()
-        return _METRES[word if word in _METRES else {"mi": "mm", "ce": "cm", "me": "m"}[word[:2]]]
-    return None
+def unit_in(column: str) -> float | None:
+    """Return the unit that a column's name states, in m, s or rad; None if it states none."""
+    match = _UNIT.match(column)
+    if match is None:
+        return length_unit(column)
+    word = match[2].lower()
+    return _METRES[word] if word in _METRES else _SCALES[word]
+
+
+def length_unit(text: str) -> float | None:
+    """Return metres in the unit that a comment states; None if it states none."""
+    match = _TOLD.search(text)
+    if match is None:
+        match = _UNIT.match(text)
+        return None if match is None else _METRES.get(match[2].lower())
+    word = match[1].lower()
+    return _METRES[word if word in _METRES else {"mi": "mm", "ce": "cm", "me": "m"}[word[:2]]]
+
+
+def unit_of(ours: str, column: str, of_lengths: float) -> float:
+    """Return the unit of a column in ours: its own, or that of all lengths of the table."""
+    own = unit_in(column)
+    return own if own is not None else of_lengths if ours in _LENGTHS else 1.0
 
 
 def scaled(name: str, ours: str, cells: Sequence[str], unit: float, lines: Sequence[int]) -> Cells:
-    """Return a column in metres, if it holds lengths of another unit."""
-    if unit == 1.0 or ours not in _LENGTHS:
+    """Return a column in metres, seconds or rad, if it is in another unit."""
+    if unit == 1.0 or ours not in (*_LENGTHS, *_OTHERS):
         return cells
     table = RawTable(name, {ours: cells}, lines)
     return table.numbers(ours) * unit

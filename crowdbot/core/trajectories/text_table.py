@@ -15,8 +15,9 @@ from crowdbot.core.trajectories.table_columns import (
     FRAMES,
     chosen,
     from_wide,
+    length_unit,
     scaled,
-    unit_in,
+    unit_of,
     without_unit,
 )
 from crowdbot.errors import InputError
@@ -72,7 +73,11 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     made = chosen(str(path), header, names, known, spelled=table.header)
     columns: dict[str, Cells] = {
         ours: scaled(
-            str(path), ours, cells[header[i]], unit_in(table.header[i]) or table.unit, table.lines
+            str(path),
+            ours,
+            cells[header[i]],
+            unit_of(ours, table.header[i], table.unit),
+            table.lines,
         )
         for ours, i in made.items()
     }
@@ -104,7 +109,7 @@ def split(path: Path, text: str) -> TextTable:
     else:
         header = _header_of_comments(comments, len(rows[0]))
     told = " ".join(comments)
-    return TextTable(header, rows, numbers, _frame_rate(told), unit_in(told) or 1.0)
+    return TextTable(header, rows, numbers, _frame_rate(told), length_unit(told) or 1.0)
 
 
 def _is_number(cell: str) -> bool:
@@ -115,8 +120,12 @@ def _is_number(cell: str) -> bool:
 
 
 def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
-    """Return the names of columns in the last comment that has one for each; empty if none has."""
-    for comment in reversed(comments):
+    """Return the names of columns in the last comment that has one for each; empty if none has.
+
+    Comments that name people or times come first: others may be sentences about x and y.
+    """
+    named = [c for c in comments if set(re.split(r"[^a-z_]+", c.lower())) & set(_STARTS)]
+    for comment in [*reversed(named), *reversed(comments)]:
         words = re.split(r"[\s,;]+", re.sub(r"\s*[\[(]", "[", comment.lstrip("#%/ \t")).strip())
         names = [without_unit(word.strip("\"':")).lower() for word in words if word]
         if "x" in names and "y" in names:
@@ -130,7 +139,7 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
 
 
 _STARTS = (
-    "id", "persid", "personid", "ped_id", "t", "time", *FRAMES,
+    "id", "persid", "personid", "ped_id", "pers", "person", "t", "time", *FRAMES,
 )  # fmt: skip
 
 

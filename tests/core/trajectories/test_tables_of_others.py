@@ -43,6 +43,8 @@ def _check(run: crowdbot.Trajectories, rate: float = 25.0) -> None:
         ("#framerate: 25\n#ID\tFR\tX\tY\tZ\n", 1.0),
         ("# PeTrack\n# all lengths in cm\n# PersID Frame X Y Z\n# 25 fps\n", 100.0),
         ("# frame rate: 25,0\n", 1.0),
+        ("# x and y in m\n# framerate=25\n#pers frame x y z\n", 1.0),
+        ("# framerate: 25 fps\n# id frame x/m y/m angle/deg\n", 1.0),
         ("% fps: 25\nid frame x[mm] y[mm] z[mm]\n", 1000.0),
     ],
 )
@@ -77,6 +79,19 @@ def test_trajectories_of_pedpy() -> None:
     data |= {"x": table[:, 2], "y": table[:, 3]}
     _check(READ.from_pandas(agents=SimpleNamespace(data=data, frame_rate=25.0)))
     _check(READ.from_pandas(agents=data, frame_rate=25.0))
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "ns"])
+def test_units_in_brackets(tmp_path: Path, unit: str) -> None:
+    path, per = tmp_path / "a.csv", {"s": 1.0, "ms": 1e3, "ns": 1e9}[unit]
+    head = f"time [{unit}],x [cm],y (cm),theta [deg]"
+    rows = [f"{0.1 * k * per:.1f},{5.0 * k:.1f},0,{30.0:.1f}" for k in range(10)]
+    path.write_text("\n".join([head, *rows]))
+    run = READ.from_csv(path, **BODY)
+    assert run.robot is not None
+    np.testing.assert_allclose(run.t, 0.1 * np.arange(10), atol=1e-9)
+    np.testing.assert_allclose(run.robot.x, 0.05 * np.arange(10), atol=1e-9)
+    np.testing.assert_allclose(run.robot.theta, math.radians(30.0))
 
 
 @pytest.mark.parametrize(
