@@ -51,7 +51,7 @@ class PageServer:
         self.token = secrets.token_urlsafe(24)
         self._clients = set[PageClient]()
         self._scene, self._frame, self._end, self._state = "", "", "", ""
-        seat.on_taken = lambda number, t: self.tell("taken", n=number, t=t)
+        seat.on_taken = lambda number, t: self.tell("taken", n=number, t=t, at=1e3 * time.time())
         self._loop = LoopThread(f"{name} page")
         try:
             self._server: Server = self._loop.run(self._start(port))

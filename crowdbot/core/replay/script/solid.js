@@ -24,10 +24,10 @@ function makeSolid(canvas, run, bounds) {
   const solids = run.solids;
   const parts = {
     floor: makeFloor(bounds), obstacles: makeObstacles(solids), goals: makeGoals(run.robots),
-    people: makePeople(run.people, solids), points: pointCloud(),
+    people: makePeople(run.people, solids), points: pointCloud(), thoughts: markLines(), cones: markLines(),
     robots: run.robots.map((robot, i) => makeRobot(robot, solids.robots[i])), ways: run.robots.map(wayLine),
   };
-  world.add(rig, parts.floor.group, parts.obstacles.group, parts.goals.group, parts.people.group, parts.points, ...parts.robots, ...parts.ways);
+  world.add(rig, parts.floor.group, parts.obstacles.group, parts.goals.group, parts.people.group, parts.points, parts.thoughts, parts.cones, ...parts.robots, ...parts.ways);
   const solid = { canvas, run, renderer, scene, rig, camera, upright, parts, frames: 0, before: 0, slow: 0, ratio: 1 };
   paintSolid(solid);
   return solid;
@@ -45,10 +45,12 @@ function paintSolid({ scene, parts }) {
   parts.obstacles.marks.color = colour("robot");
   parts.goals.material.color = colour("goal");
   parts.points.material.color = colour("lidar");
+  parts.thoughts.material.color = colour("thought");
+  parts.cones.material.color = colour("sonar");
   for (const way of parts.ways) way.material.color = colour("robot");
 }
 
-/** Draws a frame from an eye; `options`: {hiddenPerson, hiddenRobot, low, points}. */
+/** Draws a frame from an eye; `options`: {hiddenPerson, hiddenRobot, low, points, cones, thoughts}. */
 function drawSolid(solid, frame, eye, options) {
   const { renderer, canvas, parts, run } = solid;
   const ratio = keepUp(solid);
@@ -65,6 +67,8 @@ function drawSolid(solid, frame, eye, options) {
   if (run.people) movePeople(parts.people, run, frame, options.hiddenPerson ?? -1);
   moveRobots(parts.robots, frame.robots, options.hiddenRobot ?? -1);
   movePoints(parts.points, options.points ? frame.scans : [], lidarHeight(run));
+  moveCones(parts.cones, options.cones ? frame.cones : [], lidarHeight(run));
+  moveThoughts(parts.thoughts, run, frame, options.thoughts);
   moveWays(parts.ways, run.robots, frame.k);
   renderer.render(solid.scene, solid.camera);
   solid.frames += 1;

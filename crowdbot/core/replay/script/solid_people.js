@@ -13,9 +13,9 @@ const PARTS = [ // name, pieces of each person
 ];
 
 function partGeometry(name) {
-  if (name === "head") return new THREE.SphereGeometry(1, 10, 8).scale(1, 1, 0.5);
+  if (name === "head") return new THREE.SphereGeometry(1, 8, 6).scale(1, 1, 0.5);
   if (name === "thing") return new THREE.BoxGeometry(1, 1, 1);
-  return new THREE.CylinderGeometry(1, name === "leg" ? 0.75 : 0.85, 1, 8).rotateX(Math.PI / 2); // along z
+  return new THREE.CylinderGeometry(1, name === "leg" ? 0.75 : 0.85, 1, name === "trunk" ? 8 : 6).rotateX(Math.PI / 2); // along z
 }
 
 function partColour(name, p, piece) {

@@ -8,12 +8,27 @@ function makeRobot(about, solid) {
   const body = new THREE.Group();
   body.position.z = solid?.base ?? 0;
   group.add(body);
-  for (const [colour, corners] of solid?.parts ?? []) {
-    const points = corners.map(([x, y, z]) => new THREE.Vector3(x, y, z));
-    body.add(new THREE.Mesh(new THREE.ConvexGeometry(points), new THREE.MeshLambertMaterial({ color: colour })));
-  }
-  if (!body.children.length) group.add(plainRobot(about, solid?.height ?? 0.5));
+  if (solid?.parts.length) body.add(shapesTogether(solid.parts));
+  else group.add(plainRobot(about, solid?.height ?? 0.5));
   return group;
+}
+
+/** One body of all visible shapes: one call of the graphics card for each robot. */
+function shapesTogether(parts) {
+  const [corners, normals, shades] = [[], [], []];
+  const shade = new THREE.Color();
+  for (const [colour, points] of parts) {
+    const { attributes } = new THREE.ConvexGeometry(points.map(([x, y, z]) => new THREE.Vector3(x, y, z)));
+    shade.set(colour);
+    for (const v of attributes.position.array) corners.push(v);
+    for (const v of attributes.normal.array) normals.push(v);
+    for (let i = 0; i < attributes.position.count; i++) shades.push(shade.r, shade.g, shade.b);
+  }
+  const geometry = new THREE.BufferGeometry();
+  for (const [name, values] of Object.entries({ position: corners, normal: normals, color: shades })) {
+    geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(values), 3));
+  }
+  return new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true }));
 }
 
 /** A robot of which only outline and height are known. */

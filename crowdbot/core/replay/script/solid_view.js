@@ -83,7 +83,7 @@ function lookingPerson(run, frame) {
 /** The eye of a panel, and what it does not see. */
 function panelEye({ run, view, solid, around, gaze }, frame) {
   const robot = followedIn(run, frame)?.robot ?? 0;
-  const options = { low: false, points: state.lidar };
+  const options = { low: false, points: state.lidar, cones: state.sonar, thoughts: state.thoughts };
   if (state.view === "camera" && Number.isFinite(frame.robots[robot]?.x)) {
     const eye = eyeOfRobot(frame.robots[robot], run.solids.robots[robot], reachOf(run.robots[robot]), gaze);
     return [eye, { ...options, hiddenRobot: robot }];

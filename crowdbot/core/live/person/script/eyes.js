@@ -1,5 +1,6 @@
 // The picture in three dimensions: from behind, through the eyes of the person, or as the robot's camera sees.
 
+const REST = 30; // ms; a little less than two frames of a screen
 const EYE_VIEWS = ["plan", "solid", "eyes", "camera"];
 const eyes = { view: "plan", solid: null, around: { ...BEHIND, far: 6, pitch: 0.45 }, look: { yaw: 0, pitch: 0 }, failed: false };
 
@@ -32,10 +33,17 @@ function sceneBounds({ walls, robots, solids }) {
   return { x0: Math.min(...all(0)), x1: Math.max(...all(0)), y0: Math.min(...all(1)), y1: Math.max(...all(1)) };
 }
 
+/** Returns true if it is time for the next picture: without a graphics card, 30 a second leave time to drive. */
+function pictureDue(now) {
+  const { ratio, before, renderer } = eyes.solid;
+  return ratio === 1 || renderer.xr.isPresenting || now - before > REST;
+}
+
 /** Draws the picture; returns false where the plan is to be drawn. */
-function drawEyes(frame) {
+function drawEyes(frame, now) {
   if (eyes.view === "plan" || !globalThis.THREE) return false;
   prepareEyes();
+  if (!pictureDue(now)) return true;
   const own = ownBody(frame);
   if (!own || !Number.isFinite(own.x)) return false;
   const walks = shown.walker >= 0;

@@ -1,6 +1,7 @@
 // The hand on the stick: joins keyboard, pad and gamepad, and says when no hand is there.
 
 const BEAT = 100; // ms between two words to the run; it waits half a second for one
+const POLL = 10; // ms between two looks at the gamepad, also where pictures come seldom
 const TURN = 2.2; // rad/s of the view of a person who walks
 const hand = { drives: false, number: 0, last: "", yaw: 0, gain: 1, before: 0 };
 
@@ -82,5 +83,6 @@ function bindHand() {
   addEventListener("focus", beat);
   document.addEventListener("visibilitychange", letGo);
   setInterval(beat, BEAT);
+  setInterval(() => pollHand(performance.now()), POLL);
   setInterval(sayLatency, 1000);
 }

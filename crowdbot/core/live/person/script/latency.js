@@ -9,12 +9,17 @@ function noteSent(number, stamp) {
   if (latency.sent.size > KEPT) latency.sent.delete(latency.sent.keys().next().value);
 }
 
-/** Handles the first use of a position: earlier ones were passed over. */
-function noteTaken(number) {
+/**
+ * Handles the first use of a position: earlier ones were passed over. `at` is the time of the step,
+ * ms since 1970; page and run are on one machine, so they share a clock, unless it was set meanwhile.
+ */
+function noteTaken(number, at) {
   const stamp = latency.sent.get(number);
   for (const earlier of [...latency.sent.keys()]) if (earlier <= number) latency.sent.delete(earlier);
   if (stamp === undefined) return;
-  const ms = performance.now() - stamp;
+  const heard = performance.now() - stamp;
+  const told = at - performance.timeOrigin - stamp;
+  const ms = told >= 0 && told <= heard ? told : heard;
   if (ms < 0 || ms > 10000) return;
   latency.times.push(ms);
   latency.unsaid.push(Math.round(100 * ms) / 100);

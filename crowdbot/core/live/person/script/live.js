@@ -1,6 +1,6 @@
 // The run as it comes: what stands is told once, what moves sixteen times a second.
 
-const shown = { topSpeed: 1.6, run: null, frame: null, earlier: null, driven: 0, told: null };
+const shown = { topSpeed: 1.6, run: null, frame: null, earlier: null, driven: 0, told: null, wrote: 0 };
 
 /** Prepares a run of which nothing is known yet but the scene. */
 function takeScene(scene) {

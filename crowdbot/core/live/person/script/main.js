@@ -1,13 +1,17 @@
 // Joins the connection, the hand and the picture.
 
+const WRITE = 90; // ms between two changes of the words; each costs a layout
+
 function draw(now) {
-  pollHand(now);
   const frame = frameNow(now);
   if (frame) {
-    if (!drawEyes(frame)) drawPlan(frame);
-    writeReadout(frame);
+    if (!drawEyes(frame, now)) drawPlan(frame);
+    if (now - shown.wrote > WRITE) writeReadout(frame);
   }
-  writeControls();
+  if (now - shown.wrote > WRITE) {
+    writeControls();
+    shown.wrote = now;
+  }
   if (!eyes.solid?.renderer.xr.isPresenting) requestAnimationFrame(draw);
 }
 
@@ -37,7 +41,7 @@ function start() {
     state: ({ waits, taken }) => { words.waits = waits; words.taken = taken; writeWords(); },
     scene: ({ scene }) => { words.end = null; takeScene(scene); writeWords(); },
     frame: takeFrame,
-    taken: ({ n }) => noteTaken(n),
+    taken: ({ n, at }) => noteTaken(n, at),
     end: (said) => { words.end = said; link.over = Boolean(said.last); writeWords(); },
   });
   setInterval(writeWords, 250);
