@@ -257,7 +257,8 @@ def test_without_webgl_the_page_says_so(opened: Callable[..., tuple[Page, Comman
 def test_a_headset_stands_in_the_crowd(opened: Callable[..., tuple[Page, Command]]) -> None:
     """With an emulator of WebXR; no headset was at hand."""
     emulator = IWER.read_text(encoding="utf-8") + (
-        ";window.device = new IWER.XRDevice(IWER.metaQuest3); window.device.installRuntime({ forceInstall: true });"
+        ";window.device = new IWER.XRDevice(IWER.metaQuest3);"
+        "window.device.installRuntime({ forceInstall: true });"
     )
     given = ("walk", SHORT, "--at", "3,-1", "--set", "robots.robot.task.time_limit=3")
     page, command = opened(*given, fragment="#view=eyes", init=emulator)
