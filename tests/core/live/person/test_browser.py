@@ -144,12 +144,12 @@ def test_keys_and_a_gamepad_drive_and_the_recording_agrees_sample_by_sample(
     assert {(1, 0), (1, 1), (0, 0), (-1, 0)} <= set(asked)
     assert any(ahead == 1 and left == pytest.approx(-0.5) for ahead, left in asked)  # the gamepad
     centred = 0  # by the dead man's switch, also where a slow machine makes the page fall silent
-    for t, command in user.items():
+    for t, asked_for in user.items():
         n = max((n for since, n in used if since <= t + 1e-9), default=0)
         ahead, left = (sticks[str(n)]["ahead"], sticks[str(n)]["left"]) if n else (0, 0)
         v = ahead * (limits.v_max if ahead > 0 else -limits.v_min)
-        if command != pytest.approx((v, left * limits.w_max)):
-            assert command == (0.0, 0.0)
+        if asked_for != pytest.approx((v, left * limits.w_max)):
+            assert asked_for == (0.0, 0.0)
             centred += 1
     assert centred <= shown["live"]["missed_steps"]
     assert max(v for v, _ in user.values()) == limits.v_max
