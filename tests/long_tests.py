@@ -12,7 +12,7 @@ LONG = (
     "tests/test_check_vocabulary.py::test_the_repository_has_none",  # make style checks it, too
     "tests/core/statistics/test_sign_flip.py::test_level_with_exchangeable_planners_and_power",
     "tests/core/statistics/test_summary.py::test_taking_runs_for_draws_would_find_differences",
-    "tests/cli/test_study_page.py::test_a_participant_answers_is_interrupted_and_goes_on",
+    "tests/cli/test_study_page.py",
     "tests/cli/test_verify_command.py::test_what_a_planner_may_take_is_part_of_an_honest_bundle",
     "tests/cli/test_simulate_failures.py::test_a_planner_that_swallows_every_interruption",
     "tests/core/realism/near_robots/test_fit.py::test_a_fit_is_written_as_a_part_that_realism_reads",
