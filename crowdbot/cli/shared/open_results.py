@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -48,6 +49,14 @@ def open_results(root: Path, altered: bool) -> Results:
     message = f"{lost} of altered scenarios left out ({named}): --altered includes them"
     say(message, err=True)
     return kept
+
+
+def with_scales(found: Results) -> Results:
+    """Return results with the installed metrics' scales."""
+    from crowdbot.cli.shared.options import installed
+    from crowdbot.core.scoring.score_scale import score_scales
+
+    return replace(found, scales=score_scales(installed(None, False)))
 
 
 def suite_id(suite: str, registry: Registry) -> str:

@@ -27,6 +27,7 @@ from crowdbot.core.statistics import (
 )
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
+from crowdbot.core.statistics.ladder import Ladder, ladders
 from crowdbot.core.statistics.pareto import ParetoPoint, pareto
 from crowdbot.core.statistics.rules import Orders, orders
 from crowdbot.core.types.ending import ATTEMPTED
@@ -90,6 +91,7 @@ class Contents:
     sample: SampleSize | None = None
     ranks: CrowdRanks | None = None
     orders: Orders | None = None
+    ladders: tuple[Ladder, ...] = ()
 
     @property
     def planners(self) -> tuple[str, ...]:
@@ -182,4 +184,5 @@ def gather(
         sample=sample_size(worked_out.headline),
         ranks=crowd_ranks(results, table=table),
         orders=orders(table, results.marks) if len(table.planners) > 1 else None,
+        ladders=ladders(results, table=table),
     )

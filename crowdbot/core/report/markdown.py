@@ -11,6 +11,7 @@ from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
 from crowdbot.core.statistics import Comparison, PlannerScore, Summary
 from crowdbot.core.statistics.crowds import CrowdRanks
 from crowdbot.core.statistics.estimate_text import joined_text, range_text
+from crowdbot.core.statistics.ladder import Ladder
 from crowdbot.core.statistics.rules import Orders
 
 
@@ -37,6 +38,9 @@ def markdown(contents: Contents) -> str:
     lines += [*_table(*_scores(contents)), ""]
     if contents.pareto:
         lines += ["## Safe efficiency and acceptance", "", *_table(*_pareto(contents)), ""]
+    for ladder in contents.ladders:
+        lines += [f"## {_plain(ladder.kind)} on the ladder of sensing", ""]
+        lines += [*_table(*_rungs(ladder)), ""]
     lines += _ordered(contents.orders) if contents.orders else []
     lines += _by_crowd(contents.ranks) if contents.ranks else []
     if any(not v.reason for v in summary.variances):
@@ -55,6 +59,20 @@ def _pareto(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
         for p in contents.pareto
     ]
     return ("planner", "safe efficiency", "acceptance", "Pareto"), rows
+
+
+def _rungs(ladder: Ladder) -> tuple[Sequence[str], list[Sequence[str]]]:
+    """Return the rungs of a planner, with the gain over the one below."""
+    rows: list[Sequence[str]] = [
+        (
+            _plain(rung.name),
+            str(rung.runs),
+            joined_text(rung.score),
+            joined_text(rung.gain.by) if rung.gain else "",
+        )
+        for rung in ladder.rungs
+    ]
+    return ("people / place", "runs", ladder.metric.replace("_", " "), "gain"), rows
 
 
 def _ordered(orders: Orders) -> list[str]:

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 from typer.core import TyperGroup
 
+from crowdbot.cli.commands.compare.ladder import ladder
 from crowdbot.cli.output.results_by_planner import print_by_planner
 from crowdbot.cli.output.results_lines import line_of, print_lines
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.open_results import Altered, Reference, open_results
+from crowdbot.cli.shared.open_results import Altered, Reference, open_results, with_scales
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.text import plural
 
@@ -102,7 +103,7 @@ def show(
     found = _only(open_results(out, altered), planner, status)
     given = reference_results(reference) if reference else None
     found, references = with_reference(found, given)
-    found = _with_scales(found)
+    found = with_scales(found)
     if worst:
         if metric is None or len(metric) != 1:
             raise UsageError("--worst needs one --metric NAME")
@@ -229,7 +230,7 @@ def atlas(
     from crowdbot.core.statistics import atlas as entries_of
     from crowdbot.core.support.atomic_write import atomic_write
 
-    entries = entries_of(_with_scales(open_results(out, altered)), floor or ())
+    entries = entries_of(with_scales(open_results(out, altered)), floor or ())
     if md is not None:
         atomic_write(md, atlas_page(entries))
     if as_json:
@@ -265,16 +266,11 @@ def power(
     from crowdbot.core.statistics.power import SIZES
 
     sizes = tuple(size or SIZES)
-    found = _with_scales(_only(open_results(out, altered), planner, None))
+    found = with_scales(_only(open_results(out, altered), planner, None))
     print_lines(lines_of(found, (metric, variant), sizes, tests), as_csv=as_csv, as_json=as_json)
 
 
-def _with_scales(found: Results) -> Results:
-    """Return results with the installed metrics' scales."""
-    from crowdbot.cli.shared.options import installed
-    from crowdbot.core.scoring.score_scale import score_scales
-
-    return replace(found, scales=score_scales(installed(None, False)))
+results.command()(ladder)
 
 
 def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
