@@ -17,6 +17,7 @@ import gc
 import os
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -36,9 +37,10 @@ def measure(registry: Registry, kind: str, steps: int) -> tuple[np.ndarray, floa
     """Return the time of each step, s; growth of memory, bytes."""
     component = registry.find("planner", kind)
     spec = component.spec()
-    planner = load_build(component)(spec)
+    planner: Any = load_build(component)(spec)
     scenario = crowdbot.load(*SPEC, set=["robots.robot.task.time_limit=600 s"])
-    times, kept = [], 0
+    times: list[float] = []
+    kept = 0
     with crowdbot.Session(
         scenario, sensors=tuple(spec.needs), privileged=getattr(spec, "privileged", False)
     ) as session:
