@@ -13,6 +13,7 @@ from crowdbot.plugins.metrics.parameters import (
     ForcedHeadway,
     JumpSpeed,
     LeastWay,
+    UsualAcceleration,
 )
 
 declare = partial(declare_metric, category="burden")
@@ -24,6 +25,7 @@ class PushWorkSpec(MetricSpec):
     kind: Literal["push_work"] = "push_work"
     demand_time: DemandTime
     demand_room: DemandRoom
+    usual_acceleration: UsualAcceleration
     forced_headway: ForcedHeadway
     least_way: LeastWay
     evasion_reach: EvasionReach
@@ -33,7 +35,7 @@ class PushWorkSpec(MetricSpec):
 PUSH_WORK = declare(
     PushWorkSpec,
     symbol="W_push",
-    spec_version=3,
+    spec_version=4,
     unit="J",
     better="lower",
     variants={

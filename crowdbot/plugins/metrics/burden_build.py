@@ -70,9 +70,13 @@ class PushWork:
         return found.work(people(run).mass, share)
 
     def _demanded(self, run: Trajectories) -> float:
-        """Return the work that people need against the robot to keep the demanded room, J."""
+        """Return the work that people need against the robot to keep the demanded room, J.
+
+        Only accelerations beyond the usual ones count.
+        """
         spec, run = self.spec, truncate_at_arrival(run)
         need = demanded_evasion(run, spec.demand_time, spec.demand_room, spec.jump_speed)
+        need = np.maximum(0.0, need - spec.usual_acceleration)
         power = need * robot_approach(run, spec.jump_speed)
         return float(np.diff(run.t) @ power @ people(run).mass)
 

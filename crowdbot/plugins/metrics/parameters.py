@@ -177,6 +177,10 @@ DemandTime = Annotated[
     PositiveDuration,
     Field(default=2.0, description="Longest time before the smallest gap that people evade in, s."),
 ]
+UsualAcceleration = Annotated[
+    PositiveAcceleration,
+    Field(default=0.5, description="People accelerate this much anyway; only more counts, m/s²."),
+]
 DemandRoom = Annotated[
     NonNegativeLength,
     Field(default=0.5, description="Gap that people have to get beside the robot, m."),

@@ -76,6 +76,43 @@ def forced(robot_speed: float, gap: float, gain: float) -> float:
     return value_of(scores_of("push_work", run), "forced")
 
 
+def demanded(room_left: float, speed: float = 0.8, wide: float = 0.0) -> float:
+    """Return the rate of a robot that brakes to rest before a person who stands ``wide`` aside.
+
+    It drives for 2 s and then stands, ``room_left`` short of the person.
+    """
+    t = grid(4, 1 / 128)
+    x = speed * np.minimum(t, 2.0)
+    robot = Body(x, 0 * t, np.where(t < 2.0, speed, 0.0), 0 * t)
+    person = line(t, (2.0 * speed + REACH + room_left, wide), (0, 0))
+    run = scene(t, robot, [person], robot_goal=(20.0, 0.0))
+    return value_of(scores_of("push_work", run), "rate")
+
+
+def test_the_demand_is_what_people_need_beyond_what_they_do_anyway() -> None:
+    """Straight towards a person who stands: b = 2 s / t², s the reach and half a metre."""
+    speed, left = 0.8, 0.3
+    t = np.linspace(0.0, 2.0, 20001)
+    until = (2.0 * speed + REACH + left - speed * t) / speed
+    need = np.minimum(3.0, 2.0 * (REACH + 0.5) / np.maximum(until, 0.5) ** 2) * (until < 2.0)
+    power = np.maximum(0.0, need - 0.5) * speed * MASS
+    work = float(np.sum((power[1:] + power[:-1]) / 2.0 * np.diff(t)))
+    assert demanded(left, speed) == pytest.approx(work / 1.6, rel=0.02)
+
+
+def test_people_who_need_no_more_than_usual_are_no_burden() -> None:
+    assert demanded(0.3, wide=REACH + 0.49) == 0.0  # 1 cm in a second or two
+    assert demanded(0.3, wide=REACH + 0.1) > 0.0
+
+
+def test_the_demand_grows_without_a_step_as_a_robot_comes_nearer() -> None:
+    """A bully that brakes half a second before a person pays more than one that does so before."""
+    rates = [demanded(room) for room in np.linspace(1.5, 0.05, 60)]
+    assert all(a <= b + 1e-9 for a, b in zip(rates, rates[1:], strict=False))
+    assert max(np.diff(rates)) < 0.07 * max(rates)
+    assert rates[0] == pytest.approx(0.0, abs=0.05 * max(rates))
+
+
 def test_the_rate_is_work_on_those_who_had_to_make_way() -> None:
     """0.4 s behind somebody who speeds up just enough to stay ahead for the 4 s, a while."""
     found = forced(1.0, 0.4, 0.01)  # after 4 s 0.08 m farther: 0.48 s
