@@ -50,7 +50,7 @@ def test_the_wheelchair_of_the_guide_is_driven_and_scored(
     assert 0.0 < float(written["fluency"]["value"]) < 1.0
     assert written["user_input_entropy"]["reason"] == "no_baseline"
 
-    argv = ["evaluate", run["directory"], "--commands-baseline", f"{run['directory']}/run.mcap"]
+    argv = ["evaluate", run["directory"], "--commands-baseline", run["directory"]]
     for topics in ([], ["--user-topic", "/joystick/cmd_vel"]):  # found, or named
         assert cli.main([*argv, *topics, "--json"]) == 0
         (scored,) = json.loads(capsys.readouterr().out)

@@ -37,7 +37,7 @@ class RescoreRequest:
         path: run directory or recording; None for commands or answers only.
         robot: robot whose topics to read from a recording with several.
         topics: topics of the user's and the final command in the recording.
-        commands, commands_baseline: CSV files, or recordings with the two topics.
+        commands, commands_baseline: CSV files, run directories, or recordings with the two topics.
         limits: largest speed (m/s) and yaw rate (rad/s) that can be commanded.
         questionnaires: CSV file.
         allow_incomplete: score the readable part of an incomplete recording.
@@ -242,8 +242,10 @@ def _own_registry(plugins: tuple[Path, ...], allow: tuple[str, ...] | None) -> R
 def _commands(
     request: RescoreRequest, file: Path | None, source: RecordingSource | None
 ) -> Commands | None:
-    """Return commands from a CSV file, from topics of a recording, or from the run itself."""
+    """Return commands from a CSV file, a run directory, topics of a recording, or the run."""
     v_max, w_max = request.limits
+    if file is not None and file.is_dir():
+        file = find_source(file).recording
     if file is not None and file.suffix.lower() == ".csv":
         if v_max is None or w_max is None:
             raise InputError(f"{file}: the largest v and w that can be commanded are needed")

@@ -166,6 +166,14 @@ def test_a_planner_that_agrees_with_the_user_has_the_last_word() -> None:
     assert doubts[0.02] < 0.2 < 0.6 < doubts[5.0]
 
 
+def test_the_most_likely_way_is_no_flight_that_no_one_asks_for() -> None:
+    """A wall of people before it: it waits; it goes back if the user does."""
+    near = tuple((0.45, 0.45 * y, 0.25) for y in (-1.0, 0.0, 1.0))
+    planner = made("probabilistic", autonomy="goal_seek")
+    assert drive(planner, (0.6, 0.0), near)[0].v >= 0.0
+    assert drive(planner, (-0.5, 0.0), near)[0].v < -0.2
+
+
 def test_the_gap_on_an_arc_counts_people_who_come_and_brakes() -> None:
     robot = np.array([[0.0, 0.0, 0.2]])
 

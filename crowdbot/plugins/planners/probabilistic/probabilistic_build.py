@@ -82,7 +82,8 @@ class Probabilistic:
         spec, limits = self._spec, self._limits
         v, w, _ = twist
         dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
-        low = min(max(v - dv, limits.v_min), limits.v_max)
+        back = min(0.0, float(user[0]), float(planner[0]))  # no flight that no one asks for
+        low = min(max(v - dv, limits.v_min, back), limits.v_max)
         high = max(min(v + dv, limits.v_max), low)
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
         grid = candidates(
