@@ -36,7 +36,9 @@ def test_rungs_go_from_the_least_knowledge_to_the_truth() -> None:
     ladder = only(
         ladders(
             results(
-                top=(HIGH, [0.9, 0.8, 0.9]), low=(LOW, [0.3, 0.5, 0.4]), mid=(USUAL, [0.7, 0.6, 0.5])
+                top=(HIGH, [0.9, 0.8, 0.9]),
+                low=(LOW, [0.3, 0.5, 0.4]),
+                mid=(USUAL, [0.7, 0.6, 0.5]),
             )
         )
     )
