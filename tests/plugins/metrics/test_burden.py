@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -108,7 +109,7 @@ def test_people_who_need_no_more_than_usual_are_no_burden() -> None:
 def test_the_demand_grows_without_a_step_as_a_robot_comes_nearer() -> None:
     """A bully that brakes half a second before a person pays more than one that does so before."""
     rates = [demanded(room) for room in np.linspace(1.5, 0.05, 60)]
-    assert all(a <= b + 1e-9 for a, b in zip(rates, rates[1:], strict=False))
+    assert all(a <= b + 1e-9 for a, b in pairwise(rates))
     assert max(np.diff(rates)) < 0.07 * max(rates)
     assert rates[0] == pytest.approx(0.0, abs=0.05 * max(rates))
 
