@@ -8,8 +8,9 @@ four scores separate those who see nothing from those who are careful:
     python benchmarks/tell_apart.py --out /tmp/apart --table
 
 What is complete under ``--out`` is not run again. ``--table`` only reads what is there. A row of
-the last table is one pair of planners in one score: the difference of means over scenarios that
-both have run, careful less blind, better side positive; its interval of 95 % by resampling
+the last table is one pair of planners in one score, careful ones with blind ones, or all pairs
+where there are none of either: the difference of means over scenarios that
+both have run, the first less the second, better side positive; its interval of 95 % by resampling
 scenarios, and the share of resamples in which it is above 0.
 """
 
@@ -22,6 +23,7 @@ import re
 import shutil
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -125,25 +127,29 @@ def columns(runs: dict[str, Numbers], names: Sequence[str], metric: str) -> tupl
 def show(found: dict[str, dict[str, Numbers]]) -> None:
     """Means of each planner, then each pair in each score."""
     measures = [f"{m}.{v}" for m, v, *_ in (*SCORES, *SHOWN)] + ["arrived", "aside"]
-    print(f"{'':14}" + "".join(f"{m[-19:]:>20}" for m in ["runs", *measures]))
-    for planner, runs in found.items():
-        names = sorted(runs)
-        means = [float(mean(*columns(runs, names, m))) for m in measures]
-        print(f"{planner:14}{len(names):20}" + "".join(f"{m:20.3f}" for m in means))
+    print(f"{'mean over the runs':32}" + "".join(f"{p[:20]:>22}" for p in found))
+    print(f"{'runs':32}" + "".join(f"{len(runs):22}" for runs in found.values()))
+    for measure in measures:
+        means = [float(mean(*columns(runs, sorted(runs), measure))) for runs in found.values()]
+        print(f"{measure:32}" + "".join(f"{m:22.3f}" for m in means))
     print()
     for metric, variant, _, more in SCORES:
         name = f"{metric}.{variant}"
-        for careful in CAREFUL:
-            for blind in BLIND:
-                if careful in found and blind in found:
-                    lead = compare(found, name, careful, blind, more)
-                    print(f"{name:28} {careful:12} {blind:10} {lead}")
+        for first, second in pairs(list(found)):
+            lead = compare(found, name, first, second, more)
+            print(f"{name:28} {first:28} {second:28} {lead}")
+
+
+def pairs(planners: Sequence[str]) -> list[tuple[str, str]]:
+    """Careful ones with blind ones; if either kind is missing, all pairs."""
+    told = [(a, b) for a in CAREFUL for b in BLIND if {a, b} <= set(planners)]
+    return told or list(combinations(sorted(planners), 2))
 
 
 def compare(
     found: dict[str, dict[str, Numbers]], metric: str, careful: str, blind: str, more: bool
 ) -> str:
-    """Lead of the careful one, its interval, and the share of resamples in which it leads."""
+    """Lead of the first one, its interval, and the share of resamples in which it leads."""
     names = sorted(set(found[careful]) & set(found[blind]))
     drawn = np.random.default_rng(0).integers(0, len(names), (RESAMPLES, len(names)))
     leads = []
