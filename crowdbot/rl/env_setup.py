@@ -18,6 +18,7 @@ from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.component_specs import ObservationSpec, RewardSpec
 from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.errors import InputError, UnknownNameError
+from crowdbot.rl.scatter import Spread, spread_of
 
 #: A component: its kind, a map with ``kind`` and fields, or its spec.
 Component = str | Mapping[str, Any]
@@ -35,6 +36,7 @@ class EnvSetup:
         draws: number of different draws of people for each scenario, which come again; None: new
             ones in every episode.
         edition: True for the people of the suite, as it is judged.
+        spread: of starts and goals; None: those of the scenarios.
         ends_at_contact: True if a contact with a person ends the episode.
     """
 
@@ -45,6 +47,7 @@ class EnvSetup:
     draws: int | None
     edition: bool
     ends_at_contact: bool
+    spread: Spread | None = None
 
     @cached_property
     def blueprints(self) -> dict[str, Blueprint]:
@@ -75,6 +78,8 @@ def resolve(
     draws: int | None = None,
     edition: bool = False,
     contact: ContactRule = "go_on",
+    start_spread: Mapping[str, float] | None = None,
+    goal_spread: Mapping[str, float] | None = None,
 ) -> EnvSetup:
     """Check the arguments of an environment.
 
@@ -87,6 +92,9 @@ def resolve(
         observation, reward: kind, map with ``kind`` and fields, or spec.
         draws, edition: as of `EnvSetup`.
         contact: ``end`` ends an episode at the first contact with a person.
+        start_spread: largest distances of an episode's start from the scenario's: ``x``, ``y``, m,
+            and ``yaw``, rad; the start is clear of walls and people.
+        goal_spread: likewise of the goal zone: ``x``, ``y``, m.
 
     Raises:
         SpecError: the document, or a change to it, is wrong.
@@ -114,6 +122,7 @@ def resolve(
         draws=draws,
         edition=edition,
         ends_at_contact=contact == "end",
+        spread=spread_of(start_spread, goal_spread),
     )
 
 

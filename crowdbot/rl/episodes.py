@@ -22,11 +22,13 @@ class Episode:
         scenario: id.
         root: root of its draw of people; None: those of the suite.
         key: of its noise.
+        place: seed of its start and goal.
     """
 
     scenario: str
     root: int | None
     key: int
+    place: int
 
 
 class EpisodeCourse:
@@ -34,11 +36,15 @@ class EpisodeCourse:
 
     Args:
         seed: of the world.
+        level: of the curriculum, at the beginning.
+
+    Attributes:
+        level: of the next episode.
     """
 
-    def __init__(self, setup: EnvSetup, seed: int) -> None:
+    def __init__(self, setup: EnvSetup, seed: int, level: int = 0) -> None:
         self._setup, self._seed, self._number = setup, seed, -1
-        self._level = 0
+        self.level = level
 
     def next(self, level: int | None = None) -> Episode:
         """Return the next episode.
@@ -49,15 +55,23 @@ class EpisodeCourse:
         Raises:
             InputError: there is no such level.
         """
-        levels = self._setup.levels
         if level is not None:
-            if not 0 <= level < len(levels):
-                raise InputError(f"level {level} of {len(levels)}: levels count from 0")
-            self._level = level
+            self.set_level(level)
         self._number += 1
-        chosen = levels[self._level]
+        chosen = self._setup.levels[self.level]
         scenario = chosen[self._draw("scenario") % len(chosen)].id
-        return Episode(scenario, self._root(scenario), self._draw("noise"))
+        return Episode(scenario, self._root(scenario), self._draw("noise"), self._draw("place"))
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum from the next episode on.
+
+        Raises:
+            InputError: there is no such level.
+        """
+        count = len(self._setup.levels)
+        if not 0 <= level < count:
+            raise InputError(f"level {level} of {count}: levels count from 0")
+        self.level = level
 
     def _draw(self, stream: str) -> int:
         return stream_seed(self._seed, str(self._number), f"rl.{stream}")

@@ -35,7 +35,7 @@ def picture(rollout: Rollout, w: int) -> NDArray[np.uint8]:
     half = 0.5 * _SHOWN * _HEIGHT / _WIDTH
     axes.set_xlim(x - 0.5 * _SHOWN, x + 0.5 * _SHOWN)
     axes.set_ylim(y - half, y + half)
-    for task in plan.tasks:
+    for task in world.tasks:
         axes.add_patch(Polygon(task.goal_zone, color="#cdeccd"))
     axes.add_collection(LineCollection(list(plan.parts.walls.reshape(-1, 2, 2)), colors="#222222"))
     for outline in plan.parts.solids:

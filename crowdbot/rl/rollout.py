@@ -15,7 +15,8 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.errors import InputError
 from crowdbot.rl.actor import Actor, Vectors
 from crowdbot.rl.env_setup import EnvSetup
-from crowdbot.rl.episodes import EpisodeCourse
+from crowdbot.rl.episodes import Episode, EpisodeCourse
+from crowdbot.rl.scatter import scatter
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,7 @@ class Rollout:
         for w, course in enumerate(self._courses):
             episode = course.next()
             bank = self._banks[int(np.searchsorted(ends, w, side="right"))]
-            worlds.append(bank.take(self.setup.blueprints[episode.scenario], episode.root))
+            worlds.append(self._take(bank, episode))
             keys.append(episode.key)
         return Batches(worlds, keys, threads)
 
@@ -87,19 +88,35 @@ class Rollout:
         for w in np.flatnonzero(which).tolist():
             seed = seeds[w]
             if seed is not None:
-                self._courses[w] = EpisodeCourse(self.setup, seed)
+                self._courses[w] = EpisodeCourse(self.setup, seed, self._courses[w].level)
             episode = self._courses[w].next(level)
             bank = self._banks[self.batches.thread_of(w)]
             bank.give_back(self.world(w))
-            plan = self.setup.blueprints[episode.scenario]
-            self.batches.put(w, bank.take(plan, episode.root), episode.key)
+            self.batches.put(w, self._take(bank, episode), episode.key)
             self._note(w)
+
+    def _take(self, bank: Bank, episode: Episode) -> BatchWorld:
+        """Return the world of an episode, with its own start and goal if they are drawn."""
+        world = bank.take(self.setup.blueprints[episode.scenario], episode.root)
+        if self.setup.spread is not None:
+            scatter(world, self.setup.spread, episode.place)
+            world.reset()
+        return world
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum from the next episode of each world on.
+
+        Raises:
+            InputError: there is no such level.
+        """
+        for course in self._courses:
+            course.set_level(level)
 
     def _note(self, w: int) -> None:
         world = self.world(w)
         self._people[w], self.scenarios[w] = world.people, world.blueprint.scenario.id
         for actor in self.actors:
-            actor.begin(w, world.blueprint.tasks)
+            actor.begin(w, world.tasks)
 
     def advance(self, commands: Array, which: Indices) -> None:
         """Advance some worlds by one step.

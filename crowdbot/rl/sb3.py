@@ -48,6 +48,10 @@ class StableVecEnv(VecEnv):
         self._next_seed = seed
         return [None if seed is None else seed + k for k in range(self.num_envs)]
 
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum; see `NavVectorEnv.set_level`."""
+        self.worlds.set_level(level)
+
     def step_async(self, actions: Any) -> None:
         """Keep the actions of the next step."""
         self._given = actions
@@ -64,6 +68,7 @@ class StableVecEnv(VecEnv):
                 "terminal_observation": more["final_obs"][w],
                 "TimeLimit.truncated": bool(truncated[w]),
                 "is_success": bool(more["final_info"]["is_success"][w]),
+                "touched": bool(more["final_info"]["touched"][w]),
                 "episode": {
                     "r": float(self._total[w]),
                     "l": int(self._steps[w]),

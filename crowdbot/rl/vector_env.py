@@ -102,6 +102,14 @@ class NavVectorEnv(VectorEnv):
         self._begun = True
         return self.rollout.look(which, _nowhere(which)), self._infos(which)
 
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum from the next episode of each world on.
+
+        Raises:
+            InputError: there is no such level.
+        """
+        self.rollout.set_level(level)
+
     def step(self, actions: Any) -> tuple[Vectors, NDArray[np.float64], Mask, Mask, dict[str, Any]]:
         """Advance all worlds by one period of their planner.
 

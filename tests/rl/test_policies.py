@@ -12,6 +12,7 @@ import pytest
 
 import crowdbot
 from crowdbot.api import registry
+from crowdbot.core.learning.conventions import read_conventions
 from crowdbot.core.planning.planner_files import planner_files
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.errors import InputError, MissingLibraryError, PlannerError
@@ -54,9 +55,8 @@ def test_a_policy_drives_in_a_run_as_it_drives_in_its_environment(tmp_path: Path
     assert np.hypot(x - 2.5, y - 1.0) > 0.8
     # The policy of the run sees its pose by wheel odometry, that of the environment exactly.
     assert np.hypot(robot.x[-1] - x, robot.y[-1] - y) < 0.01
-    assert rl.conventions(env) == json.loads(
-        session.get_modelmeta().custom_metadata_map["crowdbot"]
-    )
+    kept = session.get_modelmeta().custom_metadata_map["crowdbot"]
+    assert rl.conventions(env) == read_conventions(kept, "", registry()).values
 
 
 @pytest.mark.parametrize(

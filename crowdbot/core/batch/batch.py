@@ -154,9 +154,7 @@ class Batch:
             self._groups[w * groups + place] = table.entries
         for place, table in enumerate(world.scanners):
             self._scanners[w * scanners + place] = table.entries
-        for r, (table, model) in enumerate(
-            zip(world.blueprint.tables, world.blueprint.models, strict=True)
-        ):
+        for r, (table, model) in enumerate(zip(world.tables, world.blueprint.models, strict=True)):
             self._robots[w, r] = table.entries
             limits = model.limits
             self.least[w, r] = limits.v_min, -limits.w_max, -limits.vy_max

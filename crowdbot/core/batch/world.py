@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from crowdbot.core.batch.array_tables import ArrayTable, ScratchPool
@@ -13,14 +15,17 @@ from crowdbot.core.batch.crowd_tables import (
     is_compiled,
     random_states,
 )
+from crowdbot.core.batch.robot_tables import robot_table
 from crowdbot.core.batch.scanner_tables import others_of, scanner_table
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import R_YAW
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.contacts.bodies import outlines_of, rows_of
-from crowdbot.core.sim.contacts.start_pose_check import check_start
+from crowdbot.core.sim.contacts.start_pose_check import check_apart, check_start
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.task import Task
 
 
 class BatchWorld:
@@ -33,6 +38,7 @@ class BatchWorld:
         compiled: True if people decide in compiled code alone.
         crowd, groups, scanners: arrays for compiled code.
         root: root of the draw; None: the people of the scenario.
+        tasks, tables: of its robots, in order; those of the blueprint until `place`.
 
     Args:
         pool: scratch that worlds of one thread share.
@@ -46,10 +52,9 @@ class BatchWorld:
         self.engine = blueprint.crowd(root)
         spec, models = blueprint.scenario.crowd, blueprint.models
         self._start = rows_of(models, spec.robot_response.margin if spec else 0.0)
-        for row, task in zip(self._start, blueprint.tasks, strict=True):
-            row[[0, 1, R_YAW]] = task.start
-        for model, task, name in zip(models, blueprint.tasks, blueprint.names, strict=True):
-            check_start(blueprint.parts, model, task.start, self.engine, name)
+        self.tasks, self.tables = blueprint.tasks, blueprint.tables
+        self._check(self.tasks)
+        self._put_starts()
         self.robots = self._start.copy()
         self._initial = s.blank(0, len(models))
         if self.engine is not None:
@@ -74,6 +79,23 @@ class BatchWorld:
         """Return how many people there are, present or to come."""
         return 0 if self.engine is None else len(self.engine.agents)
 
+    def place(self, tasks: Sequence[Task]) -> None:
+        """Give the robots other starts and goals, from the next `reset` on.
+
+        Raises:
+            InputError: a robot would start in a wall, a person or another robot, or end in a wall.
+        """
+        self._check(tasks)
+        plan = self.blueprint
+        for model, task, name in zip(plan.models, tasks, plan.names, strict=True):
+            check_start(plan.parts, model, Pose(*task.goal, 0.0), None, name)
+        self.tasks = tuple(tasks)
+        self.tables = tuple(
+            robot_table(model, plan.parts, np.asarray(task.goal_zone))
+            for model, task in zip(plan.models, tasks, strict=True)
+        )
+        self._put_starts()
+
     def reset(self) -> None:
         """Return to the initial state."""
         self.flat[:] = self._initial
@@ -94,6 +116,17 @@ class BatchWorld:
             self.flat, self.robots, self.outlines, numbers=np.arange(len(self.robots)),
             stiffnesses=self.stiffnesses,
         )  # fmt: skip
+
+    def _check(self, tasks: Sequence[Task]) -> None:
+        """Check that robots start clear of walls and people, and of each other."""
+        plan = self.blueprint
+        for model, task, name in zip(plan.models, tasks, plan.names, strict=True):
+            check_start(plan.parts, model, task.start, self.engine, name)
+        check_apart(plan.names, plan.models, [task.start for task in tasks])
+
+    def _put_starts(self) -> None:
+        for row, task in zip(self._start, self.tasks, strict=True):
+            row[[0, 1, R_YAW]] = task.start
 
     def _stiffnesses(self) -> Array:
         body = self.blueprint.scenario.contact.stiffness

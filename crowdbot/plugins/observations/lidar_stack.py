@@ -11,10 +11,13 @@ from crowdbot.plugin import Component, ObservationSpec, PositiveLength
 
 Beams = Annotated[int, Ge(4), Le(4096)]
 Scans = Annotated[int, Ge(1), Le(64)]
+Stride = Annotated[int, Ge(1), Le(64)]
 
 
 class LidarStackSpec(ObservationSpec):
-    """The nearest return in each sector of a scan, for the last scans, then goal and motion.
+    """The nearest return in each sector of a scan, for some scans, then goal and motion.
+
+    The latest scan comes first, then those ``stride`` steps of the planner before, and so on.
 
     Distances are divided by ``range``, and 1 is a free sector. Then follow the distance to the
     goal, divided by ``goal_range``, the cosine and sine of its direction in the robot's frame, and
@@ -23,15 +26,19 @@ class LidarStackSpec(ObservationSpec):
 
     kind: Literal["lidar_stack"] = "lidar_stack"
     sensor: str = Field(default="lidar", description="Name or category of the lidar.")
+    others: tuple[str, ...] = Field(
+        default=(), strict=False, description="Further lidars, whose sectors follow in a scan."
+    )
     sectors: Beams = Field(default=36, description="Sectors of equal width, which keep a minimum.")
     scans: Scans = Field(default=3, description="How many scans, the latest first.")
+    stride: Stride = Field(default=1, description="Steps of the planner between two scans.")
     range: PositiveLength = Field(default=6.0, description="Farther returns count as free, m.")
     goal_range: PositiveLength = Field(default=10.0, description="Farther goals are this far, m.")
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Return its lidar."""
-        return (self.sensor,)
+        """Return its lidars."""
+        return (self.sensor, *self.others)
 
 
 LIDAR_STACK = Component(

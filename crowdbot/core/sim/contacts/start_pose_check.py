@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -34,16 +34,20 @@ def check_starts(builts: Mapping[str, BuiltRun], engine: CrowdEngine | None) -> 
     """
     for name, built in builts.items():
         check_start(built.parts, built.model, built.task.start, engine, name)
-    _check_apart(builts)
+    models, starts = [b.model for b in builts.values()], [b.task.start for b in builts.values()]
+    check_apart(list(builts), models, starts)
 
 
-def _check_apart(builts: Mapping[str, BuiltRun]) -> None:
-    models = [built.model for built in builts.values()]
+def check_apart(names: Sequence[str], models: Sequence[RobotModel], starts: Sequence[Pose]) -> None:
+    """Check that no two robots overlap at their starts.
+
+    Raises:
+        InputError: two do.
+    """
     rows = rows_of(models)
-    for row, built in zip(rows, builts.values(), strict=True):
-        row[0], row[1], row[6] = built.task.start
+    for row, start in zip(rows, starts, strict=True):
+        row[[0, 1, R_YAW]] = start
     corners = [footprint_of_model(model).corners for model in models]
-    names = list(builts)
     for i, j in combinations(range(len(names)), 2):
         depth = overlap_of_robots(rows[i], corners[i], rows[j], corners[j])[0]
         if depth > _TOLERANCE:

@@ -1,0 +1,136 @@
+"""Train a policy by PPO of Stable-Baselines3, and save it as a planner, with its learning curve.
+
+    python benchmarks/train_ppo.py --minutes 25 --out policy.onnx
+
+It learns in short corridors that no edition has, among few people first and many later: the next
+level begins once nine of ten episodes arrive, or when its share of the time is over. Beside the
+policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv``, its learning curve. Time is
+the processor time of this process.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import BaseCallback
+
+from crowdbot.rl import StableVecEnv, conventions, save_onnx
+
+#: Worlds, what is seen of them, and what they are worth.
+WORLDS: dict[str, Any] = {
+    "suite": str(Path(__file__).parent / "training" / "nav-training.yaml"),
+    "levels": ["*-d000-*", "*-d005-*", ["*-d005-*", "*-d010-*"], ["*-d010-*", "*-d020-*"]],
+    "set": [f"robots.robot.sensors.{name}_lidar.angle_step=1 deg" for name in ("front", "rear")],
+    "observation": {
+        "kind": "lidar_stack", "sensor": "front_lidar", "others": ["rear_lidar"], "sectors": 30,
+        "scans": 3, "stride": 4,
+    },
+    "start_spread": {"x": 0.5, "y": 3.5, "yaw": 3.14},
+    "reward": {
+        "kind": "comfort", "advance": 2.0, "contact": 60.0, "arrival": 10.0, "change": 0.02,
+        "wall": 5.0,
+    },
+    "contact": "end",
+    "draws": 200,
+}  # fmt: skip
+COLUMNS = ("processor_s", "steps", "level", "episodes", "reward", "arrived", "touched", "seconds")
+#: Share of the time after which each level ends at the latest.
+ENDS = (0.05, 0.2, 0.5, 1.0)
+READY = 0.9
+
+
+class Course(BaseCallback):
+    """Writes the curve, raises the level, saves the policy and stops when the time is over."""
+
+    def __init__(self, minutes: float, out: Path) -> None:
+        super().__init__()
+        self._budget, self._out, self._level = 60.0 * minutes, out, 0
+        self._ended: list[tuple[float, bool, bool, float]] = []
+        self._rows: list[tuple[float, ...]] = []
+        self._begun = time.process_time()
+
+    @property
+    def used(self) -> float:
+        """Processor time since the beginning, s."""
+        return time.process_time() - self._begun
+
+    def _on_step(self) -> bool:
+        for info in self.locals["infos"]:
+            if "episode" in info:
+                episode = info["episode"]
+                self._ended.append(
+                    (episode["r"], info["is_success"], info["touched"], episode["t"])
+                )
+        return self.used < self._budget
+
+    def _on_rollout_end(self) -> None:
+        self._learn_more_slowly()
+        if len(self._ended) < self.training_env.num_envs // 2:
+            return
+        means = np.mean(np.array(self._ended, float), axis=0)
+        row = (self.used, self.num_timesteps, self._level, len(self._ended), *means.tolist())
+        self._rows.append(row)
+        self._ended.clear()
+        print("  ".join(f"{name} {value:.6g}" for name, value in zip(COLUMNS, row, strict=True)),
+              flush=True)  # fmt: skip
+        self._raise_level(arrived=means[1])
+        if len(self._rows) % 10 == 0:
+            self.save()
+
+    def _learn_more_slowly(self) -> None:
+        rate = 3e-4 * max(0.1, 1.0 - self.used / self._budget)
+        self.model.lr_schedule = lambda _: rate
+
+    def _raise_level(self, arrived: float) -> None:
+        over = self.used > ENDS[self._level] * self._budget
+        if self._level < len(ENDS) - 1 and (arrived > READY or over):
+            self._level += 1
+            self.training_env.set_level(self._level)
+
+    def save(self) -> None:
+        """Write the policy, the model and the curve."""
+        env, model = self.training_env, self.model
+        save_onnx(model, env, self._out)
+        model.crowdbot = conventions(env)
+        model.save(self._out.with_suffix(".zip"))
+        with self._out.with_suffix(".csv").open("w", newline="") as file:
+            csv.writer(file).writerows([COLUMNS, *self._rows])
+
+
+def train(minutes: float, worlds: int, threads: int, out: Path, seed: int = 1) -> None:
+    """Train for some processor time and save the policy."""
+    torch.set_num_threads(1)
+    env = StableVecEnv(worlds, threads=threads, **WORLDS)
+    model = PPO(
+        "MlpPolicy", env, n_steps=128, batch_size=4096, n_epochs=5, gamma=0.99, gae_lambda=0.95,
+        learning_rate=3e-4, seed=seed, device="cpu",
+        policy_kwargs={"net_arch": [128, 128], "log_std_init": -0.7},
+    )  # fmt: skip
+    course = Course(minutes, out)
+    model.learn(10**9, callback=course)
+    course.save()
+    env.close()
+
+
+def main(arguments: list[str]) -> None:
+    """Read the arguments and train."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=25.0, help="of processor time")
+    parser.add_argument("--worlds", type=int, default=128)
+    parser.add_argument("--threads", type=int, default=1, help="that step the worlds")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, default=Path("policy.onnx"))
+    given = parser.parse_args(arguments)
+    train(given.minutes, given.worlds, given.threads, given.out, given.seed)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
