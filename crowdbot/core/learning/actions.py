@@ -23,3 +23,14 @@ def commands_of(actions: Array, limits: RobotLimits) -> Array:
     shares = np.full((len(actions), 3), 0.5)
     shares[:, : actions.shape[1]] = 0.5 * (np.clip(actions, -1.0, 1.0) + 1.0)
     return np.asarray(least + shares * (most - least))
+
+
+def actions_of(commands: Array, limits: RobotLimits) -> Array:
+    """Return the actions (W, 2 or 3) from -1 to 1 of commands (W, 3); the inverse of `commands_of`.
+
+    Commands beyond the limits become -1 or 1.
+    """
+    size = action_size(limits)
+    least = np.array([limits.v_min, -limits.w_max, -limits.vy_max])[:size]
+    most = np.array([limits.v_max, limits.w_max, limits.vy_max])[:size]
+    return np.asarray(np.clip(2.0 * (commands[:, :size] - least) / (most - least) - 1.0, -1.0, 1.0))

@@ -49,6 +49,12 @@ def checked_record(directory: Path) -> dict[str, Any]:
     return record
 
 
+def runs_under(folder: Path) -> list[Path]:
+    """Return the complete runs with a recording in a folder, itself included, in order of path."""
+    records = folder.rglob(RECORD)
+    return sorted(file.parent for file in records if (file.parent / RECORDING).is_file())
+
+
 def attach_files(folder: Path, record: Mapping[str, Any]) -> bytes:
     """Attach scenario, scores and ``run.json`` to the recording, which is then self-contained.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,6 +14,7 @@ from crowdbot.cli.output.say import say
 
 if TYPE_CHECKING:
     from crowdbot.core.recording.export.bag import BagOptions
+    from crowdbot.core.trajectories.trajectories import Trajectories
 
 
 class ExportFormat(StrEnum):
@@ -25,6 +26,7 @@ class ExportFormat(StrEnum):
     parquet = "parquet"
     geojson = "geojson"
     trajnet = "trajnet"
+    minari = "minari"
     gif = "gif"
     mp4 = "mp4"
     webm = "webm"
@@ -42,16 +44,23 @@ _ENDINGS = {
     ExportFormat.rosbag1: ".bag",
     ExportFormat.geojson: ".geojson",
     ExportFormat.trajnet: ".ndjson",
+    ExportFormat.minari: "-v0",
     ExportFormat.gif: ".gif",
     ExportFormat.mp4: ".mp4",
     ExportFormat.webm: ".webm",
     ExportFormat.png: ".png",
 }
+#: Formats that hold many runs.
+_SETS = (ExportFormat.trajnet, ExportFormat.minari)
 
 
 def export(
     run: Annotated[
-        Path, typer.Argument(metavar="RUN_DIR|FILE.mcap", help="A run, or its recording.")
+        Path,
+        typer.Argument(
+            metavar="RUN_DIR|FILE.mcap|RUNS",
+            help="A run, its recording, or a folder of runs for trajnet and minari.",
+        ),
     ],
     to: Annotated[
         ExportFormat,
@@ -123,6 +132,8 @@ def export(
     Example: crowdbot export runs/challenge-2020/in-d0125-slow-c01-r02/dwa/seed-0 --to rosbag2
 
     A film: crowdbot export runs/tiny/a/dwa/seed-0 --to gif --from 20 --until 30
+
+    All runs of a campaign: crowdbot export runs --to minari
     """
     from crowdbot.cli.output.film import FILMS, PICTURE, FilmOptions, write_film
     from crowdbot.core.recording.export.bag import BagOptions
@@ -134,12 +145,18 @@ def export(
         dark=dark,
     )  # fmt: skip
     film.check(to.value)
+    if to in _SETS and run.is_dir():
+        target = out or _target(run, to)
+        _data_set(to, run, target, robot)
+        say(str(target))
+        return
     recording = run / RECORDING if run.is_dir() else run
+    if to is ExportFormat.minari:
+        raise InputError(f"{run}: minari takes a run directory or a folder of runs")
     if not recording.is_file():
         raise InputError(f"{run}: no such run directory or recording")
     target = out or _target(run, to)
-    if target.exists():
-        raise InputError(f"{target}: exists already; it is not written over")
+    _check_new(target)
     if to.value in (*FILMS, PICTURE):
         _whole(target, lambda aside: write_film(to.value, recording, aside, film))
     elif to in (ExportFormat.rosbag1, ExportFormat.rosbag2):
@@ -154,6 +171,47 @@ def export(
     else:
         _whole(target, lambda aside: _tables(to, recording, aside, robot))
     say(str(target))
+
+
+def _check_new(target: Path) -> None:
+    from crowdbot.errors import InputError
+
+    if target.exists():
+        raise InputError(f"{target}: exists already; it is not written over")
+
+
+def _data_set(to: ExportFormat, folder: Path, target: Path, robot: str | None) -> None:
+    """Write all runs of a folder as one data set."""
+    from crowdbot.cli.shared.options import installed
+    from crowdbot.core.recording.export.tables import trajnet
+    from crowdbot.core.runs.run_directory import runs_under
+    from crowdbot.errors import InputError, UsageError
+    from crowdbot.rl.minari_file import write_minari
+
+    _check_new(target)
+    runs = runs_under(folder)
+    if not runs:
+        raise InputError(f"{folder}: no run in it has a recording")
+    if to is ExportFormat.trajnet:
+        _whole(target, lambda aside: _write(aside, trajnet(_scenes(runs, robot))))
+        return
+    if robot is not None:
+        raise UsageError("--robot has no meaning for --to minari")
+    _whole(target, lambda aside: write_minari(runs, aside, installed(None)))
+
+
+def _scenes(runs: Sequence[Path], robot: str | None) -> Iterator[tuple[Trajectories, str]]:
+    """Yield the tracks of run directories, and their scenarios."""
+    from crowdbot.core.recording.recording import Recording
+    from crowdbot.core.runs.run_directory import RECORDING
+
+    for run in runs:
+        with Recording(run / RECORDING) as opened:
+            yield opened.trajectories(robot), opened.header.scenario
+
+
+def _write(out: Path, text: str) -> None:
+    out.write_text(text, encoding="utf-8")
 
 
 def _target(run: Path, to: ExportFormat) -> Path:
@@ -211,7 +269,8 @@ def _tables(to: ExportFormat, recording: Path, out: Path, robot: str | None) -> 
     if to is ExportFormat.geojson:
         out.write_text(tables.geojson(run), encoding="utf-8")
     elif to is ExportFormat.trajnet:
-        out.write_text(tables.trajnet(run, opened.header.scenario), encoding="utf-8")
+        scenes = [(run, opened.header.scenario)]
+        out.write_text(tables.trajnet(scenes), encoding="utf-8")
     elif to is ExportFormat.csv:
         out.mkdir()
         tables.write_csv(run, out)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -147,27 +147,40 @@ def _pieces(x: Array, jumps: Any) -> list[Any]:
     return [p for p in np.split(np.arange(len(x)), cut) if len(p) > 1 and there[p].all()]
 
 
-def trajnet(run: Trajectories, scenario: str) -> str:
-    """Return a TrajNet++ scene as ndjson: 2.5 frames per second, the robot is person 0."""
-    lines = [*_trajnet_rows(run)]
-    if not lines:
-        raise InputError("the recording has no second sample at 2.5 frames a second")
-    last = max(line["track"]["f"] for line in lines)
-    scene = {"id": 0, "p": ROBOT_ID, "s": 0, "e": last, "fps": TRAJNET_RATE, "tag": scenario}
-    return "".join(json.dumps(line) + "\n" for line in ({"scene": scene}, *lines))
+def trajnet(runs: Iterable[tuple[Trajectories, str]]) -> str:
+    """Return runs and their names as TrajNet++ scenes, ndjson: 2.5 frames per second.
+
+    In the first scene the robot is person 0 and the first frame is 0; people and frames of a later
+    scene have the numbers after those of the scene before, so that none are in two scenes.
+
+    Raises:
+        InputError: a recording has no second sample at that rate.
+    """
+    scenes, tracks, frame, who = [], [], 0, ROBOT_ID
+    for number, (run, name) in enumerate(runs):
+        rows = [_row(frame + f, who + p, x, y) for f, p, x, y in _trajnet_rows(run)]
+        if not rows:
+            raise InputError(f"{name}: no second sample at 2.5 frames a second")
+        last = max(row["track"]["f"] for row in rows)
+        scene = {"id": number, "p": who, "s": frame, "e": last, "fps": TRAJNET_RATE, "tag": name}
+        scenes.append({"scene": scene})
+        tracks += rows
+        frame, who = last + 1, max(row["track"]["p"] for row in rows) + 1
+    return "".join(json.dumps(line) + "\n" for line in (*scenes, *tracks))
 
 
-def _trajnet_rows(run: Trajectories) -> Iterator[dict[str, Any]]:
+def _trajnet_rows(run: Trajectories) -> Iterator[tuple[int, int, float, float]]:
+    """Yield frame, person, x and y; the robot is person 0, a person has its id + 1."""
     step = 1.0 / TRAJNET_RATE
     frames = math.floor(float(run.t[-1]) / step + 1e-9) + 1 if len(run.t) else 0
     nearest = np.abs(run.t[np.newaxis] - step * np.arange(frames)[:, np.newaxis]).argmin(axis=1)
     for frame, k in enumerate(nearest.tolist()):
         if run.robot is not None:
-            yield _row(frame, ROBOT_ID, run.robot.x[k], run.robot.y[k])
+            yield frame, ROBOT_ID, run.robot.x[k], run.robot.y[k]
         if run.agents is not None:
             for i in np.flatnonzero(np.isfinite(run.agents.x[k])).tolist():
                 number = int(run.agents.id[i]) + 1
-                yield _row(frame, number, run.agents.x[k, i], run.agents.y[k, i])
+                yield frame, number, run.agents.x[k, i], run.agents.y[k, i]
 
 
 def _row(frame: int, who: int, x: float, y: float) -> dict[str, Any]:

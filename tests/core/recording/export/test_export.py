@@ -219,7 +219,8 @@ def test_geojson_cuts_ways_where_somebody_is_teleported(recording: Path) -> None
 
 def test_trajnet_has_frames_and_a_scene(recording: Path) -> None:
     lines = [
-        json.loads(line) for line in trajnet(Recording(recording).trajectories(), "x").splitlines()
+        json.loads(line)
+        for line in trajnet([(Recording(recording).trajectories(), "x")]).splitlines()
     ]
     assert lines[0]["scene"] == {"id": 0, "p": 0, "s": 0, "e": 6, "fps": 2.5, "tag": "x"}
     robot = [line["track"] for line in lines[1:] if line["track"]["p"] == 0]
