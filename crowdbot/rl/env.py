@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.errors import InputError
 from crowdbot.rl.libraries import DISABLED, Env
 from crowdbot.rl.vector_env import NavVectorEnv
+from crowdbot.rl.window import RENDER_MODES
 
 
 class NavEnv(Env):
@@ -25,7 +26,7 @@ class NavEnv(Env):
         CrowdbotError: an argument is wrong, or a component cannot be simulated in a batch.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 16}
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": 16}
 
     def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
         self._one = NavVectorEnv(1, autoreset_mode=DISABLED, render_mode=render_mode, **arguments)

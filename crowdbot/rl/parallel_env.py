@@ -12,6 +12,7 @@ from crowdbot.rl.env_setup import resolve
 from crowdbot.rl.libraries import ParallelEnv, gym
 from crowdbot.rl.picture import picture
 from crowdbot.rl.rollout import Rollout
+from crowdbot.rl.window import RENDER_MODES, Window, check_render_mode
 
 Values = dict[str, Any]
 
@@ -31,17 +32,17 @@ class ParallelNavEnv(ParallelEnv):
 
     metadata: ClassVar[dict[str, Any]] = {
         "name": "crowdbot_nav_v0",
-        "render_modes": ["rgb_array"],
+        "render_modes": list(RENDER_MODES),
         "render_fps": 16,
     }
 
     def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise InputError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}")
+        check_render_mode(render_mode)
         seed = int(np.random.SeedSequence().generate_state(1)[0])
         self.rollout, self.render_mode = Rollout(resolve(**arguments), [seed]), render_mode
         self.possible_agents = list(self.rollout.world(0).blueprint.names)
         self.agents: list[str] = []
+        self._window = Window(ParallelNavEnv.__name__)
         self._actors = dict(zip(self.possible_agents, self.rollout.actors, strict=True))
         self.observation_spaces = {
             name: gym.spaces.Box(actor.low, actor.high) for name, actor in self._actors.items()
@@ -66,6 +67,7 @@ class ParallelNavEnv(ParallelEnv):
         level = (options or {}).get("level")
         self.rollout.begin(np.ones(1, np.bool_), [seed], level)
         self.agents = list(self.possible_agents)
+        self._show()
         return self._observe(fresh=True), {name: {} for name in self.agents}
 
     def step(self, actions: Values) -> tuple[Values, Values, Values, Values, Values]:
@@ -96,6 +98,7 @@ class ParallelNavEnv(ParallelEnv):
             for n, a in going.items()
         }
         observed = self._observe(fresh=False)
+        self._show()
         self.agents = [name for name in self.agents if not (done[name] or late[name])]
         return observed, rewards, done, late, infos
 
@@ -117,8 +120,14 @@ class ParallelNavEnv(ParallelEnv):
 
     def render(self) -> Any:
         """Return a picture (H, W, 3) uint8 of the world from above, if asked for."""
-        return None if self.render_mode is None else picture(self.rollout, 0)
+        self._show()
+        return picture(self.rollout, 0) if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """End the threads."""
+        """End the threads, and close the window."""
         self.rollout.close()
+        self._window.close()
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            self._window.show(picture(self.rollout, 0))

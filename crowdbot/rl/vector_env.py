@@ -15,6 +15,7 @@ from crowdbot.rl.episodes import seeds_of
 from crowdbot.rl.libraries import DISABLED, NEXT_STEP, SAME_STEP, VectorEnv, gym
 from crowdbot.rl.picture import picture
 from crowdbot.rl.rollout import Rollout, StepResult
+from crowdbot.rl.window import RENDER_MODES, Window, check_render_mode
 
 
 class NavVectorEnv(VectorEnv):
@@ -28,7 +29,8 @@ class NavVectorEnv(VectorEnv):
             ``options={"reset_mask": …}`` begins the next one.
         threads: how many step the worlds.
         max_episode_steps: ends an episode before its time is over; None: the task's time limit.
-        render_mode: ``rgb_array``: `render` returns a picture of each world.
+        render_mode: ``rgb_array``: `render` returns a picture of each world; ``human``: a window
+            shows the first world at each step.
         arguments: as of `crowdbot.rl.env_setup.resolve`.
 
     Raises:
@@ -36,7 +38,7 @@ class NavVectorEnv(VectorEnv):
     """
 
     metadata: ClassVar[dict[str, Any]] = {
-        "render_modes": ["rgb_array"],
+        "render_modes": list(RENDER_MODES),
         "render_fps": 16,
     }
 
@@ -52,8 +54,7 @@ class NavVectorEnv(VectorEnv):
     ) -> None:
         if num_envs < 1 or threads < 1:
             raise InputError("num_envs and threads must be at least 1")
-        if render_mode not in (None, "rgb_array"):
-            raise InputError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}")
+        check_render_mode(render_mode)
         mode = gym.vector.AutoresetMode(autoreset_mode)
         self.metadata = {**type(self).metadata, "autoreset_mode": mode}  # type: ignore[misc]
         self.num_envs, self.render_mode, self.autoreset_mode = num_envs, render_mode, mode
@@ -73,7 +74,7 @@ class NavVectorEnv(VectorEnv):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._ended = np.zeros(num_envs, np.bool_)
         self._steps = np.zeros(num_envs, np.int64)
-        self._begun = False
+        self._begun, self._window = False, Window(NavVectorEnv.__name__)
 
     def reset(
         self,
@@ -100,6 +101,7 @@ class NavVectorEnv(VectorEnv):
         seeds = seeds_of(seed, self.num_envs)
         self._begin(which, seeds, level)
         self._begun = True
+        self._show()
         return self.rollout.look(which, _nowhere(which)), self._infos(which)
 
     def set_level(self, level: int) -> None:
@@ -136,7 +138,9 @@ class NavVectorEnv(VectorEnv):
             self._begin(again, [None] * self.num_envs, None)
         result = self.rollout.step(given, np.flatnonzero(~again))
         self._steps[~again] += 1
-        return self._after(result, again)
+        after = self._after(result, again)
+        self._show()
+        return after
 
     def _after(
         self, result: StepResult, again: Mask
@@ -191,7 +195,9 @@ class NavVectorEnv(VectorEnv):
 
     def render(self) -> tuple[Any, ...] | None:
         """Return pictures (H, W, 3) uint8 of all worlds from above, if asked for."""
-        if self.render_mode is None:
+        if self.render_mode == "human":
+            self._show()
+        if self.render_mode != "rgb_array":
             return None
         return tuple(picture(self.rollout, w) for w in range(self.num_envs))
 
@@ -199,6 +205,11 @@ class NavVectorEnv(VectorEnv):
         """End the threads."""
         del kwargs
         self.rollout.close()
+        self._window.close()
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            self._window.show(picture(self.rollout, 0))
 
 
 def _nowhere(like: Mask) -> Mask:

@@ -51,6 +51,22 @@ def test_it_draws_from_above() -> None:
     assert len(np.unique(image.reshape(-1, 3), axis=0)) > 4
 
 
+def test_a_window_shows_each_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    pygame = pytest.importorskip("pygame", reason="pygame is not installed")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    env = gym.make(rl.NAV, render_mode="human", **FEW)
+    env.reset(seed=1)
+    shown = pygame.surfarray.array3d(pygame.display.get_surface()).swapaxes(0, 1)
+    own = gym.make(rl.NAV, render_mode="rgb_array", **FEW)
+    own.reset(seed=1)
+    assert np.array_equal(shown, own.render())
+    assert env.render() is None
+    env.close()
+    assert not pygame.display.get_init()
+    with pytest.raises(InputError, match="'rgb_array' or 'human' or None, not 'ansi'"):
+        rl.NavEnv(render_mode="ansi", **FEW)
+
+
 def rollout(env: Any, given: Any) -> list[Any]:
     return [env.step(action) for action in given]
 
