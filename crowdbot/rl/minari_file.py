@@ -28,7 +28,7 @@ def write_minari(runs: Sequence[Path], out: Path, registry: Registry) -> None:
 
     Raises:
         MissingLibraryError: Minari or one of its libraries is not installed.
-        InputError: a run is no episode, or episodes observe differently.
+        InputError: a run cannot be an episode, or episodes observe differently.
     """
     minari = found("minari")
     if minari is None or gym is None or found("pyarrow") is None:
