@@ -4,8 +4,8 @@
 
 It learns in short corridors that no edition has, among few people first and many later: the next
 level begins once nine of ten episodes arrive, or when its share of the time is over. Beside the
-policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv``, its learning curve. Time is
-the processor time of this process.
+policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and ``policy.svg``, its
+learning curve. Time is the processor time of this process.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+import matplotlib
 import numpy as np
 import torch
+from matplotlib.figure import Figure
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
@@ -93,16 +95,37 @@ class Course(BaseCallback):
         over = self.used > ENDS[self._level] * self._budget
         if self._level < len(ENDS) - 1 and (arrived > READY or over):
             self._level += 1
-            self.training_env.set_level(self._level)
+            env: Any = self.training_env
+            env.set_level(self._level)
 
     def save(self) -> None:
         """Write the policy, the model and the curve."""
-        env, model = self.training_env, self.model
+        env: Any = self.training_env
+        model: Any = self.model
         save_onnx(model, env, self._out)
         model.crowdbot = conventions(env)
         model.save(self._out.with_suffix(".zip"))
         with self._out.with_suffix(".csv").open("w", newline="") as file:
             csv.writer(file).writerows([COLUMNS, *self._rows])
+        draw(self._out.with_suffix(".csv"), self._out.with_suffix(".svg"))
+
+
+def draw(curve: Path, out: Path) -> None:
+    """Draw a learning curve: arrivals and contacts, and where levels begin."""
+    matplotlib.rcParams["svg.hashsalt"] = "crowdbot"
+    rows = np.atleast_1d(np.genfromtxt(curve, delimiter=",", names=True))
+    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
+    axes = figure.add_subplot(xlabel="processor time, min", ylabel="share of episodes")
+    axes.set_ylim(0.0, 1.0)
+    minutes = rows["processor_s"] / 60.0
+    axes.plot(minutes, rows["arrived"], color="#117733", label="arrived")
+    axes.plot(minutes, rows["touched"], color="#cc3311", label="touched a person")
+    for level in np.unique(rows["level"])[1:]:
+        begin = minutes[np.argmax(rows["level"] == level)]
+        axes.axvline(begin, color="#999999", linewidth=0.8)
+        axes.text(begin, 1.0, f" level {level:.0f}", va="bottom", fontsize=8)
+    axes.legend(loc="center right")
+    figure.savefig(out, metadata={"Date": None})
 
 
 def train(minutes: float, worlds: int, threads: int, out: Path, seed: int = 1) -> None:

@@ -56,10 +56,8 @@ def write_minari(runs: Sequence[Path], out: Path, registry: Registry) -> None:
 
 def _buffer(number: int, episode: RunEpisode) -> Any:
     """Return an episode as Minari keeps it."""
-    from minari.data_collector import EpisodeBuffer
-
     last = len(episode.rewards) - 1
-    return EpisodeBuffer(
+    return found("minari.data_collector").EpisodeBuffer(
         id=number,
         observations=list(episode.observations),
         actions=list(episode.actions),

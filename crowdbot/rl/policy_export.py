@@ -59,7 +59,8 @@ def save_onnx(policy: Any, env: Any, path: str | Path) -> None:
     if tuple(found.shape) != (1, actor.size):
         raise InputError(f"the policy returns shape {tuple(found.shape)}, not (1, {actor.size})")
     buffer = io.BytesIO()
-    torch.onnx.export(
+    export: Any = torch.onnx.export
+    export(
         module, (example,), buffer, input_names=["observation"], output_names=["action"],
         dynamic_axes={"observation": {0: "worlds"}, "action": {0: "worlds"}}, dynamo=False,
     )  # fmt: skip
