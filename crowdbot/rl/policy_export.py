@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -60,10 +61,14 @@ def save_onnx(policy: Any, env: Any, path: str | Path) -> None:
         raise InputError(f"the policy returns shape {tuple(found.shape)}, not (1, {actor.size})")
     buffer = io.BytesIO()
     export: Any = torch.onnx.export
-    export(
-        module, (example,), buffer, input_names=["observation"], output_names=["action"],
-        dynamic_axes={"observation": {0: "worlds"}, "action": {0: "worlds"}}, dynamo=False,
-    )  # fmt: skip
+    with warnings.catch_warnings():
+        # torch recommends an exporter that needs a further library, and warns of checks of
+        # distributions, which an action without noise does not use.
+        warnings.simplefilter("ignore")
+        export(
+            module, (example,), buffer, input_names=["observation"], output_names=["action"],
+            dynamic_axes={"observation": {0: "worlds"}, "action": {0: "worlds"}}, dynamo=False,
+        )  # fmt: skip
     model = onnx.load_from_string(buffer.getvalue())
     entry = model.metadata_props.add()
     entry.key, entry.value = KEY, actor.conventions.to_json()
