@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from crowdbot.core.batch.world import BatchWorld
+from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.task import Task
 from crowdbot.errors import InputError
@@ -40,6 +41,36 @@ class Spread:
             goal=(a + da, b + db),
             goal_zone=np.asarray(task.goal_zone) + np.array([da, db]),
         )
+
+
+def _check_reach(world: BatchWorld, tasks: Sequence[Task]) -> None:
+    """Check that no wall lies between places and those of the scenario.
+
+    Raises:
+        InputError: one does.
+    """
+    walls = world.blueprint.parts.walls
+    for before, task in zip(world.blueprint.tasks, tasks, strict=True):
+        for what, a, b in (
+            ("start", before.start[:2], task.start[:2]),
+            ("goal", before.goal, task.goal),
+        ):
+            if _crosses(np.array(a), np.array(b), walls):
+                raise InputError(f"the {what} would be behind a wall")
+
+
+def _crosses(a: Array, b: Array, walls: Array) -> bool:
+    """Return True if the segment from a to b meets one of the walls (S, 4)."""
+    p, q = walls[:, :2], walls[:, 2:]
+    of_walls = _side(a, b, p) * _side(a, b, q) <= 0.0
+    of_ends = _side(p, q, a) * _side(p, q, b) <= 0.0
+    return bool(np.any(of_walls & of_ends & (np.hypot(*(b - a)) > 0.0)))
+
+
+def _side(a: Array, b: Array, point: Array) -> Array:
+    """Return a number that is positive to the left of the line from a to b."""
+    along, to = b - a, point - a
+    return np.asarray(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0])
 
 
 def spread_of(start: Mapping[str, float] | None, goal: Mapping[str, float] | None) -> Spread | None:
@@ -74,6 +105,7 @@ def scatter(world: BatchWorld, spread: Spread, seed: int) -> None:
     for _ in range(_TRIES):
         tasks = [spread.draw(task, rng) for task in world.blueprint.tasks]
         try:
+            _check_reach(world, tasks)
             world.place(tasks)
         except InputError as error:
             problem = str(error)

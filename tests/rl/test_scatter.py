@@ -74,8 +74,8 @@ def test_a_start_keeps_clear_of_walls_and_is_refused_where_there_is_no_room() ->
     worlds = rollout(start_spread={"y": 60.0})
     for _ in range(3):
         worlds.begin(ALL, [None, None])
-        assert np.abs(worlds.rows[:, 0, 1]).max() < 5.0
-    with pytest.raises(InputError, match=r"no free start in 200 tries: .*in a wall"):
+        assert all(abs(worlds.world(w).robots[0, 1]) < 5.0 for w in (0, 1))
+    with pytest.raises(InputError, match=r"no free start in 200 tries: .*behind a wall"):
         rollout(goal_spread={"y": 1e6})
 
 
