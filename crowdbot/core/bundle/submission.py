@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import metadata
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
 from zlib import error as ZlibError  # noqa: N812 - not one of ours
@@ -33,6 +34,7 @@ _MOST, _LARGEST, _ABOUT_BYTES = 10_000, 32 * 10**9, 4_000_000
 _NAME = re.compile(
     r"(?:[A-Za-z0-9_+@~=,-][A-Za-z0-9_+.@~=,-]*/)*[A-Za-z0-9_+@~=,-][A-Za-z0-9_+.@~=,-]*"
 )
+_LONGEST_NAME = 200
 _EPOCH, _CHUNK = (1980, 1, 1, 0, 0, 0), 1 << 20
 
 
@@ -122,6 +124,7 @@ def unpack_submission(sealed: Sealed, folder: Path) -> Path:
 
     Raises:
         InputError: a file is missing, damaged, or not the one that the description names.
+        OSError: a file cannot be written.
     """
     with _opened(sealed.path) as archive:
         for name, wanted in sealed.about.files.items():
@@ -143,8 +146,6 @@ def _unpack(
                 out.write(chunk)
     except (KeyError, zipfile.BadZipFile, NotImplementedError, EOFError, ZlibError) as error:
         raise InputError(f"{path}: {name} is damaged or missing: {error}") from None
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written: {error.strerror or error}") from None
     if (digest.hexdigest(), size) != (wanted.sha256, wanted.size):
         raise InputError(f"{path}: {name} is not what {ABOUT} says; it was changed")
     target.chmod(0o755 if wanted.executable else 0o644)
@@ -172,13 +173,24 @@ def _listing_problem(infos: list[zipfile.ZipInfo]) -> str:
         return f"more than {_MOST} files or {_LARGEST // 10**9} GB"
     if len({n.casefold() for n in names}) < len(names):
         return "two files have one name"
+    if any(f"{n}/".startswith(f"{m}/") for m, n in pairwise(sorted(names, key=_parts))):
+        return "a file has the name of a folder"
     for info in infos:
         kind = stat.S_IFMT(info.external_attr >> 16)
-        if not _NAME.fullmatch(info.filename) or kind not in (0, stat.S_IFREG):
+        if not _is_name(info.filename) or kind not in (0, stat.S_IFREG):
             return f"{info.filename[:100]!a} is not allowed in a submission"
         if info.flag_bits & 0x1:
             return f"{info.filename[:100]!a} is encrypted"
     return "" if ABOUT in names else f"it is not a sealed submission: {ABOUT} is missing"
+
+
+def _is_name(text: str) -> bool:
+    """Return True for a relative path that every file system takes."""
+    return len(text) <= _LONGEST_NAME and _NAME.fullmatch(text) is not None
+
+
+def _parts(name: str) -> list[str]:
+    return name.split("/")
 
 
 def _about(path: Path, archive: zipfile.ZipFile) -> About:
@@ -209,7 +221,7 @@ def _info(name: str, *, executable: bool = False) -> zipfile.ZipInfo:
 
 
 def _described(name: str, file: Path) -> SealedFile:
-    if not _NAME.fullmatch(name) or name == ABOUT:
+    if not _is_name(name) or name == ABOUT:
         raise InputError(
             f"{name[:100]!a} cannot be sealed: letters, digits and _ + - . @ ~ = , only"
         )

@@ -6,7 +6,7 @@ import hashlib
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -19,16 +19,23 @@ from crowdbot.core.bundle.verification import JUDGED, content_hash, save_verific
 from crowdbot.core.campaign.plan import Plan, make_plan
 from crowdbot.core.campaign.request import CampaignRequest
 from crowdbot.core.campaign.run import State
+from crowdbot.core.planning.containment.offer import kernel_offer
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.scenarios.library import open_suite
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.suite.expand import Expansion
-from crowdbot.errors import CrowdbotError, InputError
+from crowdbot.errors import (
+    CrowdbotError,
+    InputError,
+    Interrupted,
+    PluginError,
+    SimulationError,
+)
 
 _RECEIVED, _OPENED, _REFUSED, _INCOMPLETE = "received", "opened", "refused", "incomplete"
-_SHORT = 16
+_SHORT, _REASON = 16, 500
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,8 +82,9 @@ def judge(setup: Judge) -> Judgement:
     of its own that exists only while it runs.
 
     Raises:
-        InputError: the log was changed, is that of another suite, or the folder has no submission.
-        CrowdbotError: the suite is invalid, or runs cannot be made at all.
+        InputError: the log was changed, is that of another suite, the folder has no submission, or
+            planners would not be contained.
+        CrowdbotError: the suite is invalid, or runs cannot be made at all; the same call goes on.
     """
     expansion, lock = open_suite(setup.suite, setup.registry)
     path = setup.out / LOG
@@ -88,6 +96,10 @@ def judge(setup: Judge) -> Judgement:
     if any(scenario.hidden for scenario in expansion.scenarios):
         found.waits = True
         return found
+    if setup.options.place.contained and (missing := kernel_offer().missing):
+        raise InputError(
+            f"planners would not be contained ({missing}); --not-contained runs them all the same"
+        )
     _open_draws(expansion, lock, path, lines)
     done = {str(x.document["submission"]) for x in lines if x.event in (JUDGED, _REFUSED)}
     for digest, one in sealed.items():
@@ -154,20 +166,28 @@ def _judge_one(
     lines: list[LogLine],
     found: Judgement,
 ) -> None:
+    """Make the runs of one submission, pack them and log it, or log why not."""
     name, short = sealed.path.name, sealed.sha256[:_SHORT]
+
+    def leave_out(event: str, reason: str) -> None:
+        append(path, lines, event, submission=sealed.sha256, reason=reason[:_REASON])
+        found.left_out[name] = reason
+
     folder = setup.out / "planners" / short
     try:
-        state, label = _run(setup, sealed, folder)
-    except CrowdbotError as error:
-        append(path, lines, _REFUSED, submission=sealed.sha256, reason=str(error)[:500])
-        found.left_out[name] = str(error)
+        request, label = _prepared(setup, sealed, folder)
+        state = _made(setup, request)
+    except (InputError, PluginError) as error:
+        leave_out(_REFUSED, str(error))
+        return
+    except SimulationError as error:  # not the submission's: others are judged, and it is later
+        leave_out(_INCOMPLETE, f"{error}; the same command goes on")
         return
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     if state.failures:
         reason = f"{len(state.failures)} runs could not be made; the same command goes on"
-        append(path, lines, _INCOMPLETE, submission=sealed.sha256, reason=reason)
-        found.left_out[name] = reason
+        leave_out(_INCOMPLETE, reason)
         return
     bundle = setup.out / f"{short}.cbz"
     about = sealed.about
@@ -185,15 +205,25 @@ def _judge_one(
     found.judged[name] = bundle
 
 
-def _run(setup: Judge, sealed: Sealed, folder: Path) -> tuple[State, str]:
-    """Make the missing runs of one submission; return the state and the planner's label."""
+def _prepared(setup: Judge, sealed: Sealed, folder: Path) -> tuple[CampaignRequest, str]:
+    """Unpack a submission and load its planner; return the request for its runs, and its label.
+
+    Raises:
+        InputError, PluginError: it is not what was sealed, or may not be run.
+        SimulationError: it cannot be unpacked here.
+    """
     if folder.exists():  # of an interrupted time
         shutil.rmtree(folder)
     folder.mkdir(parents=True, mode=0o700)
     about = sealed.about
     _, colon, kind = about.planner.partition(":")
-    text = f"{unpack_submission(sealed, folder)}{colon}{kind}"
-    choice = resolve_planner(text, setup.registry, about.settings, setup.options.place)
+    try:
+        text = f"{unpack_submission(sealed, folder)}{colon}{kind}"
+    except OSError as error:
+        where = error.filename or folder
+        raise SimulationError(f"{where}: cannot be written: {error.strerror or error}") from None
+    options = replace(setup.options, place=replace(setup.options.place, sealed=folder.resolve()))
+    choice = resolve_planner(text, setup.registry, about.settings, options.place)
     if choice.spec_dump.get("sha256") != about.digest:
         raise InputError(f"{about.planner} is not the planner that was sealed")
     request = CampaignRequest(
@@ -201,10 +231,24 @@ def _run(setup: Judge, sealed: Sealed, folder: Path) -> tuple[State, str]:
         planners=[text],
         planner_settings=about.settings,
         out=setup.out / "runs" / sealed.sha256[:_SHORT],
-        options=setup.options,
+        options=options,
         plugins=setup.plugins,
     )
-    return setup.run(make_plan(request, setup.registry)), choice.label
+    return request, choice.label
+
+
+def _made(setup: Judge, request: CampaignRequest) -> State:
+    """Make the missing runs of a request.
+
+    Raises:
+        SimulationError: they cannot be made now.
+    """
+    try:
+        return setup.run(make_plan(request, setup.registry))
+    except Interrupted:
+        raise
+    except CrowdbotError as error:
+        raise SimulationError(str(error)) from error
 
 
 def _record(bundle: Path, sealed: Sealed, names: Sequence[str]) -> dict[str, Any]:

@@ -34,6 +34,8 @@ class PlannerPlace:
         lenient: True to accept a planner that cannot be loaded in its process; it fails in every
             run, and a campaign continues with the others.
         kept: folder of files that planners read, each named by its SHA-256; None: none.
+        sealed: folder of a sealed planner, which may declare nothing outside of it, nor ask for the
+            network; None: it is not sealed.
     """
 
     in_process: bool | None = None
@@ -41,6 +43,7 @@ class PlannerPlace:
     lenient: bool = False
     contained: bool = False
     kept: Path | None = None
+    sealed: Path | None = None
 
     def own_memory(self, in_process: bool) -> int | None:
         """Return the memory limit, if there is a separate process."""

@@ -64,6 +64,7 @@ def external_choice(
         parameters=parameters,
         memory=place.memory,
         contained=place.contained,
+        sealed=place.sealed,
         needs=program.needs,
         beside=path.resolve().parent,
     )

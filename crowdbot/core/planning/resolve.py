@@ -192,6 +192,7 @@ def _from_kind(
             },
             memory=place.memory,
             contained=place.contained,
+            sealed=place.sealed,
             needs=needs_of_kind(component, registry, files.values()),
         )
         _, build = describe(plan, lenient=place.lenient)
@@ -294,6 +295,7 @@ def _from_class(
             preload=preloads(path),
             memory=place.memory,
             contained=place.contained,
+            sealed=place.sealed,
             needs=needs_of_class(path, name),
             beside=path.parent,
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,15 @@ from crowdbot.core.bundle.submission import (
     unpack_submission,
     write_submission,
 )
-from crowdbot.errors import InputError
+from crowdbot.core.campaign.judge import Judge, judge
+from crowdbot.core.campaign.plan import Plan
+from crowdbot.core.campaign.run import State
+from crowdbot.core.planning.choice import PlannerPlace
+from crowdbot.core.planning.containment.offer import kernel_offer
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.runs.run_options import RunOptions
+from crowdbot.errors import InputError, Interrupted
+from tests.core.planning.process.process_cases import older_kernel
 from tests.paths import DATA
 
 PLANNER = """\
@@ -212,3 +221,49 @@ def test_nothing_is_received_outside_the_round(
     assert _judge(tmp_path) == 1
     assert f"a.cbs is left out: {why}" in capsys.readouterr().err
     assert "received" not in _log(tmp_path / "out")
+
+
+def _setup(folder: Path, run: Callable[[Plan], State]) -> Judge:
+    """Return a judge of one submission whose runs are made by a function."""
+    (folder / "suite.yaml").write_text(SUITE)
+    (folder / "in").mkdir()
+    _planner(folder / "mine")
+    assert _seal(folder / "mine", folder / "in" / "us.cbs") == 0
+    options = RunOptions(place=PlannerPlace(lenient=True, contained=True), replay=False)
+    return Judge(
+        suite=str(folder / "suite.yaml"), submissions=folder / "in", out=folder / "out",
+        registry=discover(allow=()), run=run, options=options,
+    )  # fmt: skip
+
+
+@pytest.mark.skipif(kernel_offer().missing != "", reason="this kernel contains nothing")
+def test_what_is_not_the_submissions_fault_is_not_its_end(tmp_path: Path) -> None:
+    errors = iter([InputError("no scheduler answers"), Interrupted()])
+
+    def run(_: Plan) -> State:
+        raise next(errors)
+
+    setup = _setup(tmp_path, run)
+    assert judge(setup).left_out["us.cbs"] == "no scheduler answers; the same command goes on"
+    with pytest.raises(Interrupted):
+        judge(setup)
+    assert _log(tmp_path / "out") == ["received", "opened", "incomplete"]
+    assert not list((tmp_path / "out" / "planners").iterdir())
+
+
+def test_nothing_is_run_where_it_would_not_be_contained(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    setup = _setup(tmp_path, lambda plan: pytest.fail(str(plan)))
+    with older_kernel(monkeypatch, 0), pytest.raises(InputError, match="would not be contained"):
+        judge(setup)
+    assert _log(tmp_path / "out") == ["received"]
+
+
+@pytest.mark.parametrize("names", [("a", "a/b"), ("a/b", "a/b/c"), ("x" * 201,)])
+def test_names_that_no_folder_can_have_are_refused(names: list[str], tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "b.cbs", "w") as archive:
+        for name in ("submission.json", *names):
+            archive.writestr(name, "{}")
+    with pytest.raises(InputError, match=r"name of a folder|is not allowed"):
+        read_submission(tmp_path / "b.cbs")

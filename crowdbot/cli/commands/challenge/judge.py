@@ -39,6 +39,12 @@ def judge(
         typer.Option("--not-contained", help="Run planners that this system does not contain."),
     ] = False,
     planner_memory: PlannerMemory = MEMORY_GIB,
+    step_budget: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS", help="Wall time that a planner step may take; default: 10 s."
+        ),
+    ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
@@ -47,7 +53,7 @@ def judge(
 
     While the draws are hidden, submissions are logged only; later ones are refused. Each planner
     runs by itself; the same command goes on after an interruption. The log is checked by
-    crowdbot judge-log.
+    crowdbot judge-log. A budget of steps bounds how long a slow planner keeps the others waiting.
 
     Example: crowdbot judge challenge.yaml submissions --out judged --jobs 4
     """
@@ -62,7 +68,7 @@ def judge(
         out=out,
         registry=installed(plugin, no_plugins),
         run=lambda plan: run_plan(plan, worker_count(jobs), cluster),
-        options=RunOptions(place=place, replay=False),
+        options=RunOptions(place=place, replay=False, step_budget=step_budget),
         plugins=plugin or (),
     )
     found = judge_all(setup)

@@ -46,6 +46,7 @@ def seal(
     """
     from crowdbot.core.bundle.manifest import name_problem
     from crowdbot.core.bundle.submission import About, unpack_submission, write_submission
+    from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.core.planning.planner_files import planner_files
     from crowdbot.core.planning.resolve import resolve_planner
 
@@ -68,7 +69,8 @@ def seal(
         _, colon, kind = name.partition(":")
         copy = f"{unpack_submission(sealed, Path(folder))}{colon}{kind}"
         try:
-            again = resolve_planner(copy, registry, planner_set or ())
+            place = PlannerPlace(sealed=Path(folder))
+            again = resolve_planner(copy, registry, planner_set or (), place)
         except InputError as error:
             target.unlink()
             raise InputError(f"the sealed copy does not load: {error}; see --include") from None

@@ -58,8 +58,9 @@ def needs_of_program(
         network: True if its document asks for the network.
     """
     own = needs_of_files([program, *files])
-    more = [*environment_of(program), *(str(p) for p in libraries)]
-    return Needs(files=[*own.files, *more], folders=own.folders, network=network)
+    chosen = [str(p) for p in libraries]
+    more = [*environment_of(program), *chosen]
+    return Needs(files=[*own.files, *more], folders=own.folders, network=network, chosen=chosen)
 
 
 def needs_of_files(files: Iterable[Path]) -> Needs:
@@ -84,6 +85,7 @@ def with_data(needs: Needs, folder: Path, patterns: Iterable[str]) -> Needs:
         files=sorted({*needs.files, *more.files}),
         folders=sorted({*needs.folders, *more.folders}),
         network=needs.network,
+        chosen=[*needs.chosen, *more.files],
     )
 
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from pathlib import Path
 from typing import Any, Final, Literal
 
 from crowdbot.core.planning.containment import landlock, system_calls
@@ -75,14 +76,26 @@ class Needs:
     """Files and network that a planner asks for.
 
     Attributes:
-        files: files and folders that it declares.
+        files: files and folders that it reads.
         folders: folders whose names it may list, such as the one of its file.
         network: True if its document asks for the network.
+        chosen: those files that it names itself, as its data or libraries.
     """
 
     files: Sequence[str] = ()
     folders: Sequence[str] = field(default=())
     network: bool = False
+    chosen: Sequence[str] = ()
+
+    def beyond(self, folder: Path) -> str:
+        """Describe what goes beyond the files of a folder; empty if nothing does."""
+        if self.network:
+            return "asks for the network"
+        inside = folder.resolve()
+        for one in self.chosen:
+            if not Path(one).resolve().is_relative_to(inside):
+                return f"declares '{one}', which is not one of its own files"
+        return ""
 
 
 def contained_request(needs: Needs) -> dict[str, Any]:

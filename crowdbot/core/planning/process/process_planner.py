@@ -68,6 +68,7 @@ class ProcessPlan:
         needs: files and network that it asks for.
         beside: folder of the data that its description declares.
         contained: True to refuse to run it where it would not be contained.
+        sealed: folder that holds all that it may declare; None: it may declare more.
     """
 
     who: str
@@ -80,6 +81,7 @@ class ProcessPlan:
     needs: Needs = field(default_factory=Needs)
     beside: Path | None = None
     contained: bool = False
+    sealed: Path | None = None
 
 
 class ProcessLostError(PlannerError):
@@ -137,6 +139,7 @@ def describe(
     said = planner.description
     if plan.beside is not None and said.data:
         plan = replace(plan, needs=with_data(plan.needs, plan.beside, said.data))
+        _check_sealed(plan)
     return said, partial(ProcessPlanner, plan)
 
 
@@ -155,6 +158,7 @@ class ProcessPlanner:
     def __init__(self, plan: ProcessPlan) -> None:
         self._plan, self._step = plan, 0
         _check_parameters(plan)
+        _check_sealed(plan)
         _check_containment(plan)
         self._server: ServerHandle | None = None
         self._why = ""
@@ -381,6 +385,16 @@ def _here() -> str:
     with contextlib.suppress(OSError):
         return str(Path.cwd())
     return ""
+
+
+def _check_sealed(plan: ProcessPlan) -> None:
+    """Refuse a sealed planner that would reach more than what was sealed.
+
+    Raises:
+        InputError: it declares other files, or asks for the network.
+    """
+    if plan.sealed is not None and (beyond := plan.needs.beyond(plan.sealed)):
+        raise InputError(f"{plan.who}: a sealed planner {beyond}")
 
 
 def _check_containment(plan: ProcessPlan) -> None:
