@@ -6,6 +6,7 @@ It is made from the tables that the readers follow; ``make generate`` runs this.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core.exchange.all_formats import FORMATS
@@ -19,8 +20,8 @@ _HEAD = """\
 <!-- Written by make generate: change the tables of crowdbot/core/exchange, not this page. -->
 
 [`crowdbot import`](commands.md#crowdbot-import) reads these formats;
-[Import scenes of other simulators](../howto/import_scenes.md) shows how. Each row names a part of
-a file and the field of ours that it becomes. A part is *carried over* as it is, *interpreted* as
+[Import scenes of other simulators](../howto/import_scenes.md) shows how. Each line names parts of
+a file and the fields of ours that they become. A part is *carried over* as it is, *interpreted* as
 the note says, or *left out* for the reason given. The report of an import names each part that was
 not carried over, with its line; what is in none of these tables is named there, too.
 
@@ -45,14 +46,58 @@ def _anchor(form: SceneFormat) -> str:
     return kept.replace(" ", "-")
 
 
+@dataclass(slots=True)
+class _Line:
+    """Rows that are alike, as one line of a table."""
+
+    elements: tuple[str, ...]
+    theirs: list[str]
+    ours: list[str]
+    fate: Fate
+    note: str
+
+    @property
+    def kind(self) -> tuple[tuple[str, ...], str, Fate, str]:
+        """What rows of one line share: elements, place of ours, fate and note."""
+        place = self.ours[0].rpartition(".")[0] if self.ours[0] else ""
+        return self.elements, place, self.fate, self.note
+
+    def text(self) -> str:
+        """Return the line in Markdown."""
+        elements = ", ".join(f"`{name}`" for name in self.elements)
+        parts = ", ".join(f"`{name}`" for name in self.theirs if name)
+        first, *rest = dict.fromkeys(self.ours)
+        place = f"{self.kind[1]}." if self.kind[1] else ""
+        names = [first, *(name.removeprefix(place) for name in rest)] if first else []
+        ours = ", ".join(f"`{name}`" for name in names)
+        theirs = f"{elements}: {parts}" if parts else elements
+        return f"| {theirs} | {ours} | {self.fate.value} | {self.note} |\n"
+
+
 def _tables(tables: Sequence[RowTable]) -> Iterator[str]:
     yield "\n| part | becomes | fate | note |\n|---|---|---|---|\n"
+    yield from (line.text() for line in _within(_across(tables)))
+
+
+def _across(tables: Sequence[RowTable]) -> list[_Line]:
+    """Return one line for the same row of several elements."""
+    found: dict[tuple[str, str, Fate, str], list[str]] = {}
     for table in tables:
         for row in table.rows:
-            theirs = f"{table.element} {row.theirs}" if row.theirs else table.element
-            ours = f"`{row.ours}`" if row.ours else ""
-            yield f"| {_shown(theirs)} | {ours} | {row.fate.value} | {row.note} |\n"
+            found.setdefault((row.theirs, row.ours, row.fate, row.note), []).append(table.element)
+    return [
+        _Line(tuple(dict.fromkeys(elements)), [theirs], [ours], fate, note)
+        for (theirs, ours, fate, note), elements in found.items()
+    ]
 
 
-def _shown(text: str) -> str:
-    return f"`{text.replace(' @', '@')}`"
+def _within(lines: Sequence[_Line]) -> list[_Line]:
+    """Return one line for those of the same elements that differ in names only."""
+    found: dict[tuple[tuple[str, ...], str, Fate, str], _Line] = {}
+    for line in lines:
+        if line.kind in found:
+            found[line.kind].theirs += line.theirs
+            found[line.kind].ours += line.ours
+        else:
+            found[line.kind] = line
+    return list(found.values())

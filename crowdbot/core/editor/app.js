@@ -6,6 +6,7 @@ let wait = 0;
 function choose(tool) {
   state.tool = tool;
   for (const button of $("tools").children) button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
+  say(TOOLS[tool][1]);
 }
 
 function pick(chosen) {

@@ -31,8 +31,8 @@ WORLD = RowTable(
     "World",
     (
         Row("@type", "environment.border", read=lambda item: item.word("infinite", "toric")),
-        Row("@width", "environment.width", read=positive),
-        Row("@height", "environment.height", read=positive),
+        Row("@width", "environment.area", read=positive),
+        Row("@height", "environment.area", read=positive),
     ),
 )
 Policies = dict[int, tuple[Data, Item]]
