@@ -84,7 +84,44 @@ def _near(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-@settings(max_examples=15, deadline=None)
+_far = st.floats(42.0, 48.0).map(lambda v: round(v, 3))
+_solids = st.fixed_dictionaries(
+    {
+        "walls": st.lists(
+            st.fixed_dictionaries(
+                {"start": st.tuples(_far, _far).map(list), "end": st.tuples(_far, _places).map(list),
+                 "thickness": st.floats(0.02, 1.0).map(lambda v: round(v, 3))}
+            ), max_size=2,
+        ),
+        "pillars": st.lists(
+            st.fixed_dictionaries(
+                {"x": _far, "y": _places, "radius": st.floats(0.1, 1.0).map(lambda v: round(v, 3))}
+            ), max_size=2,
+        ),
+    }
+)  # fmt: skip
+
+
+@settings(max_examples=8, deadline=None)
+@given(_solids)
+def test_walls_and_pillars_come_back(solids: dict[str, list[dict[str, Any]]]) -> None:
+    scene = _scene([])
+    policy = scene.policy(preset(0), "preset_0", _HERE)
+    scene.agent({"x": 0.0, "y": 0.0, "goals": [[1.0, 0.0]], "policy": policy}, _HERE)
+    for kind, parts in solids.items():
+        for part in parts:
+            scene.part(kind, kind, part, _HERE)
+    with tempfile.TemporaryDirectory() as name:
+        made = export_trial(_opened(scene, Path(name)), registry())
+        (Path(name) / "trial.xml").write_text(made.text, encoding="utf-8")
+        again = document_of(imported(Path(name) / "trial.xml"))["scenario"]["environment"]
+    for kind, parts in solids.items():
+        back = list(again.get(kind, {}).values())
+        assert len(back) == len(parts)
+        assert all(map(_near, parts, back))
+
+
+@settings(max_examples=12, deadline=None)
 @given(st.lists(_people, min_size=1, max_size=4))
 def test_what_a_trial_can_say_comes_back(people: list[dict[str, Any]]) -> None:
     scene = _scene(people)

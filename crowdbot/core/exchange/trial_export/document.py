@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree as Xml
@@ -23,6 +23,8 @@ _MESHES: Mapping[str, str] = {
     "pepper": "Pepper", "smart_wheelchair": "Wheelchair", "qolo": "Qolo", "cuybot": "CuyBot",
     "turtlebot2": "turtlebot",
 }  # fmt: skip
+#: Thickness of the sides of blocks and of the border, m.
+_THIN = 0.02
 assert set(_MESHES) == set(KINDS.values())
 
 
@@ -135,20 +137,32 @@ def _robot(
 
 
 def _obstacles(root: Xml.Element, scenario: Scenario, registry: Registry, report: Report) -> None:
-    obstacles = add(root, "obstacles")
+    obstacles, floor = add(root, "obstacles"), scenario.environment
     if _stage(scenario):
         return
-    parts = build_environment(registry, scenario.environment)
-    for x1, y1, x2, y2 in parts.walls.tolist():
-        obstacle = add(add(obstacles, "obstacle"), "TrialObstacle")
-        add(add(obstacle, "Lines"), "Line", x1=number(-y1), y1=number(x1), x2=number(-y2),
-            y2=number(x2), thickness="0.02")  # fmt: skip
+    whole: Mapping[str, Any] = getattr(floor, "walls", {}) if floor.kind == "floor" else {}
+    for wall in whole.values():
+        _line(obstacles, (*wall.start, *wall.end), wall.thickness)
+    rest = floor.model_copy(update={"walls": {}}) if whole else floor
+    parts = build_environment(registry, rest)
+    for side in parts.walls.tolist():
+        _line(obstacles, side, _THIN)
     for x, y, radius in parts.pillars[:, :3].tolist():
         obstacle = add(add(obstacles, "obstacle"), "TrialObstacle")
         add(add(obstacle, "Points"), "Point", x1=number(-y), y1=number(x),
             thickness=number(2.0 * radius))  # fmt: skip
     if len(parts.walls):
-        report.added("obstacles", f"{len(parts.walls)} sides of walls and blocks, one by one")
+        report.added("obstacles", f"{len(parts.walls)} sides of blocks and the border, one by one")
+    if any(wall.height is not None for wall in whole.values()):
+        report.added("environment.walls.height", "left out: a trial's obstacles have none")
+
+
+def _line(root: Xml.Element, ends: Sequence[float], thickness: float) -> None:
+    """Append a straight wall between two points of ours, m."""
+    x1, y1, x2, y2 = ends
+    lines = add(add(add(root, "obstacle"), "TrialObstacle"), "Lines")
+    add(lines, "Line", x1=number(-y1), y1=number(x1), x2=number(-y2), y2=number(x2),
+        thickness=number(thickness))  # fmt: skip
 
 
 def _rest(scenario: Scenario, report: Report) -> None:
