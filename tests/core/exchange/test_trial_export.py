@@ -85,21 +85,13 @@ def _near(one: Any, other: Any) -> bool:
 
 
 _far = st.floats(42.0, 48.0).map(lambda v: round(v, 3))
+_widths = st.floats(0.1, 1.0).map(lambda v: round(v, 3))
+_ends = {"start": st.tuples(_far, _far).map(list), "end": st.tuples(_far, _places).map(list)}
+_walls = st.fixed_dictionaries({**_ends, "thickness": _widths})
+_pillars = st.fixed_dictionaries({"x": _far, "y": _places, "radius": _widths})
 _solids = st.fixed_dictionaries(
-    {
-        "walls": st.lists(
-            st.fixed_dictionaries(
-                {"start": st.tuples(_far, _far).map(list), "end": st.tuples(_far, _places).map(list),
-                 "thickness": st.floats(0.02, 1.0).map(lambda v: round(v, 3))}
-            ), max_size=2,
-        ),
-        "pillars": st.lists(
-            st.fixed_dictionaries(
-                {"x": _far, "y": _places, "radius": st.floats(0.1, 1.0).map(lambda v: round(v, 3))}
-            ), max_size=2,
-        ),
-    }
-)  # fmt: skip
+    {"walls": st.lists(_walls, max_size=2), "pillars": st.lists(_pillars, max_size=2)}
+)
 
 
 @settings(max_examples=8, deadline=None)
@@ -107,7 +99,7 @@ _solids = st.fixed_dictionaries(
 def test_walls_and_pillars_come_back(solids: dict[str, list[dict[str, Any]]]) -> None:
     scene = _scene([])
     policy = scene.policy(preset(0), "preset_0", _HERE)
-    scene.agent({"x": 0.0, "y": 0.0, "goals": [[1.0, 0.0]], "policy": policy}, _HERE)
+    scene.agent({"x": 0, "y": 0, "speed": 1, "goals": [[1, 0]], "policy": policy}, _HERE)
     for kind, parts in solids.items():
         for part in parts:
             scene.part(kind, kind, part, _HERE)
