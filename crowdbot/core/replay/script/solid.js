@@ -1,6 +1,7 @@
 // The view in three dimensions of a run; what it shows comes from the same numbers as the plan.
 
 const LEAST_RATIO = 0.5;
+const IDLE = 4000; // ms; after this time nothing was drawn since nothing was asked for
 
 /** Prepares the view on a canvas of its own; needs THREE. */
 function makeSolid(canvas, run, bounds) {
@@ -79,8 +80,8 @@ function keepUp(solid) {
   const now = performance.now();
   const passed = now - solid.before;
   solid.before = now;
-  if (passed < 400) solid.slow += 0.15 * (passed - solid.slow);
-  if (passed < 400 && solid.slow > 36 && solid.ratio > LEAST_RATIO) {
+  if (passed < IDLE) solid.slow += 0.15 * (Math.min(passed, 400) - solid.slow);
+  if (passed < IDLE && solid.slow > 36 && solid.ratio > LEAST_RATIO) {
     solid.ratio = Math.max(LEAST_RATIO, 0.8 * solid.ratio);
     solid.slow = 25;
   }

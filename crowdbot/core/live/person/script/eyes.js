@@ -40,10 +40,10 @@ function pictureDue(now) {
 }
 
 /** Draws the picture; returns false where the plan is to be drawn. */
-function drawEyes(frame, now) {
+function drawEyes(frame) {
   if (eyes.view === "plan" || !globalThis.THREE) return false;
   prepareEyes();
-  if (!pictureDue(now)) return true;
+  if (!pictureDue(performance.now())) return true;
   const own = ownBody(frame);
   if (!own || !Number.isFinite(own.x)) return false;
   const walks = shown.walker >= 0;

@@ -5,7 +5,7 @@ const WRITE = 90; // ms between two changes of the words; each costs a layout
 function draw(now) {
   const frame = frameNow(now);
   if (frame) {
-    if (!drawEyes(frame, now)) drawPlan(frame);
+    if (!drawEyes(frame)) drawPlan(frame);
     if (now - shown.wrote > WRITE) writeReadout(frame);
   }
   if (now - shown.wrote > WRITE) {
