@@ -161,7 +161,7 @@ def test_keys_and_a_gamepad_drive_and_the_recording_agrees_sample_by_sample(
 def test_a_reload_neither_ends_nor_falsifies_the_run(
     opened: Callable[..., tuple[Page, Command]],
 ) -> None:
-    page, command = opened("teleop", SHORT, "--set", "robots.robot.task.time_limit=2")
+    page, command = opened("teleop", SHORT, "--set", "robots.robot.task.time_limit=4")
     page.keyboard.press("Enter")
     until(page, "shown.told && shown.told.t >= 0.3")
     page.keyboard.down("ArrowUp")
@@ -177,8 +177,8 @@ def test_a_reload_neither_ends_nor_falsifies_the_run(
     assert wait["seconds"] > 0.5
     assert shown["live"]["stops"][0]["why"] in ("disconnected", "hidden", "not in focus")
     user = _commands(Path(shown["directory"]), "/joystick/cmd_vel")
-    assert len(user) == 32
-    assert user[1.9375] == (0.0, 0.0)
+    assert len(user) == 64
+    assert user[3.9375] == (0.0, 0.0)
 
 
 def test_a_second_page_watches(opened: Callable[..., tuple[Page, Command]]) -> None:
