@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 from typer.core import TyperGroup
 
-from crowdbot.cli.commands.compare.ladder import ladder
 from crowdbot.cli.output.results_by_planner import print_by_planner
 from crowdbot.cli.output.results_lines import line_of, print_lines
 from crowdbot.cli.output.say import say
@@ -270,7 +269,26 @@ def power(
     print_lines(lines_of(found, (metric, variant), sizes, tests), as_csv=as_csv, as_json=as_json)
 
 
-results.command()(ladder)
+@results.command()
+def ladder(
+    out: _Out = _ROOT,
+    metric: Annotated[
+        str | None, typer.Option(metavar="NAME", help="The score; default: safe efficiency.")
+    ] = None,
+    variant: Annotated[str, typer.Option(metavar="NAME", help="Its variant.")] = "corrected",
+    altered: Altered = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_json: _Json = False,
+) -> None:
+    """Show each planner's score on the rungs of the ladder of sensing.
+
+    Example: crowdbot results ladder --runs runs
+    """
+    from crowdbot.cli.output.ladder_lines import lines_of
+
+    found = with_scales(open_results(out, altered))
+    name = None if metric is None else (metric, variant)
+    print_lines(lines_of(found, name), as_csv=as_csv, as_json=as_json)
 
 
 def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
