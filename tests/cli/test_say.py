@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from crowdbot import cli
 from crowdbot.cli.output.say import say
 from crowdbot.core.planning.process.planner_line import _shown
 from tests.paths import ROOT
@@ -25,6 +26,24 @@ def test_control_characters_are_escaped(capsys: pytest.CaptureFixture[str]) -> N
     said = capsys.readouterr()
     assert said.out == "a\\x1b[31mb\\x07\\x9b2J\\u202e\tc\n"
     assert said.err == "x\\rover\n"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["\x1b[31mx"],
+        ["--\x1b[31mx"],
+        ["validate", "--\x1b[31mx"],
+        ["simulate", "a", "--jobs", "\x1b[31m"],
+    ],
+)
+def test_what_was_typed_is_repeated_without_control_characters(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(words) == 2
+    said = capsys.readouterr()
+    assert "\x1b[31m" not in (said.out + said.err).replace("\\x1b", "")
+    assert "\\x1b" in said.err
 
 
 def test_commands_print_by_say() -> None:

@@ -5,17 +5,20 @@ from __future__ import annotations
 import importlib
 import logging
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
+from typer.exceptions import TyperException
 from typer.main import get_command
 
 from crowdbot.cli.app.command_names import command_groups, command_names, module_name
 from crowdbot.cli.app.complete import offer
 from crowdbot.cli.app.folded_help import fold_common
 from crowdbot.cli.app.given_once import refuse_repetition
-from crowdbot.errors import did_you_mean, nearest
+from crowdbot.errors import did_you_mean, nearest, printable
 
 _SETTINGS: dict[str, Any] = {
     "add_completion": False,
@@ -39,8 +42,29 @@ def run(words: list[str]) -> None:
     command(words, prog_name="crowdbot")
 
 
+@contextmanager
+def _escaped_errors() -> Iterator[None]:
+    """Escape hidden characters in the messages of usage errors, which repeat what was typed."""
+    try:
+        yield
+    except TyperException as error:
+        if isinstance(text := getattr(error, "message", None), str):
+            error.message = printable(text)  # type: ignore[attr-defined]
+        raise
+
+
 class _Commands(TyperGroup):
     """A group whose commands are the modules of this package."""
+
+    def make_context(self, *args: Any, **given: Any) -> Any:
+        """Read the options before the command's name."""
+        with _escaped_errors():
+            return super().make_context(*args, **given)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command."""
+        with _escaped_errors():
+            return super().invoke(ctx)
 
     def list_commands(self, ctx: Any) -> list[str]:
         del ctx

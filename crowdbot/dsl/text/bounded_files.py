@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
+from functools import cache
 from pathlib import Path
 from typing import BinaryIO
 
@@ -11,6 +12,8 @@ from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
 from crowdbot.errors import SpecError
 
 MAX_BYTES = 1_000_000
+#: Where Linux shows files that the kernel makes up.
+_MADE_UP = (Path("/proc"), Path("/sys"))
 
 
 def read_text(path: Path, name: str) -> str:
@@ -78,10 +81,17 @@ def open_file(path: Path) -> BinaryIO:
         OSError: it cannot be opened, or is something else, such as a pipe.
     """
     file = open(path, "rb", opener=_without_waiting)  # noqa: SIM115 - the caller closes it
-    if stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+    found = os.fstat(file.fileno())
+    if stat.S_ISREG(found.st_mode) and found.st_dev not in _of_the_kernel():
         return file
     file.close()
     raise OSError("is a device or pipe, not a file")
+
+
+@cache
+def _of_the_kernel() -> frozenset[int]:
+    """Return the devices of files that the kernel makes up; reading some would wait forever."""
+    return frozenset(p.stat().st_dev for p in _MADE_UP if p.is_mount())
 
 
 def _without_waiting(path: str, flags: int) -> int:
