@@ -34,7 +34,6 @@ def test_control_characters_are_escaped(capsys: pytest.CaptureFixture[str]) -> N
         ["\x1b[31mx"],
         ["--\x1b[31mx"],
         ["validate", "--\x1b[31mx"],
-        ["simulate", "a", "--jobs", "\x1b[31m"],
     ],
 )
 def test_what_was_typed_is_repeated_without_control_characters(

@@ -49,7 +49,7 @@ def _escaped_errors() -> Iterator[None]:
         yield
     except TyperException as error:
         if isinstance(text := getattr(error, "message", None), str):
-            error.message = printable(text)  # type: ignore[attr-defined]
+            error.message = printable(text)
         raise
 
 
