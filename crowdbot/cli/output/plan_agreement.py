@@ -7,10 +7,12 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from crowdbot.cli.output.say import say
+from crowdbot.errors import SpecError
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.spec.component_specs import Agreement
+    from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
 def check_against_images(specs: Sequence[str], registry: Registry, *, as_json: bool) -> int:
@@ -23,14 +25,23 @@ def check_against_images(specs: Sequence[str], registry: Registry, *, as_json: b
         The exit code: 1 if a cell's centre is floor in one of both only.
 
     Raises:
-        SpecError, UnknownNameError: a document is not valid.
+        SpecError: documents are not valid; the others were compared and printed.
+        UnknownNameError: there is no such suite.
     """
-    found = [(spec, *one) for spec in specs for one in _agreements(spec, registry)]
+    found: list[tuple[str, str, Agreement]] = []
+    wrong: list[Diagnostic] = []
+    for spec in specs:
+        try:
+            found += [(spec, *one) for one in _agreements(spec, registry)]
+        except SpecError as error:
+            wrong += error.diagnostics
     if as_json:
         listed = [{"spec": spec, "scenario": name, **one._asdict()} for spec, name, one in found]
         say(json.dumps(listed, indent=2))
-    else:
+    elif found or not wrong:
         say("\n".join(_line(*row) for row in found) or "no occupancy grid in it")
+    if wrong:
+        raise SpecError(wrong)
     return 1 if any(one.wrong for *_, one in found) else 0
 
 

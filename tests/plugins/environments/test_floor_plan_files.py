@@ -256,6 +256,19 @@ def test_grids_keep_what_is_small(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert (one["cells"], one["scenario"]) == (4800, "x")
 
 
+def test_one_damaged_map_among_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _image(tmp_path / "map.png")
+    good = _scenario(tmp_path, "map.png")
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(Path(good).read_text().replace("map.yaml", "lost.yaml"))
+    (tmp_path / "lost.yaml").write_text("image: lost.bmp\nresolution: 0.1\norigin: [0, 0, 0]\n")
+    (tmp_path / "lost.bmp").write_bytes(b"BM")
+    assert main(["validate", str(bad), good, "--against-image"]) == 1
+    shown = capsys.readouterr()
+    assert "0 differ" in shown.out
+    assert "lost.bmp: is neither a PGM (P2, P5) nor a PNG image" in shown.err
+
+
 def test_a_document_without_a_grid(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["validate", "challenge-2020", "--against-image"]) == 0
     assert capsys.readouterr().out == "no occupancy grid in it\n"
