@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ def spec(kind: str, body: str = "") -> str:
     return HEAD + SPEC.format(kind=kind, body=body)
 
 
+VERSION = metadata.version("crowdbot")
 #: Name -> module, and what the listing says of it.
 BROKEN = {
     "missing": ("import no_such_module", "ModuleNotFoundError: No module named 'no_such_module'"),
@@ -38,7 +40,8 @@ BROKEN = {
     "leaves": ("import sys; sys.exit(7)", "SystemExit: 7"),
     "own_way": ("class Odd(BaseException): pass\nraise Odd('why not')", "Odd: why not"),
     "future": (planner("future.go").replace("API = 1", "API = 2"),
-               "crowdbot-future 0.3 was written for plugin API 2; this crowdbot 0.1.0 speaks 1"),
+               "crowdbot-future 0.3 was written for plugin API 2; this crowdbot "
+               f"{VERSION} speaks 1"),
     "past": (planner("past.go").replace("API = 1", "API = 0"), "written for plugin API 0"),
     "text_api": (planner("text_api.go").replace("API = 1", "API = '1'"),
                  "CROWDBOT_API must be a whole number such as 1, not '1'"),

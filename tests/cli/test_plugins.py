@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from importlib import metadata
 
 import pytest
 
@@ -94,7 +95,7 @@ def test_what_is_built_in_is_described_where_it_says() -> None:
 def test_show_says_where_a_component_is_from(capsys: Captured) -> None:
     assert main(["plugins", "show", "risk"]) == 0
     shown = capsys.readouterr().out
-    assert "from crowdbot 0.1.0 (plugin builtin)" in shown
+    assert f"from crowdbot {metadata.version('crowdbot')} (plugin builtin)" in shown
     assert "described in docs/reference/metrics/risk.md" in shown
     assert "R in s, better: lower" in shown
     assert main(["plugins", "show", "risk", "--json"]) == 0

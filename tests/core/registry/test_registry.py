@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -143,13 +144,16 @@ def test_an_unknown_kind_names_near_ones() -> None:
         found().find("planner", "dwaa")
 
 
+VERSION = metadata.version("crowdbot")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("import no_such_module", "no_such_module"),
         ("raise SystemError('boo')", "boo"),
         ("def (", "SyntaxError"),
-        ("CROWDBOT_API = 2", "plugin API 2; this crowdbot 0.1.0 speaks 1"),
+        ("CROWDBOT_API = 2", f"plugin API 2; this crowdbot {VERSION} speaks 1"),
     ],
 )
 def test_a_broken_plugin_hurts_only_itself(text: str, message: str, tmp_path: Path) -> None:
