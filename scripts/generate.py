@@ -57,7 +57,7 @@ def _endings() -> Texts:
 
 #: What is made -> the texts of its files.
 GENERATED: dict[str, Callable[[], Texts]] = {
-    "fields of scenarios": lambda: _page(write_reference.PAGE, write_reference.scenario_page()),
+    "fields of scenarios": write_reference.pages,
     "names for plugins": lambda: _page(
         write_author_surface.PAGE, write_author_surface.author_surface_page()
     ),

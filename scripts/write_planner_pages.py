@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from crowdbot.core.registry.registry import discover
-from scripts.write_reference import field_table
+from scripts.write_reference import field_table, linked
 
 PAGES = Path(__file__).parent.parent / "docs" / "reference" / "planners"
 BEGIN = "<!-- Written by make generate: change the planner's spec, not this. -->"
@@ -20,6 +20,6 @@ def pages() -> dict[Path, str]:
         if path.stem in planners:
             text = path.read_text(encoding="utf-8")
             before, _, rest = text.partition(BEGIN)
-            table = field_table(planners[path.stem].spec).replace("(#", "(../scenario.md#")
+            table = linked(field_table(planners[path.stem].spec), path)
             found[path] = f"{before}{BEGIN}\n\n{table}\n\n{END}{rest.partition(END)[2]}"
     return found

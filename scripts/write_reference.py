@@ -1,7 +1,11 @@
-"""The page docs/reference/scenario.md, made from the models; scripts/generate.py writes it."""
+"""The pages of fields: docs/reference/scenario.md, and docs/reference/components by component.
+
+They are made from the models; scripts/generate.py writes them.
+"""
 
 from __future__ import annotations
 
+import os
 import re
 import types
 from collections.abc import Iterator, Mapping
@@ -29,11 +33,13 @@ from crowdbot.dsl.spec.spec import ComponentSpec, Mount, Range, Rectangle, Tilta
 from crowdbot.dsl.suite.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "scenario.md"
+FOLDER = PAGE.parent / "components"
 
-_HEAD = """\
+_WRITTEN = "<!-- Written by make generate: change the models, not this page. -->"
+_HEAD = f"""\
 # Scenarios and suites: every field
 
-<!-- Written by make generate: change the models, not this page. -->
+{_WRITTEN}
 
 A *scenario* holds everything the robot meets; the planner is never part of it. A *suite* expands
 to a list of scenarios; [Change a scenario](../howto/change_a_scenario.md) shows one. What each
@@ -41,8 +47,17 @@ error means is on the page [errors](errors.md). The fields of planners are on
 [planners](planners.md), those of metrics on their pages in [metrics](metrics_by_category.md).
 `crowdbot plugins show KIND` prints the fields of any component that is installed.
 
+Pages of their own: {{components}}.
+
 A quantity is a number in the unit of its column, or text with a unit of the same dimension, such
 as `80 cm/s`. World frame: x along the corridor, y left, z up, angles counter-clockwise.
+"""
+_TREE = """\
+```{toctree}
+:hidden:
+:glob:
+components/*
+```
 """
 _COMPONENTS = ("environment", "crowd policy", "cost function", "robot", "sensor", "noise")
 _DRAWS = (LengthSample, SpeedSample, AccelerationSample, MassSample, DurationSample)
@@ -73,11 +88,47 @@ _NAMES = {float: "number", int: "integer", str: "text", bool: "true or false", A
 _BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 
 
-def scenario_page() -> str:
-    """The whole page as Markdown."""
+def pages() -> dict[Path, str]:
+    """Return file -> text of all pages of fields."""
     registry = discover(allow=())
-    parts = [_HEAD, _units(), *_documents(), *_scenario(registry), *_components(registry)]
-    return "\n".join([*parts, *_shared()]).rstrip() + "\n"
+    found = {FOLDER / "crowd.md": _page("The crowd of a scenario", _crowd(registry))}
+    for category in _COMPONENTS:
+        title = _plural(category).capitalize()
+        found[page_of(category)] = _page(title, _components(registry, category))
+    names = sorted(found, key=lambda p: p.stem)
+    listed = ", ".join(f"[{_name(p)}](components/{p.name})" for p in names)
+    parts = [_HEAD.format(components=listed), _units(), *_documents(), *_scenario(registry)]
+    found[PAGE] = _joined([*parts, *_shared(), _TREE])
+    return {path: linked(text, path) for path, text in found.items()}
+
+
+def _name(page: Path) -> str:
+    return page.stem.replace("_", " ")
+
+
+def _page(title: str, parts: Iterator[str]) -> str:
+    about = "Units and parts that several components share are on [scenarios](../scenario.md).\n"
+    return _joined([f"# {title}: every field\n", f"{_WRITTEN}\n", about, *parts])
+
+
+def _joined(parts: list[str]) -> str:
+    return "\n".join(parts).rstrip() + "\n"
+
+
+def page_of(category: str) -> Path:
+    """Return the page of the components of a category."""
+    return FOLDER / f"{_plural(category).replace(' ', '_')}.md"
+
+
+def linked(text: str, page: Path) -> str:
+    """Return text in which links to parts and components, ``(#name)``, lead from a page to them."""
+    shared = {f"(#{m.__name__.lower()})": PAGE for m in _SHARED}
+    whole = {f"(#{_plural(c).replace(' ', '-')})": page_of(c) for c in _COMPONENTS}
+    for anchor, home in [*shared.items(), *whole.items()]:
+        where = os.path.relpath(home, page.parent)
+        place = anchor[1:-1] if anchor in shared else ""
+        text = text.replace(anchor, anchor if home == page and place else f"({where}{place})")
+    return text
 
 
 def _units() -> str:
@@ -95,7 +146,18 @@ def _documents() -> Iterator[str]:
 
 def _scenario(registry: Registry) -> Iterator[str]:
     yield _section("## A scenario", registry.scenario_model, extends=True)
+    yield from _sections(registry, crowd=False)
+
+
+def _crowd(registry: Registry) -> Iterator[str]:
+    yield from _sections(registry, crowd=True)
+
+
+def _sections(registry: Registry, *, crowd: bool) -> Iterator[str]:
+    """Yield the sections of what is nested in a scenario: of its crowd, or of all else."""
     for path, model in _nested(registry.scenario_model, ""):
+        if (path.partition(".")[0] == "crowd") != crowd:
+            continue
         kinds = _kinds_of(model)
         if not kinds:
             yield _section(f"### {path}", model)
@@ -118,14 +180,12 @@ def _concrete(model: Any) -> list[Any]:
     return [leaf for child in below for leaf in _concrete(child)] if below else [model]
 
 
-def _components(registry: Registry) -> Iterator[str]:
-    for category in _COMPONENTS:
-        yield f"## {_plural(category).capitalize()}\n"
-        for kind, component in registry.components(category).items():
-            about = f"`kind: {kind}`, {component.summary}."
-            yield _section(f"### {kind}", component.spec, about)
-            for path, model in _nested(component.spec, "") if category == "environment" else ():
-                yield _section(f"#### {kind}: {path}", model)
+def _components(registry: Registry, category: str) -> Iterator[str]:
+    for kind, component in registry.components(category).items():
+        about = f"`kind: {kind}`, {component.summary}."
+        yield _section(f"## {kind}", component.spec, about)
+        for path, model in _nested(component.spec, "") if category == "environment" else ():
+            yield _section(f"### {kind}: {path}", model)
 
 
 def _plural(category: str) -> str:

@@ -73,7 +73,8 @@ def reference(component: Component[Any], owner: Plugin) -> str:
             "metric": f"metrics/{name}.md", "planner": _page_of_planner(component),
             "observation": learning, "reward": learning,
         }  # fmt: skip
-        return f"docs/reference/{pages.get(component.category, f'scenario.md#{name}')}"
+        plural = re.sub("y$", "ie", component.category).replace(" ", "_") + "s"
+        return f"docs/reference/{pages.get(component.category, f'components/{plural}.md#{name}')}"
     if component.category == "metric" and component.card_place:
         return component.card_place
     return _documentation(owner) or component.spec.__module__
