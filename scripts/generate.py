@@ -26,6 +26,7 @@ from scripts import (  # noqa: E402
     draw_robots,
     make_metric_pictures,
     write_author_surface,
+    write_commands,
     write_endings,
     write_metric_index,
     write_planner_pages,
@@ -61,11 +62,12 @@ GENERATED: dict[str, Callable[[], Texts]] = {
     "names for plugins": lambda: _page(
         write_author_surface.PAGE, write_author_surface.author_surface_page()
     ),
+    "options of commands": lambda: _page(write_commands.PAGE, write_commands.page()),
     "parameters of planners": write_planner_pages.pages,
     "fields of studies": lambda: _page(write_study_page.PAGE, write_study_page.page()),
     "how planners did": lambda: _page(write_planner_table.PAGE, write_planner_table.page()),
-    "metrics by category": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
-    "gallery of metrics": make_metric_pictures.pages,
+    "list of metrics": lambda: _page(write_metric_index.PAGE, write_metric_index.page()),
+    "pictures of metrics": make_metric_pictures.pages,
     "words of other simulators": lambda: _page(
         write_rosetta_stone.PAGE, write_rosetta_stone.page()
     ),

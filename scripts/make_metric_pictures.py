@@ -18,7 +18,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import crowdbot
-from crowdbot.core.registry.registry import discover
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))  # as a script, too
@@ -26,20 +25,12 @@ sys.path.insert(0, str(ROOT))  # as a script, too
 from scripts.metric_pictures import near, people, robot  # noqa: E402
 from scripts.metric_pictures.registry import DRAWINGS  # noqa: E402
 from scripts.metric_pictures.world import World  # noqa: E402
+from scripts.write_metric_cards import with_parameters  # noqa: E402
 
 DRAWN = (near, people, robot)
 HERE = Path(__file__).parent / "metric_pictures"
 IMAGES = ROOT / "docs" / "images" / "metrics"
 PAGES = ROOT / "docs" / "reference" / "metrics"
-GALLERY = ROOT / "docs" / "reference" / "gallery_of_metrics.md"
-_HEAD = """# Gallery of metrics
-
-What each metric measures, drawn from one run: a robot that sways and hardly brakes, among \
-24 people who walk both ways in a corridor of 14 m. \
-The number above a picture is the metric's value in that run. \
-`make pictures` draws them. What users answer and command is made up, since no one \
-steered. [Metrics by category](metrics_by_category.md) lists symbols and directions.
-"""
 
 
 def main() -> int:
@@ -73,11 +64,12 @@ def draw(runs: Path, metrics: Sequence[str] = tuple(DRAWINGS)) -> None:
 
 
 def pages() -> dict[Path, str]:
-    """Return file -> text of the gallery, and of each metric's page with its picture."""
-    found = {GALLERY: gallery()}
+    """Return file -> text of each metric's page with its picture and its parameters."""
+    found = {}
     for metric in DRAWINGS:
         page = PAGES / f"{metric}.md"
-        found[page] = with_picture(page.read_text(encoding="utf-8"), metric)
+        card = with_parameters(page.read_text(encoding="utf-8"), metric)
+        found[page] = with_picture(card, metric)
     return found
 
 
@@ -88,22 +80,10 @@ def with_picture(page: str, metric: str) -> str:
     return bare.replace("## Formula\n", f"{line}## Formula\n", 1)
 
 
-def gallery() -> str:
-    """The page of all pictures, by category."""
-    groups: dict[str, list[str]] = {}
-    for name, component in discover(entry_points=False).components("metric").items():
-        if name in DRAWINGS:
-            groups.setdefault(str(component.score_category), []).append(name)  # type: ignore[attr-defined]
-    parts = [_HEAD]
-    for category in sorted(groups):
-        parts.append(f"## {category}\n")
-        parts += [_entry(metric) for metric in groups[category]]
-    return "\n".join(parts)
-
-
-def _entry(metric: str) -> str:
-    name, shows = metric.replace("_", " "), DRAWINGS[metric].shows
-    return f"[{name}](metrics/{metric}.md): {shows}\n\n![{shows}](../images/metrics/{metric}.svg)\n"
+def entry(metric: str) -> str:
+    """A metric's picture in the list of all, below a link to its page."""
+    shows = DRAWINGS[metric].shows
+    return f"[{metric}](metrics/{metric}.md)\n\n![{shows}](../images/metrics/{metric}.svg)\n"
 
 
 if __name__ == "__main__":

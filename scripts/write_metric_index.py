@@ -1,4 +1,4 @@
-"""The page docs/reference/metrics_by_category.md: every metric with its symbol and question."""
+"""The page docs/reference/metrics.md: every metric with its symbol, question and picture."""
 
 from __future__ import annotations
 
@@ -6,16 +6,23 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.registry.registry import discover
+from scripts.make_metric_pictures import entry
+from scripts.metric_pictures.registry import DRAWINGS
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "reference" / "metrics_by_category.md"
-_HEAD = """# Metrics by category
+PAGE = ROOT / "docs" / "reference" / "metrics.md"
+_HEAD = """# Metrics
 
 Each metric has a page with its formula, variants, parameters, limits and a worked example. \
 The four scores decide: {four}. \
 Metrics in *italics* are experimental and scored only when they are named. \
 [Errata](metrics/errata.md) lists what is wrong with the formulas of the challenge, and \
 [four scores](../explanation/four_scores.md) says why there are four.
+
+Below each table are pictures of what its metrics measure, from one run: a robot that sways and \
+hardly brakes, among 24 people who walk both ways in a corridor of 14 m. The number above a \
+picture is the metric's value in that run. What users answer and command is made up, since no one \
+steered.
 """
 _TREE = """```{toctree}
 :hidden:
@@ -37,7 +44,8 @@ def page() -> str:
     for category in sorted(groups):
         rows = [_row(c) for c in groups[category]]
         head = "| metric | symbol | better | what it measures |\n|---|---|---|---|"
-        parts.append("\n".join([f"## {category}\n", head, *rows, ""]))
+        pictures = [entry(c.kind) for c in groups[category] if c.kind in DRAWINGS]
+        parts.append("\n".join([f"## {category}\n", head, *rows, "", *pictures]))
     return "\n".join([*parts, _TREE])
 
 

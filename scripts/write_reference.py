@@ -44,7 +44,7 @@ _HEAD = f"""\
 A *scenario* holds everything the robot meets; the planner is never part of it. A *suite* expands
 to a list of scenarios; [Change a scenario](../howto/change_a_scenario.md) shows one. What each
 error means is on the page [errors](errors.md). The fields of planners are on
-[planners](planners.md), those of metrics on their pages in [metrics](metrics_by_category.md).
+[planners](planners.md), those of metrics on their pages in [metrics](metrics.md).
 `crowdbot plugins show KIND` prints the fields of any component that is installed.
 
 Pages of their own: {{components}}.
@@ -245,9 +245,9 @@ def _prose(model: type[BaseModel]) -> str:
 
 
 def _row(name: str, info: FieldInfo) -> str:
-    unit = ", ".join(_units_of(info.annotation, info.metadata))
+    unit = ", ".join(units_of(info.annotation, info.metadata))
     kind = _READ.get(name, "anything") if _word(info.annotation) == "anything" else _type(info)
-    cells = [f"`{name}`", kind, unit, _default(info), info.description or _about(info)]
+    cells = [f"`{name}`", kind, unit, default_of(info), info.description or _about(info)]
     return "| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |"
 
 
@@ -261,12 +261,13 @@ def _about(info: FieldInfo) -> str:
     return re.split(r"[.:](?:\s|$)", text[0].upper() + text[1:])[0] + "."
 
 
-def _units_of(annotation: Any, metadata: Any) -> list[str]:
+def units_of(annotation: Any, metadata: Any) -> list[str]:
+    """Return the SI unit of a field, or those of its parts."""
     found = [m.si_unit for m in metadata if isinstance(m, Quantity)]
     if found or get_origin(annotation) not in (tuple, Annotated, Union, types.UnionType):
         return found
     inner = [a for a in get_args(annotation) if get_origin(a) is Annotated]
-    return [u for a in inner for u in _units_of(get_args(a)[0], get_args(a)[1:])]
+    return [u for a in inner for u in units_of(get_args(a)[0], get_args(a)[1:])]
 
 
 def _type(info: FieldInfo) -> str:
@@ -309,7 +310,8 @@ def _many(arguments: tuple[Any, ...]) -> str:
     return f"{count}{'maps' if word == 'map' else word}"
 
 
-def _default(info: FieldInfo) -> str:
+def default_of(info: FieldInfo) -> str:
+    """Return what a field is if it is left out, in words."""
     if info.is_required():
         return "required"
     value = info.default

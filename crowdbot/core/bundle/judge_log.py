@@ -1,6 +1,6 @@
 """The log of a judge: one signed line per event, each with the hash of the line before.
 
-A line cannot be changed, removed or inserted without changing all that follow, so that anybody who
+A line cannot be changed, removed or inserted without changing all that follow, so that anyone who
 kept the hash of one line can check everything before it.
 """
 

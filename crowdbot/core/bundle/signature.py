@@ -1,6 +1,6 @@
 """Signatures of an organiser: Ed25519 over canonical JSON.
 
-The private key is in a file that only its owner can read; anybody can check a signature with the
+The private key is in a file that only its owner can read; anyone can check a signature with the
 public key, which is in every signed document.
 """
 

@@ -211,7 +211,7 @@ def _check_open(document: OpenDocument) -> None:
     head = suite.tree.child("suite")
     seed = head.child("seed") if head else None
     if seed is not None and seed.mark.source.included_from is None:
-        text = "the seed is in the open: everybody can draw these people"
+        text = "the seed is in the open: everyone can draw these people"
         raise SpecError([Diagnostic("E215", text, seed.mark, "remove it; another one is chosen")])
 
 

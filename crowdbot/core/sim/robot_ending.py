@@ -13,7 +13,7 @@ class RobotEnding:
     blocks agree on it during the tick.
 
     Attributes:
-        leaves: True if it is out of everybody's way once it has ended.
+        leaves: True if it is out of everyone's way once it has ended.
         status, reason: how it ended; empty before.
         goal_time: when it arrived, s, or None.
         toppled_time: when it toppled, s, or None.

@@ -73,7 +73,7 @@ class RobotResponse(Spec):
     sight: PositiveLength = Field(
         default=6.0,
         description="Surface gap within which attentive people notice the robot, and beyond "
-        "which everybody forgets it, m.",
+        "which everyone forgets it, m.",
     )
     field_of_view: Annotated[float, Gt(0), Le(math.tau), Quantity("angle")] = Field(
         default=math.radians(200.0),

@@ -128,7 +128,7 @@ class Spawn(Spec):
         default="goal", description="At the start: an angle, to the first `goal`, or `random`; rad."
     )
     groups: tuple[GroupSize, ...] = Field(
-        default=(), strict=False, description="Sizes of groups; without it everybody is alone."
+        default=(), strict=False, description="Sizes of groups; without it everyone is alone."
     )
     goals: Goals | None = Field(
         default=None, description="A route; this, `portals` or `standing: true`."

@@ -104,7 +104,7 @@ class Stream(Spec):
         description="Names in `crowd.policies`, one of which each draws; without it the crowd's.",
     )
     groups: tuple[GroupSize, ...] = Field(
-        default=(), strict=False, description="Sizes of groups; without it everybody is alone."
+        default=(), strict=False, description="Sizes of groups; without it everyone is alone."
     )
 
     #: Fields with places where people begin, and with places where they go.

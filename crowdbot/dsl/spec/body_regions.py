@@ -2,7 +2,7 @@
 
 The values are the effective spring constants of the body model of ISO/TS 15066:2016, annex A, table
 A.3, based on BG/BGIA recommendations U 001/2009. They were not checked against the standard, which
-is not free; sources: docs/reference/robots_and_sensors.md.
+is not free; sources: docs/reference/robots.md.
 """
 
 from __future__ import annotations

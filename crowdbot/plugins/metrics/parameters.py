@@ -81,7 +81,6 @@ OvertakeLateral = Annotated[
     Field(default=3.0, description="People who pass farther to the side do not overtake, m."),
 ]
 OvertakeAngle = Annotated[
-    NonNegativeDuration,
     PositiveAngle,
     Field(
         default=math.pi / 4,

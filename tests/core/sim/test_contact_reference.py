@@ -1,7 +1,7 @@
 """Contact of robot and person against an independent integration of the same law.
 
 Impulse within 1 % and peak force within 6 % at 1/256 s wherever in a tick the contact begins; at
-the simulation's own 1/128 s within 2.5 % and 16 % (docs/reference/robots_and_sensors.md says so).
+the simulation's own 1/128 s within 2.5 % and 16 % (docs/reference/robots.md says so).
 """
 
 from __future__ import annotations
