@@ -1,7 +1,7 @@
 """Counts the words of the documentation: written by hand and generated, for users and developers.
 
     python scripts/count_words.py                    # words by group
-    python scripts/count_words.py --sentences 100    # random sentences of users' pages, to be judged
+    python scripts/count_words.py --sentences 100    # random sentences, to be judged
 
 Code blocks are counted apart. Generated is what ``make generate`` writes: whole pages, parts
 between comments, tables of options, and tables of parameters on the cards of metrics.
