@@ -84,8 +84,6 @@ PLAIN = (
     Rule(r"\b(?i:nobody|somebody|whoever)\b", "no one, a person, it",
          unless=r"\bavoid[ _]|\""),
     Rule(r"\b(?i:everybody|anybody)\b", "everyone, anyone, all people", (".md",)),
-    Rule(r"\b(?i:in spite of)\b", "despite", (".md",)),
-    Rule(r"\bonce more\b", "again", (".md",)),
     Rule(r"\banew\b", "again, new"),
     Rule(r"\b[Ss]o many\b", "this many"),
     Rule(r"\b[Ff]or ever\b", "forever, without limit"),
