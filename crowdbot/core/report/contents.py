@@ -124,7 +124,7 @@ class Contents:
 
     def is_person(self, planner: str) -> bool:
         """Return True if people drove in any run."""
-        return any(isinstance(a, RunRow) and a.record.by_person for a in self.of(planner))
+        return any(isinstance(a, RunRow) and a.by_person for a in self.of(planner))
 
     def role(self, planner: str) -> str:
         """Return a planner's role."""
@@ -143,7 +143,7 @@ def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
 
 
 def _responses(runs: Sequence[RunRow]) -> list[str]:
-    return [r.record.conditions.get("people_and_robot", "") for r in runs]
+    return [r.conditions.get("people_and_robot", "") for r in runs]
 
 
 def gather(

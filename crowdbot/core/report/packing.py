@@ -54,4 +54,4 @@ def pack_document(document: Any) -> str:
 
 def deflate(data: bytes) -> str:
     """Compress bytes with zlib and base64."""
-    return base64.b64encode(zlib.compress(data, 9)).decode("ascii")
+    return base64.b64encode(zlib.compress(data, 6)).decode("ascii")

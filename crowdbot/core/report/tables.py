@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -27,7 +26,7 @@ _END = "\r\n"
 def csv_lines(contents: Contents) -> Iterator[str]:
     """Yield the header, then one line per score; an attempt without scores has one line.
 
-    Texts that many lines share are quoted once.
+    Texts that many lines share are quoted once. NaN, a value that is not there, is an empty cell.
     """
     axes = [axis["name"] for axis in contents.axes]
     scores = ScoreColumns.of(contents.results.scores)
@@ -36,22 +35,23 @@ def csv_lines(contents: Contents) -> Iterator[str]:
     place_of = {name: i for i, name in enumerate(scores.run_ids)}
     labels_texts = [(csv_cells(x[:4]), csv_cells(x[4:])) for x in scores.labels]
     states = [csv_cells(state) for state in scores.states]
+    columns = (scores.label, scores.value, scores.state, scores.lower, scores.upper)
     yield csv_cells((*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)) + _END
     for attempt in contents.attempts:
         labels = [attempt.axes.get(name, "") for name in axes]
         head = csv_cells((*_run_cells(attempt), *labels))
         place = place_of.get(attempt.run_id) if isinstance(attempt, RunRow) else None
-        found = [] if place is None else order[ends[place] : ends[place + 1]].tolist()
-        for i in found:
-            (name, unit), state = labels_texts[scores.label[i]], states[scores.state[i]]
-            value, low, high = (_plain(x[i]) for x in (scores.value, scores.lower, scores.upper))
-            yield f"{head},{name},{value},{unit},{state},{low},{high}{_END}"
-        if not found:
+        found = order[:0] if place is None else order[ends[place] : ends[place + 1]]
+        if not len(found):
             yield f"{head},{csv_cells(_without_scores(attempt))}{_END}"
-
-
-def _plain(number: float) -> str:
-    return "" if math.isnan(number) else repr(float(number))
+            continue
+        rows = zip(*(column[found].tolist() for column in columns), strict=True)
+        yield from [
+            f"{head},{labels_texts[label][0]},{'' if value != value else repr(value)},"
+            f"{labels_texts[label][1]},{states[state]},{'' if low != low else repr(low)},"
+            f"{'' if high != high else repr(high)}{_END}"
+            for label, value, state, low, high in rows
+        ]
 
 
 def _run_cells(attempt: Attempt) -> tuple[str, ...]:

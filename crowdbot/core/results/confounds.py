@@ -126,7 +126,7 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
     yield _finding("privileged", "planners", [r for r in runs if r.role != "ceiling"], _class)
     loose = [r for r in runs if not r.pinned]
     for planner, group in _grouped(loose, lambda r: r.planner):
-        yield _finding("unpinned", planner, group, _source)
+        yield _finding("unpinned", planner, group, lambda r: r.source)
     # Floors and ceilings run in a sample; results about them give the number of pairs.
     yield from _unpaired([r for r in runs if r.role not in ("floor", "ceiling")])
 
@@ -137,6 +137,8 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
     names = dict.fromkeys(n for found in different.values() for n in found)
     scored = {key: {_head(n) for n in found} for key, found in different.items()}
     for name in sorted(names):
+        if len({found.get(name, "") for found in different.values()}) == 1:
+            continue
         kind = _CONDITIONS.get(name.partition(".")[0], "condition")
         groups = [("", runs)] if kind in _EVERYWHERE else _grouped(runs, _scenario)
         for scenario, group in groups:
@@ -225,17 +227,6 @@ def _scenario(run: RunRow) -> str:
 
 def _class(run: RunRow) -> str:
     return "privileged" if run.privileged else "sensors only"
-
-
-def _source(run: RunRow) -> str:
-    planner = run.record.planner
-    digest = planner.sha256[:12]
-    loose = [plugin for plugin in run.record.plugins if not plugin.pinned]
-    beside = ", ".join(f"{p.distribution} sha256 {p.sha256[:12]}" for p in loose)
-    return (
-        f"{planner.kind}{f' sha256 {digest}' * bool(digest)}"
-        f"{f', with the plugin {beside}' * bool(beside)}"
-    )
 
 
 def _short(text: str) -> str:

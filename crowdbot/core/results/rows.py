@@ -111,6 +111,23 @@ class RunRow:
         return self.record.planner_process
 
     @property
+    def source(self) -> str:
+        """Kind and digest of its planner, and of plugins of no installed version."""
+        planner = self.record.planner
+        digest = planner.sha256[:12]
+        loose = [plugin for plugin in self.record.plugins if not plugin.pinned]
+        beside = ", ".join(f"{p.distribution} sha256 {p.sha256[:12]}" for p in loose)
+        return (
+            f"{planner.kind}{f' sha256 {digest}' * bool(digest)}"
+            f"{f', with the plugin {beside}' * bool(beside)}"
+        )
+
+    @property
+    def by_person(self) -> bool:
+        """True if a person drove the robot."""
+        return self.record.by_person
+
+    @property
     def role(self) -> str:
         """Role of the planner: floor, baseline, ceiling or candidate."""
         return self.record.role

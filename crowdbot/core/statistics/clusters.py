@@ -14,7 +14,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,8 @@ Bounds = tuple[float, float]
 UNBOUNDED: Bounds = (-math.inf, math.inf)
 
 _ROUNDING = 1e-12
+#: Rows of all remembered parts together, about 20 MB.
+_REMEMBERED = 2_000_000
 
 ONE_DRAW = "one crowd draw: its chance cannot be told from a difference"
 NO_RUNS = "no run has a value"
@@ -65,7 +68,7 @@ class Clusters:
     @cached_property
     def strata(self) -> int:
         """Return the number of strata."""
-        return len(np.unique(self.stratum))
+        return int(np.count_nonzero(np.bincount(self.stratum)))
 
     @property
     def freedom(self) -> int:
@@ -78,12 +81,31 @@ class Clusters:
         return np.bincount(self.stratum)[self.stratum].astype(np.float64)
 
     def part(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> Clusters:
-        """Return the clusters of some runs, by mask or index; draws without runs are removed."""
-        left, index = np.unique(self.index[chosen], return_inverse=True)
+        """Return the clusters of some runs, by mask or index; draws without runs are removed.
+
+        Many scores have values in the same runs: their part is computed once.
+        """
+        key = chosen.dtype.char.encode() + chosen.tobytes()
+        found = self._parts.get(key)
+        if found is None:
+            if len(self._parts) * (1 + len(self.index)) > _REMEMBERED:
+                self._parts.clear()
+            found = self._parts[key] = self._part(chosen)
+        return found
+
+    @cached_property
+    def _parts(self) -> dict[bytes, Clusters]:
+        return {}
+
+    def _part(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> Clusters:
+        index = self.index[chosen]
+        there = np.bincount(index, minlength=self.count) > 0
+        left = np.flatnonzero(there)
         kept = self.stratum[left]
         if len(kept) and np.bincount(kept)[kept].min() < 2:  # one draw gives no variance
             kept = np.zeros_like(kept)
-        return Clusters(index, tuple(self.names[i] for i in left), kept)
+        names = self.names if len(left) == self.count else tuple(compress(self.names, there))
+        return Clusters((np.cumsum(there) - 1)[index], names, kept)
 
     def sums(self, values: Floats) -> Floats:
         """Return the sum of each draw's values, (count,)."""
@@ -97,10 +119,12 @@ def _strata(index: NDArray[np.intp], conditions: Sequence[str] | None) -> NDArra
     together = np.zeros(draws, np.intp)
     if conditions is None or not draws:
         return together
+    found, condition = np.unique(np.asarray(conditions, dtype=str), return_inverse=True)
+    if len(np.unique(condition * draws + index)) == len(found):  # no condition has two draws
+        return together
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    found, condition = np.unique(np.asarray(conditions, dtype=str), return_inverse=True)
     ties = coo_array(
         (np.ones(len(index)), (index, draws + condition)), shape=(draws + len(found),) * 2
     )
@@ -214,6 +238,7 @@ def ratio_error(above: Floats, below: Floats, clusters: Clusters) -> float | Non
     return error if error > 1e-13 * scale / total else 0.0  # equal up to rounding
 
 
+@lru_cache(maxsize=4096)
 def quantile_t(p: float, freedom: float) -> float:
     """Return a quantile of Student's t."""
     from scipy.special import stdtrit

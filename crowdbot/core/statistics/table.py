@@ -79,6 +79,7 @@ class Table:
         self._columns: dict[tuple[Name, str], Column] = {}
         self._attempts: dict[str, _Attempts] = {}
         self._labels: dict[str, AxisLabels] = {}
+        self._lacking: dict[str, NDArray[np.bool_]] = {}
         self._place_of = {name: i for i, name in enumerate(self._scores.run_ids)}
 
     @cached_property
@@ -103,6 +104,13 @@ class Table:
         found = {key: _condition(key, run.axes) for (_, key), run in self.runs.items()}
         known = {key[:2]: condition for key, condition in found.items()}
         return tuple(found.get(k) or known.get(k[:2]) or f"{k[0]}/{k[1]}" for k in self.keys)
+
+    @cached_property
+    def places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Return numbers of each row's condition, and of its draw in that condition, (n,) each."""
+        inside = [f"{c}\0{d}" for c, d in zip(self.conditions, self.draws, strict=True)]
+        found = [np.unique(names, return_inverse=True)[1] for names in (self.conditions, inside)]
+        return found[0].astype(np.intp), found[1].astype(np.intp)
 
     @cached_property
     def clusters(self) -> Clusters:
@@ -142,6 +150,11 @@ class Table:
         These are all scenarios of a suite with the run seeds that it has in any of them. Floors and
         ceilings are measures: they run in part of a suite, and lack nothing.
         """
+        if planner not in self._lacking:
+            self._lacking[planner] = self._find_lacking(planner)
+        return self._lacking[planner]
+
+    def _find_lacking(self, planner: str) -> NDArray[np.bool_]:
         attempts = self._tried(planner)
         tried = attempts.run | attempts.lost
         if attempts.roles & {"floor", "ceiling"}:

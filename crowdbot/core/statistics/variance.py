@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -53,8 +52,7 @@ def variance_parts(table: Table, name: Name, planner: str) -> VarianceParts:
     parts = partial(VarianceParts, planner=planner, metric=name[0], variant=name[1])
     if not len(known):
         return parts(reason="no run has a value")
-    condition = _numbered([table.conditions[i] for i in known])
-    draw = _numbered([f"{table.conditions[i]}\0{table.draws[i]}" for i in known])
+    condition, draw = (_numbered(places[known]) for places in table.places)
     found = nested_variance(column.low[known], condition, draw)
     if found is None:
         return parts(reason=ONE_DRAW_EACH)
@@ -103,5 +101,7 @@ def nested_variance(
     return between, max(0.0, within), error
 
 
-def _numbered(names: Sequence[str]) -> NDArray[np.intp]:
-    return np.unique(np.asarray(names), return_inverse=True)[1].astype(np.intp)
+def _numbered(places: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return places in the same order without gaps."""
+    there = np.bincount(places) > 0
+    return (np.cumsum(there) - 1)[places]
