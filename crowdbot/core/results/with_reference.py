@@ -9,6 +9,7 @@ from statistics import fmean
 
 from crowdbot.core.results.reference_file import open_references
 from crowdbot.core.results.results import Results
+from crowdbot.core.results.score_columns import ScoreColumns
 from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError
@@ -64,14 +65,17 @@ def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
         results: from `with_reference`.
         known: names of the references.
     """
+    if not known:
+        return
     runs = {r.run_id: r for r in results.runs}
     values: dict[str, dict[tuple[str, str], list[float]]] = {}
-    for score in results.scores:
-        if (score.metric, score.variant) == (PRIMARY.metric, PRIMARY.variant):
-            run = runs[score.run_id]
-            value = 0.0 if score.value is None else score.value
-            own = values.setdefault(run.planner, {})
-            own.setdefault((run.suite, run.scenario), []).append(value)
+    scores = ScoreColumns.of(results.scores)
+    for place in scores.by_name.get((PRIMARY.metric, PRIMARY.variant), ()):
+        score = scores[int(place)]
+        run = runs[score.run_id]
+        value = 0.0 if score.value is None else score.value
+        own = values.setdefault(run.planner, {})
+        own.setdefault((run.suite, run.scenario), []).append(value)
     for planner in sorted(set(values) - set(known)):
         shared = set(values[planner])
         others = [k for k in known if shared & set(values.get(k, {}))]
