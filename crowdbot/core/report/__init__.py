@@ -2,5 +2,6 @@
 
 from crowdbot.core.report.contents import Contents, Heading, gather
 from crowdbot.core.report.page import write_report
+from crowdbot.core.report.paper import write_paper
 
-__all__ = ["Contents", "Heading", "gather", "write_report"]
+__all__ = ["Contents", "Heading", "gather", "write_paper", "write_report"]

@@ -11,6 +11,10 @@ function start() {
   }
   byId("order").onchange = (event) => update({ order: event.target.value });
   byId("planner-order").onchange = (event) => update({ sort: event.target.value });
+  byId("failed-more").onclick = () => {
+    failedShown *= 4;
+    drawExplorer();
+  };
   byId("worst-more").onclick = () => {
     worstShown *= 2;
     drawExplorer();
@@ -51,6 +55,7 @@ function start() {
 
 function changed() {
   worstShown = WORST;
+  failedShown = FAILED;
   differencesShown = DIFFERENCES;
   draw();
 }

@@ -1,7 +1,9 @@
 // The failure explorer: runs that did not arrive, and the worst of one score.
 
 const WORST = 15;
+const FAILED = 50;
 let worstShown = WORST;
+let failedShown = FAILED;
 
 function drawExplorer() {
   drawFailed();
@@ -18,7 +20,8 @@ function drawFailed() {
     { text: "after, s", numeric: true, key: (row) => row.time },
     { text: "why", key: (row) => row.reason }, { text: "replay" },
   ];
-  sortable(byId("failed-table"), columns, rows, drawFailedRow);
+  sortable(byId("failed-table"), columns, rows.slice(0, failedShown), drawFailedRow);
+  byId("failed-more").hidden = rows.length <= failedShown;
   byId("failed-table").hidden = !rows.length;
   byId("failed-note").textContent = rows.length ? failedText(rows) : "Every run shown has arrived.";
 }

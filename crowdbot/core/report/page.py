@@ -12,13 +12,15 @@ from crowdbot.core.report.cards import reference
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import encode_runs, encode_scores
 from crowdbot.core.report.figures import FIELDS, VERDICTS
+from crowdbot.core.report.lead import main_columns, verdict
 from crowdbot.core.report.markdown import alike, chance, family, markdown
 from crowdbot.core.report.methods import methods
 from crowdbot.core.report.packing import pack, pack_document, pack_whole
 from crowdbot.core.results.rows import RunRow, processes
-from crowdbot.core.statistics.estimate_text import joined_text
+from crowdbot.core.statistics.estimate_text import estimate_text, joined_text
 from crowdbot.core.support.atomic_write import atomic_lines, atomic_write
 from crowdbot.core.support.html_page import Allowed, render_page
+from crowdbot.core.support.text import plural
 from crowdbot.core.types.ending import ATTEMPTED, ending_style
 
 _SCRIPTS = (
@@ -73,9 +75,28 @@ def render(contents: Contents) -> str:
         summary=figures.headline,
         chance=chance(figures.headline),
         alike=alike,
+        estimate_text=estimate_text,
+        lead_columns=main_columns(figures.headline),
+        lead_verdict=verdict(figures.headline, contents.sample, useless=bool(contents.suspicion)),
+        note_words=_note_words(contents),
         joined_text=joined_text,
         blobs=blobs,
     )
+
+
+def _note_words(contents: Contents) -> str:
+    """Return the heading of the folded notes."""
+    heading = contents.heading
+    behind = [c.planner for c in contents.floors if c.leads and not c.beats_all]
+    parts = [
+        "the suite cannot distinguish planners" if contents.suspicion else "",
+        "too few crowds" if contents.sample and contents.sample.too_small else "",
+        f"{', '.join(behind)}: not better than the floors" if behind else "",
+        plural(len(heading.accepted), "accepted difference") if heading.accepted else "",
+        plural(len(heading.warnings), "warning") if heading.warnings else "",
+    ]
+    said = "; ".join(filter(None, parts))
+    return f"Notes and warnings: {said}" if said else "Notes"
 
 
 def _planner(contents: Contents, planner: str) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from markupsafe import Markup
 from crowdbot.core.support.html_page import render_page
 from crowdbot.core.view.shapes import Drawing
 from crowdbot.core.view.svg import element, stylesheet
+from crowdbot.dsl.identity.canonical import PREFIX
 
 
 def to_html(drawing: Drawing) -> str:
@@ -16,5 +17,6 @@ def to_html(drawing: Drawing) -> str:
         more_style=stylesheet(),
         title=drawing.title,
         facts=drawing.facts,
+        hashes={n: text for n, text in drawing.facts.items() if text.startswith(PREFIX)},
         svg=Markup(element(drawing)),
     )

@@ -109,7 +109,7 @@ STYLES = {
     "wall-crowd": Style(stroke="arrow", width=2.5, dash=(3.0, 4.0)),
     "torus": Style(stroke="portal", width=2.0, dash=(10.0, 4.0, 2.0, 4.0)),
     "pillar": Style(fill="wall"),
-    "sensor": Style(fill="sensor", opacity=0.05, stroke="sensor", width=1.0, dash=(5.0, 4.0)),
+    "sensor": Style(fill="sensor", opacity=0.02, stroke="sensor", width=0.5, dash=(3.0, 5.0)),
     "group": Style(stroke="arrow", width=5.0, opacity=0.35),
     "route": Style(stroke="route", width=1.0, dash=(3.0, 3.0)),
     "mesh": Style(stroke="zone", width=1.0, dash=(1.5, 2.5)),

@@ -66,6 +66,12 @@ def report(
             "--no-replay-links", help="Leave out links to replays, for a page that is moved."
         ),
     ] = False,
+    latex: Annotated[
+        bool,
+        typer.Option(
+            "--latex", help="Also write tables for LaTeX, .tex, and a figure, .pdf and .svg."
+        ),
+    ] = False,
     altered: Altered = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -75,7 +81,7 @@ def report(
 
     Example: crowdbot report runs --suite challenge-2020 --planner 'dwa*' --out report.html
     """
-    from crowdbot.core.report import Heading, gather, write_report
+    from crowdbot.core.report import Heading, gather, write_paper, write_report
     from crowdbot.core.results.confounds import check_comparable, confounds
     from crowdbot.core.results.with_reference import reference_results, with_reference
 
@@ -98,7 +104,10 @@ def report(
         audit=_audit(audit, root / results.runs[0].suite),
     )
     contents = gather(results, registry, heading, links)
-    _tell(write_report(out, contents), contents, findings, as_json)
+    paths = write_report(out, contents)
+    if latex:
+        paths |= write_paper(out, contents)
+    _tell(paths, contents, findings, as_json)
 
 
 def _left_out(results: Results) -> list[str]:
@@ -186,7 +195,9 @@ def _tell(
     if not as_json:
         if not quiet:
             _tell_of(contents)
-        say(paths["html"])
+        for name in ("html", "tex", "pdf", "svg"):
+            if name in paths:
+                say(paths[name])
         return
     document = {
         **{name: str(path) for name, path in paths.items()},
