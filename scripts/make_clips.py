@@ -81,6 +81,7 @@ CLIPS = (
 
 
 def main() -> int:
+    """Film the wanted scenarios, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", metavar="GLOB", default="*", help="film only these scenarios")
     given = parser.parse_args()
@@ -98,7 +99,9 @@ def main() -> int:
 
 def film(clip: Clip) -> None:
     """Simulate the start of a run, and write its pictures."""
-    scenario = crowdbot.load(clip.suite, clip.scenario, set={"robots.robot.task.time_limit": SECONDS})
+    scenario = crowdbot.load(
+        clip.suite, clip.scenario, set={"robots.robot.task.time_limit": SECONDS}
+    )
     with tempfile.TemporaryDirectory() as folder:
         run = crowdbot.simulate(
             scenario, planner=clip.planner, references=False, replay=False, record="none",
@@ -114,21 +117,21 @@ def film(clip: Clip) -> None:
 
 
 def page() -> str:
-    """The page of all clips, by suite."""
+    """Return the page of all clips, by suite."""
     lines = [
-        "# Gallery of clips", "",
+        "# Thirty scenarios in motion", "",
         f"The first {SECONDS:g} seconds of {len(CLIPS)} scenarios, {SPEED:g} times as fast, driven "
-        "by `dwa`: people in blue, darker the slower; the robot in orange, its goal in green. "
-        "`make clips` films them again. The [gallery](gallery.md) has still pictures, and "
-        "`crowdbot export RUN --to webm` films a run of yours.",
+        "by `dwa`: people in blue with an arrow where they walk, the robot in orange with its "
+        "path, its goal in green. `make pictures` films them again; the [gallery](gallery.md) has "
+        "still pictures; `crowdbot export RUN_DIR --to webm` films a run of yours.",
     ]  # fmt: skip
     suite = ""
     for clip in CLIPS:
         if clip.suite != suite:
             suite = clip.suite
-            lines += ["", f"## {suite}"]
-        lines += ["", f"![{clip.text}](images/clips/{clip.file.name})", "",
-                  f"`{suite} {clip.scenario}`: {clip.text}"]  # fmt: skip
+            lines += ["", f"## {suite}", "", "| clip | scenario |", "|---|---|"]
+        picture = f"![{clip.text}](images/clips/{clip.file.name})"
+        lines.append(f"| {picture} | `{clip.scenario}`: {clip.text} |")
     return "\n".join(lines) + "\n"
 
 

@@ -67,6 +67,8 @@ def main() -> int:
         metrics = ROOT / "scripts" / "make_metric_pictures.py"
         subprocess.run([sys.executable, metrics, "--runs", kept], check=True, stdout=sys.stderr)
         missing = draw_pages(kept, Path(folder))
+    clips = ROOT / "scripts" / "make_clips.py"
+    subprocess.run([sys.executable, clips], check=True, stdout=sys.stderr)
     if missing:
         print(f"no browser is installed: left as they were: {', '.join(missing)}")
     return 0

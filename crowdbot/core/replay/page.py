@@ -56,6 +56,7 @@ def _render(shown: Sequence[ShownRun], title: str) -> str:
         allowed=Allowed(frames=True, later=(three_source(),)),
         three=three_packed(),
         title=title,
+        words=list(dict.fromkeys(one.words for one in shown if one.words)),
         labels=[one.label or one.title for one in shown],
         statuses=[one.status for one in shown],
         facts={name: [_facts(one).get(name, "–") for one in shown] for name in names},

@@ -47,6 +47,7 @@ class ShownRun:
         title: e.g. the scenario's id and the planner.
         label: label beside other runs, e.g. the planner; default: the title.
         facts: name -> text; ``Status`` is shown beside the title.
+        words: one sentence that says what the scenario's words mean; may be empty.
         scans: readings of lidars, ultrasounds and infrared sensors; drawn from the robot's true
             pose.
         images: camera images.
@@ -65,6 +66,7 @@ class ShownRun:
     title: str
     label: str = ""
     facts: Mapping[str, str] = field(default_factory=dict)
+    words: str = ""
     scans: Sequence[ReplayScan] = ()
     images: Sequence[ReplayImages] = ()
     drawings: Mapping[str, Sequence[PlannerDrawing]] = field(default_factory=dict)

@@ -31,6 +31,7 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.matrix import DRAW
 from crowdbot.errors import InputError, UsageError
 
 
@@ -47,6 +48,18 @@ def replay_facts(record: RunRecord) -> dict[str, str]:
         "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
         "Spec": record.hashes.spec[:24],
     }
+
+
+def scenario_words(record: RunRecord) -> str:
+    """Return one sentence that says what the words of a scenario's id mean; empty without any."""
+    told = []
+    for axis, label in record.axes.items():
+        if axis == DRAW:
+            told.append(f"{label}: one of several draws of its people")
+        elif words := record.axis_words.get(axis):
+            title, value = words
+            told.append(f"{label}: {title} {value}")
+    return f"In this scenario's name, {'; '.join(told)}." if told else ""
 
 
 def scenery(parts: EnvironmentParts, height: float) -> Scenery:
@@ -152,6 +165,7 @@ def shown_run(
         title=f"{scenario.id} · {record.planner.label}",
         label=record.planner.label,
         facts={**several, **replay_facts(record)},
+        words=scenario_words(record),
         scans=seen[last].scans,
         images=images,
         drawings=seen[last].drawings,
