@@ -28,7 +28,11 @@ def render(title: str, crowds: Sequence[Realism]) -> str:
     """Return the page as text; equal input gives equal text."""
     sources = list(dict.fromkeys(s for c in crowds for s in c.reference.sources))
     return render_page(
-        __package__, title=title, crowds=[_section(c) for c in crowds], sources=sources
+        __package__,
+        styles=("crowdbot.core.support:plain_page.css", "page.css"),
+        title=title,
+        crowds=[_section(c) for c in crowds],
+        sources=sources,
     )
 
 

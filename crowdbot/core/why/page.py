@@ -29,6 +29,7 @@ def render(
     """
     return render_page(
         __package__,
+        styles=("crowdbot.core.support:plain_page.css", "page.css"),
         more_style=stylesheet(),
         title=title,
         counts=[c.line for c in counts],

@@ -41,6 +41,7 @@ def render(sweep: Sweep) -> str:
     request = sweep.request
     return render_page(
         __package__,
+        styles=("crowdbot.core.support:plain_page.css", "page.css"),
         title=f"Sweep of {request.planner} in {request.suite}",
         score=f"{request.metric} ({request.variant}, {request.better} is better)",
         lines=verdict(sweep),

@@ -26,7 +26,11 @@ def render(title: str, found: Sequence[RobotRealism]) -> str:
     """Return the page as text; equal input gives equal text."""
     sources = list(dict.fromkeys(s for one in found for s in one.reference.sources))
     return render_page(
-        __package__, title=title, responses=[_section(one) for one in found], sources=sources
+        __package__,
+        styles=("crowdbot.core.support:plain_page.css", "crowdbot.core.realism:page.css"),
+        title=title,
+        responses=[_section(one) for one in found],
+        sources=sources,
     )
 
 

@@ -24,7 +24,7 @@ function robotRows(run, frame, index) {
   const pose = frame.robots[index];
   if (!pose) return run.people ? [["people", String(frame.people.size)]] : [];
   const rows = [["speed", withUnit(pose.v, 2, "m/s")]];
-  if (state.follow.startsWith("robot")) {
+  if (state.follow.startsWith("robot") && shown.runs.length === 1) {
     rows.push(["turn rate", withUnit(pose.w, 2, "rad/s")], ["heading", degrees(pose.theta)], ["x, y", placeText(pose)]);
   }
   const gap = oneOf(run, index ? `clearance/${index}` : "clearance")?.values[frame.k];
