@@ -28,7 +28,7 @@ from crowdbot.core.statistics import (
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.core.statistics.ladder import Ladder, ladders
-from crowdbot.core.statistics.pareto import ParetoPoint, pareto
+from crowdbot.core.statistics.pareto import ParetoPoint, label_heights, pareto
 from crowdbot.core.statistics.rules import Orders, orders
 from crowdbot.core.types.ending import ATTEMPTED
 from crowdbot.errors import InputError
@@ -102,6 +102,11 @@ class Contents:
     def pareto(self) -> tuple[ParetoPoint, ...]:
         """Return planners by safe efficiency and acceptance; empty for fewer than two."""
         return pareto(self.figures.headline)
+
+    @property
+    def pareto_labels(self) -> dict[str, float]:
+        """Return the y of each planner's name in the plot of `pareto`, px."""
+        return label_heights(self.pareto)
 
     @property
     def seeds(self) -> list[int]:

@@ -77,12 +77,11 @@ def _rungs(ladder: Ladder) -> tuple[Sequence[str], list[Sequence[str]]]:
 
 def _ordered(orders: Orders) -> list[str]:
     """Return ranks by the ranking rule and by others, and the verdict."""
-    verdict = orders.verdict
     rows = [
         (_plain(p), *(f"{o.ranks[p]}{'=' * o.shares_rank(p)}" for o in orders.orders))
         for p in orders.planners
     ]
-    lines = ["## Ranks", "", f"{_plain(verdict[0].upper() + verdict[1:])}.", ""]
+    lines = ["## Ranks", "", f"Ranks: {_plain(orders.verdict)}.", ""]
     if orders.missing:
         return lines
     table = _table(("planner", *(order.name for order in orders.orders)), rows)

@@ -15,6 +15,8 @@ from crowdbot.core.statistics.summary import Summary
 
 #: Size of the plot, and its margins to the left and below, px; both axes go from 0 to 1.
 WIDTH, HEIGHT, _LEFT, _BELOW, _EDGE = 420.0, 320.0, 46.0, 40.0, 14.0
+#: Height of a line of text, px.
+_LINE = 14.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,6 +75,15 @@ def pareto(summary: Summary) -> tuple[ParetoPoint, ...]:
     return tuple(sorted(marked, key=lambda p: (-(p.efficiency.value or 0.0), p.planner)))
 
 
+def label_heights(points: Sequence[ParetoPoint]) -> dict[str, float]:
+    """Return the y of each planner's name beside its point, px; none lies over another."""
+    found, most = dict[str, float](), HEIGHT
+    for point in sorted(points, key=lambda p: (-p.plot["y"], p.planner)):
+        most = min(point.plot["y"] - 8.0, most - _LINE)
+        found[point.planner] = round(most, 1)
+    return found
+
+
 def _marked(point: ParetoPoint, points: Sequence[ParetoPoint]) -> ParetoPoint:
     better = [other for other in points if _dominates(other, point)]
     return ParetoPoint(
@@ -114,4 +125,4 @@ def _y(value: float) -> float:
     return round(HEIGHT - _BELOW - value * (HEIGHT - _BELOW - _EDGE), 1)
 
 
-__all__ = ["HEIGHT", "WIDTH", "ParetoPoint", "pareto"]
+__all__ = ["HEIGHT", "WIDTH", "ParetoPoint", "label_heights", "pareto"]

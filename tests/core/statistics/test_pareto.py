@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from crowdbot.core.statistics.estimate import Estimate
-from crowdbot.core.statistics.pareto import HEIGHT, WIDTH, pareto
+from crowdbot.core.statistics.pareto import HEIGHT, WIDTH, label_heights, pareto
 
 
 def summary(**planners: tuple[float, float]) -> Any:
@@ -56,3 +57,11 @@ def test_everything_is_drawn_inside(value: float) -> None:
         assert all(0.0 <= at[k] <= HEIGHT for k in ("y", "y0", "y1"))
         assert at["x0"] <= at["x"] <= at["x1"]
         assert at["y1"] <= at["y"] <= at["y0"]
+
+
+def test_names_of_planners_that_are_alike_do_not_lie_over_each_other() -> None:
+    points = pareto(summary(a=(0.9, 0.3), b=(0.91, 0.3), c=(0.7, 0.31), d=(0.5, 0.8)))
+    heights = sorted(label_heights(points).values())
+    assert len(heights) == 4
+    assert all(low - high >= 14.0 for high, low in pairwise(heights))
+    assert all(label_heights(points)[p.planner] <= p.plot["y"] - 8.0 for p in points)
