@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.plugin import Component, PlannerRole
+from crowdbot.plugin import Component
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class CrowdModelSpec(RungSpec):
     """Knows the truth by default; its drive follows the velocity that a person would choose."""
-
-    role: ClassVar[PlannerRole] = "ceiling"
 
     kind: Literal["crowd_model"] = "crowd_model"
     tracks: Literal["lidar", "tracker", "truth"] = Field(
