@@ -155,18 +155,19 @@ def _crowd(registry: Registry) -> Iterator[str]:
 
 def _sections(registry: Registry, *, crowd: bool) -> Iterator[str]:
     """Yield the sections of what is nested in a scenario: of its crowd, or of all else."""
+    level = "##" if crowd else "###"  # the crowd has a page of its own
     for path, model in _nested(registry.scenario_model, ""):
         if (path.partition(".")[0] == "crowd") != crowd:
             continue
         kinds = _kinds_of(model)
         if not kinds:
-            yield _section(f"### {path}", model)
+            yield _section(f"{level} {path}", model)
             continue
-        yield f"### {path}\n\n{_prose(model)}\n"
+        yield f"{level} {path}\n\n{_prose(model)}\n"
         for kind in kinds:
             name = kind.model_fields["kind"].default
             usual = ", where none is named" if name == vars(model)["usual"] else ""
-            yield _section(f"#### {path}: {name}", kind, f"`kind: {name}`{usual}.")
+            yield _section(f"{level}# {path}: {name}", kind, f"`kind: {name}`{usual}.")
 
 
 def _kinds_of(model: Any) -> list[Any]:
