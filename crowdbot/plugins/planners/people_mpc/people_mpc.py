@@ -25,7 +25,7 @@ class PeopleMpcSpec(RungSpec):
 
     kind: Literal["people_mpc"] = "people_mpc"
     person_radius: NonNegativeLength = Field(
-        default=0.2, description="Disc that is kept clear around people, m."
+        default=0.22, description="Disc that is kept clear around people, m."
     )
     window: PositiveDuration = Field(
         default=0.5, description="First velocities are those reachable in this time, s."
