@@ -77,8 +77,7 @@ def _component(one: Dependency, files: list[str]) -> dict[str, Any]:
     ref = f"pkg:pypi/{one.name}@{one.version}"
     licences = {"licenses": [{"license": {"name": one.licence}}]} if one.licence else {}
     references = [
-        {"type": "distribution", "url": f"https://pypi.org/project/{one.name}/{one.version}/",
-         "hashes": [{"alg": "SHA-256", "content": content}]}
+        {"type": "distribution", "url": ref, "hashes": [{"alg": "SHA-256", "content": content}]}
         for content in files
     ]  # fmt: skip
     return {
