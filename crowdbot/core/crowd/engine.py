@@ -311,7 +311,7 @@ class CrowdEngine:
             robots: (R, 8) discs, as for `advance`.
         """
         flat = s.blank(len(self.agents), len(robots))
-        (header, rows), _ = s.view(flat), s.people_in(flat)
+        header, rows = s.view(flat)
         header[s.TICK] = _LATER
         rows[:, s.X : s.Y + 1], rows[:, s.VX : s.VY + 1] = position, velocity
         rows[:, s.GOAL_X : s.GOAL_Y + 1] = goal

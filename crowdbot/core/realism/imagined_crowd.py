@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,7 +56,7 @@ class ImaginedCrowd:
         steering = Steering(people.steering.spec.model_copy(update={"wander": None}))
         world = CrowdWorld(
             steering=steering,
-            response=replace(response.human),
+            response=response.human,
             cohesion=None,
             robot_visible=response.visible,
             decision_rate=people.decision_rate,

@@ -49,7 +49,8 @@ class CrowdPrediction(PeopleMpc):
         )  # fmt: skip
         obs.log(f"{self.name}/trust", self._forecast.trust)
         obs.draw(
-            "predicted people", in_base(scene.pose, found[_SHOWN_STEP::_SHOWN_STEP].reshape(-1, 2))
+            "predicted people",
+            in_base(scene.pose, found[_SHOWN_STEP - 1 :: _SHOWN_STEP].reshape(-1, 2)),
         )
         return found
 
