@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from crowdbot.rl.env import NavEnv
     from crowdbot.rl.parallel_env import ParallelNavEnv
     from crowdbot.rl.policy_export import conventions, save_layers, save_onnx
+    from crowdbot.rl.recorder import EpisodeRecorder
     from crowdbot.rl.sb3 import StableVecEnv
     from crowdbot.rl.vector_env import NavVectorEnv
 
@@ -36,6 +37,7 @@ if gym is not None and NAV not in gym.registry:
 
 __all__ = [
     "NAV",
+    "EpisodeRecorder",
     "NavEnv",
     "NavVectorEnv",
     "ParallelNavEnv",
@@ -51,6 +53,7 @@ __getattr__ = lazy_names(
         "crowdbot.rl.env": "NavEnv",
         "crowdbot.rl.vector_env": "NavVectorEnv",
         "crowdbot.rl.parallel_env": "ParallelNavEnv",
+        "crowdbot.rl.recorder": "EpisodeRecorder",
         "crowdbot.rl.sb3": "StableVecEnv",
         "crowdbot.rl.policy_export": "conventions save_layers save_onnx",
     },

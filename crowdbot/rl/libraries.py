@@ -38,6 +38,7 @@ pettingzoo = found("pettingzoo")
 
 Env: Any = gym.Env if gym else missing("Gymnasium", _EXTRA)
 VectorEnv: Any = gym.vector.VectorEnv if gym else missing("Gymnasium", _EXTRA)
+Wrapper: Any = gym.Wrapper if gym else missing("Gymnasium", _EXTRA)
 ParallelEnv: Any = pettingzoo.ParallelEnv if pettingzoo else missing("PettingZoo", _EXTRA)
 
 #: Names of `gymnasium.vector.AutoresetMode`.
