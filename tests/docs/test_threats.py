@@ -8,7 +8,7 @@ import pytest
 
 from tests.paths import ROOT, TESTS
 
-PAGE = (ROOT / "docs" / "explanation" / "threats.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "developers" / "threats.md").read_text(encoding="utf-8")
 ROWS = [
     [cell.strip() for cell in line.strip("|").split("|")]
     for line in PAGE.splitlines()
