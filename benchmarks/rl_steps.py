@@ -2,11 +2,13 @@
 
 A step is one period of the planner (1/16 s) of one world: decisions, contacts and motion of people,
 the robot, a scan. Steps are counted per second of the process's own time, best of several rounds,
-so that other programs disturb little. Peers come with ``pip install ir-sim``; those that are not
-installed are named. Each runs with its own model of people: what is compared is the cost of a step.
+so that other programs disturb little. Peers come with ``pip install ir-sim navground``; those that
+are not installed are named. Each runs with its own model of people: what is compared is the cost
+of a step.
 
     python benchmarks/rl_steps.py --people 20,100 --beams 0,180 --worlds 64
     python benchmarks/rl_steps.py --threads 1,2
+    python benchmarks/rl_steps.py --memory 1000000
 """
 
 from __future__ import annotations
@@ -134,6 +136,57 @@ def irsim(people: int, beams: int) -> Rate | None:
         return best(lambda: env.step(np.array([[0.1], [0.0]])), 1)
 
 
+def navground(people: int, beams: int) -> Rate | None:
+    """Navground with as many agents that avoid each other by ORCA, in compiled code."""
+    if importlib.util.find_spec("navground") is None:
+        return None
+    from navground import sim
+
+    lidar = f"      - {{type: Lidar, range: 10, resolution: {beams}}}\n" if beams else ""
+    agent = (
+        "    radius: 0.33\n    control_period: 0.0625\n"
+        "    kinematics: {type: Omni, max_speed: 1.3}\n"
+        "    behavior: {type: ORCA, optimal_speed: 1.0}\n"
+        "    state_estimations:\n      - {type: Bounded, range: 5.0}\n"
+    )
+    text = (
+        "type: Corridor\nwidth: 10\nlength: 40\nagent_margin: 0.05\ngroups:\n"
+        f"  - type: person\n    number: {people}\n{agent}"
+        f"  - type: robot\n    number: 1\n{agent}{lidar}"
+    )
+    world = sim.load_scenario(text).make_world(1)
+    return best(lambda: world.update(0.0625), 1)
+
+
+def resident() -> int:
+    """Return the resident memory of this process, bytes."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGESIZE")
+
+
+def memory(steps: int, worlds: int) -> None:
+    """Print how much memory the environment takes, at ten moments of many steps."""
+    from crowdbot.rl import NavVectorEnv
+
+    seen = {"kind": "lidar_stack", "sensor": "front_lidar", "sectors": 36}
+    env = NavVectorEnv(
+        worlds, suite=SUITE, scenario=SCENARIO, set=fields(20, 180), observation=seen,
+        max_episode_steps=200,
+    )  # fmt: skip
+    env.reset(seed=1)
+    rng = np.random.default_rng(1)
+    marks = set(np.linspace(0, steps, 11).astype(int)[1:].tolist())
+    done, episodes = 0, 0
+    print(f"{'steps':>12}{'episodes':>10}{'MB':>8}")
+    while done < steps:
+        *_, ended, late, _ = env.step(rng.uniform(-1.0, 1.0, env.action_space.shape))
+        episodes += int((ended | late).sum())
+        reached = {mark for mark in marks if mark <= done + worlds}
+        done, marks = done + worlds, marks - reached
+        if reached:
+            print(f"{done:12}{episodes:10}{resident() / 1e6:8.0f}", flush=True)
+
+
 def main(arguments: list[str]) -> None:
     """Print a row for each case."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -141,8 +194,12 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--beams", default="0,180")
     parser.add_argument("--worlds", type=int, default=64)
     parser.add_argument("--threads", default="1")
-    parser.add_argument("--peers", action="store_true", help="IR-SIM and crowdbot.Session as well")
+    parser.add_argument("--peers", action="store_true", help="crowdbot.Session, IR-SIM, navground")
+    parser.add_argument("--memory", type=int, metavar="STEPS", help="memory over many steps")
     given = parser.parse_args(arguments)
+    if given.memory:
+        memory(given.memory, given.worlds)
+        return
     print(f"{'':24}{'people':>8}{'beams':>7}{'threads':>9}{'per CPU s':>12}{'per s':>10}")
     for people in map(int, given.people.split(",")):
         for beams in map(int, given.beams.split(",")):
@@ -153,6 +210,7 @@ def main(arguments: list[str]) -> None:
             if given.peers:
                 show("crowdbot.Session", people, beams, 1, session(people, beams))
                 show("IR-SIM", people, beams, 1, irsim(people, beams))
+                show("navground", people, beams, 1, navground(people, beams))
 
 
 def show(name: str, people: int, beams: int, threads: int, found: Rate | None) -> None:
