@@ -47,7 +47,8 @@ class Submission:
         root: root of the run directories.
         planner: name of the planner's folders.
         team, contact: texts for the leaderboard; may be empty.
-        partial: True to allow an incomplete set.
+        partial: True to allow an incomplete set, and a planner that failed in all runs.
+        failing: True to allow the latter only.
         recordings: True to include recordings.
     """
 
@@ -56,6 +57,7 @@ class Submission:
     team: str = ""
     contact: str = ""
     partial: bool = False
+    failing: bool = False
     recordings: bool = False
 
 
@@ -194,8 +196,8 @@ def _check_alike(found: Sequence[_Found]) -> None:
 
 def _check_driven(submission: Submission, found: Sequence[_Found]) -> None:
     """Refuse a bundle of a planner that failed in every run."""
-    record = found[0].record
-    if all(run.record.status == Ending.PLANNER_FAILED for run in found) and not submission.partial:
+    record, allowed = found[0].record, submission.partial or submission.failing
+    if not allowed and all(run.record.status == Ending.PLANNER_FAILED for run in found):
         raise InputError(
             f"{submission.planner} failed in all {len(found)} runs: there is nothing to compare; "
             f"the first: {record.reason}; --partial packs them all the same"

@@ -32,6 +32,7 @@ from crowdbot.errors import (
     Interrupted,
     PluginError,
     SimulationError,
+    UnknownNameError,
 )
 
 _RECEIVED, _OPENED, _REFUSED, _INCOMPLETE = "received", "opened", "refused", "incomplete"
@@ -192,10 +193,14 @@ def _judge_one(
     bundle = setup.out / f"{short}.cbz"
     about = sealed.about
     wanted = Submission(
-        root=state.plan.out, planner=label, team=about.team, contact=about.contact,
+        root=state.plan.out, planner=label, team=about.team, contact=about.contact, failing=True,
         recordings=setup.options.record != "none",
     )  # fmt: skip
-    manifest = pack(wanted, *suite, setup.registry, bundle)
+    try:
+        manifest = pack(wanted, *suite, setup.registry, bundle)
+    except (InputError, UnknownNameError) as error:  # the next submission is judged all the same
+        leave_out(_INCOMPLETE, f"its runs cannot be packed: {error}; the same command goes on")
+        return
     record = _record(bundle, sealed, [f"{r.scenario} seed-{r.seed}" for r in manifest.runs])
     save_verification(bundle, record)
     append(

@@ -251,6 +251,40 @@ def test_what_is_not_the_submissions_fault_is_not_its_end(tmp_path: Path) -> Non
     assert not list((tmp_path / "out" / "planners").iterdir())
 
 
+FAILING = """\
+import os
+class Failing:
+    needs = ()
+    def reset(self, task, limits, sensors, seed):
+        pass
+    def step(self, obs):
+        os._exit(3)
+"""
+
+
+@pytest.mark.slow
+def test_a_planner_that_always_fails_does_not_keep_the_next_from_being_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "suite.yaml").write_text(SUITE)
+    for name in ("in", "first"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "first" / "failing.py").write_text(FAILING)
+    words = ["seal", f"{tmp_path / 'first' / 'failing.py'}:Failing"]
+    assert cli.main([*words, "--out", str(tmp_path / "in" / "a.cbs")]) == 0
+    _planner(tmp_path / "second")
+    assert _seal(tmp_path / "second", tmp_path / "in" / "b.cbs") == 0
+    assert _judge(tmp_path) == 0
+    assert _log(tmp_path / "out") == ["received", "received", "opened", "judged", "judged"]
+    lines = read_log(tmp_path / "out" / LOG, {own_public_key()})
+    endings = [line.document["statuses"] for line in lines if line.event == "judged"]
+    assert endings == [{"planner_failed": 1}, {"timeout": 1}]
+    page = tmp_path / "page.html"
+    assert cli.main(["leaderboard", str(tmp_path / "out"), "--out", str(page)]) == 0
+    assert page.read_text().index("Steady") < page.read_text().index("Failing")
+    capsys.readouterr()
+
+
 def test_nothing_is_run_where_it_would_not_be_contained(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
