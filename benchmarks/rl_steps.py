@@ -14,6 +14,7 @@ of a step.
 from __future__ import annotations
 
 import argparse
+import importlib
 import importlib.util
 import os
 import sys
@@ -140,7 +141,7 @@ def navground(people: int, beams: int) -> Rate | None:
     """Navground with as many agents that avoid each other by ORCA, in compiled code."""
     if importlib.util.find_spec("navground") is None:
         return None
-    from navground import sim
+    sim: Any = importlib.import_module("navground.sim")
 
     lidar = f"      - {{type: Lidar, range: 10, resolution: {beams}}}\n" if beams else ""
     agent = (
