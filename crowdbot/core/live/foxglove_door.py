@@ -19,6 +19,7 @@ from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
+from crowdbot.core.recording.drawings import drawn_marker
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PeopleMessages
 from crowdbot.core.recording.topics import Topic
@@ -32,6 +33,8 @@ SEEN = (
     OfferedTopic(str(Topic.PEOPLE_MARKER), MARKER),
     OfferedTopic(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
 )
+#: Lines of what a robot's planner draws.
+THOUGHTS = "/thoughts_marker"
 _POSE = "geometry_msgs/msg/PoseStamped"
 #: Largest command and request of a client, bytes; largest number of its command topics.
 _COMMAND, _REQUEST, _MOST_TOPICS = 4096, 64 << 10, 16
@@ -68,6 +71,7 @@ class FoxgloveDoor:
         self._arrows: PeopleArrows | None = None
         self._pose = template.pose_stamped("map")
         self._poses: dict[str, str] = {}  # topic -> robot
+        self._thoughts: dict[str, str] = {}  # robot -> topic
         self._context = foxglove.Context()
         self._channels: dict[str, Any] = {}
         self._latest: dict[str, LiveMessage] = {}
@@ -138,6 +142,8 @@ class FoxgloveDoor:
         spaces = namespaces(robots)
         self._poses = {robot_topic(str(Topic.POSE), s): name for name, s in spaces.items()}
         self._make_channels([OfferedTopic(topic, _POSE) for topic in self._poses])
+        self._thoughts = {name: robot_topic(THOUGHTS, s) for name, s in spaces.items()}
+        self._make_channels([OfferedTopic(topic, MARKER) for topic in self._thoughts.values()])
         self._people = None if agents is None else PeopleMessages(agents)
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
 
@@ -153,6 +159,13 @@ class FoxgloveDoor:
             seen = self._people_seen(offer.topic, ns, agents) if self.wants(offer.topic) else None
             if seen is not None:
                 self._channels[offer.topic].log(seen, log_time=ns)
+
+    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
+        """Show what a planner drew to those who look, as lines."""
+        topic = self._thoughts.get(robot)
+        if topic is not None and self.wants(topic):
+            ns = self._epoch + ros.nanoseconds(t)
+            self._channels[topic].log(drawn_marker(ns, name, columns), log_time=ns)
 
     def _people_seen(self, topic: str, ns: int, agents: Array | None) -> bytes | None:
         if agents is None or self._people is None or self._arrows is None:

@@ -33,6 +33,7 @@ class RunLog:
         robot: int | None = 0,
         aim: int = s.GOAL_X,
         on_sample: Callable[[float, Sequence[float] | None, Array | None], None] | None = None,
+        on_drawing: Callable[[float, str, NDArray[np.float32]], None] | None = None,
     ) -> None:
         """Start a log.
 
@@ -45,8 +46,9 @@ class RunLog:
             robot: its number among those of the crowd's state; None records no contacts.
             aim: column of the crowd's state where the point begins to which people walk.
             on_sample: is given each sample, too: time, the robot's row, people.
+            on_drawing: is given what the planner draws, too: time, name, rows.
         """
-        self._on_sample = on_sample
+        self._on_sample, self._on_drawing = on_sample, on_drawing
         self.writer = writer
         self._sideways, self._keeps_people, self._robot = sideways, people, robot
         self._id = agent_id
@@ -107,6 +109,12 @@ class RunLog:
         self._step_max = max(self._step_max, seconds)
         self.writer.command(t, command)
         self.writer.planner_time(t, seconds)
+
+    def drawing(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
+        """Record what the planner draws: rows (K, C) in the robot's base frame."""
+        self.writer.drawing(t, name, rows)
+        if self._on_drawing is not None:
+            self._on_drawing(t, name, rows)
 
     def step_times(self) -> dict[str, float]:
         """Return mean and largest wall time of a planner step, s."""

@@ -30,3 +30,15 @@ class Watcher(Protocol):
             agents: (4, M) x, y, vx, vy; NaN where a person is absent. It must not be changed.
         """
         ...
+
+    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
+        """A robot's planner drew what it thinks.
+
+        Args:
+            t: time, s.
+            robot: its name.
+            name: of the drawing; ``tracks`` are the people that the planner knows of.
+            columns: (2, K) x, y of a path or of points, m, world frame; of tracks (4, K) with
+                vx, vy, m/s. They are placed from the robot's true pose.
+        """
+        ...

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from crowdbot.core.planning.planner import TRACKS
+from crowdbot.core.recording.drawings import drawing_in_world
 from crowdbot.core.recording.reading.one_robot import PlannerDrawing
 from crowdbot.core.replay.pack import pack_words
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -46,11 +46,5 @@ def _in_world(run: Trajectories, drawing: PlannerDrawing, *, tracks: bool) -> Ar
     assert run.robot is not None
     at = int(np.argmin(np.abs(run.t - drawing.t)))
     yaw = float(run.robot.theta[at])
-    c, s = math.cos(yaw), math.sin(yaw)
-    rotation = np.array([[c, -s], [s, c]])
-    first = 1 if tracks else 0
-    places = rotation @ drawing.rows[:, first : first + 2].T
-    places += np.array([[run.robot.x[at]], [run.robot.y[at]]])
-    if not tracks:
-        return np.asarray(places)
-    return np.concatenate([places, rotation @ drawing.rows[:, 3:5].T])
+    x, y = float(run.robot.x[at]), float(run.robot.y[at])
+    return drawing_in_world(x, y, yaw, drawing.rows, tracks=tracks)

@@ -17,12 +17,14 @@ from pydrake.geometry import (
 )
 from pydrake.math import RigidTransform, RollPitchYaw
 
+from crowdbot.core.recording.drawings import drawn_lines
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
 _WALL_HEIGHT, _WALL_WIDTH, _PERSON_HEIGHT, _ROBOT_HEIGHT = 1.0, 0.05, 1.7, 0.5
-_FLOOR = 0.01
+_FLOOR, _LINE_HEIGHT = 0.01, 0.03
+_THOUGHT = Rgba(0.7, 0.35, 0.0, 1.0)
 _WALL, _PERSON = Rgba(0.45, 0.45, 0.47, 1.0), Rgba(0.36, 0.55, 0.78, 1.0)
 _ROBOT, _NOSE, _GOAL = (
     Rgba(0.85, 0.45, 0.1, 1.0),
@@ -84,6 +86,17 @@ class MeshcatView:
             show.SetTransform(f"crowdbot/robots/{name}", _placed(*row[:3]))
         if agents is not None:
             self._move_people(agents)
+
+    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
+        """Show what a planner drew last, as lines on the floor."""
+        del t
+        path = f"crowdbot/thoughts/{robot}/{name}"
+        lines = drawn_lines(columns)
+        if not lines.shape[1]:
+            self._meshcat.Delete(path)
+            return
+        start, end = (np.column_stack([part, np.full(len(part), _LINE_HEIGHT)]).T for part in lines)
+        self._meshcat.SetLineSegments(path, start, end, 2.0, _THOUGHT)
 
     def _move_people(self, agents: Array) -> None:
         show = self._meshcat

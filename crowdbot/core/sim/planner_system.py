@@ -274,7 +274,7 @@ def add_planner(
         rate=built.scenario.rates.planner, visible=dict.fromkeys(built.visible),
         on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
         on_signal=log.writer.signal,
-        on_drawing=log.writer.drawing,
+        on_drawing=log.drawing,
         people=_people(crowd, others.models) if privileged else None,
         crowd_size=0 if crowd is None else crowd.state.size(),
         others=others,

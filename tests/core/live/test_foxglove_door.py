@@ -97,6 +97,23 @@ def test_who_comes_late_gets_the_map() -> None:
         assert _data(socket, 1)[13:] == still.data
 
 
+def test_what_a_planner_draws_is_a_marker_of_lines() -> None:
+    with _both() as (door, _, socket):
+        header = header_of(random_run(2))
+        door.begin(header, {"robot": header})
+        known = _channels(socket)
+        while "/thoughts_marker" not in known:
+            known |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
+        _subscribe(socket, 4, known["/thoughts_marker"])
+        until(lambda: door.wants("/thoughts_marker"))
+        door.drawing(2.0, "robot", "tracks", np.array([[1.0], [2.0], [0.5], [0.0]]))
+        door.drawing(2.0, "another", "tracks", np.zeros((4, 1)))
+        frame = _data(socket, 1)
+        marker = ros.from_cdr(frame[13:], "visualization_msgs/msg/Marker")
+        assert (marker.ns, marker.type) == ("tracks", marker.LINE_LIST)
+        assert [(p.x, p.y) for p in marker.points] == [(1.0, 2.0), (1.5, 2.0)]
+
+
 @pytest.mark.parametrize("encoding", ["json", "cdr"])
 def test_client_publish_drives(encoding: str) -> None:
     cdr = ros.to_cdr(ros.twist(0.25, 0.0, -0.5))

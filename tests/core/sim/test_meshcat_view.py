@@ -123,3 +123,12 @@ def test_a_port_that_cannot_be_had_is_told(view: MeshcatView) -> None:
     taken = int(view.url.rpartition(":")[2])
     with pytest.raises(InputError, match=f"--meshcat {taken}: that port cannot be had"):
         MeshcatView(taken)
+
+
+def test_what_a_planner_draws_lies_on_the_floor(view: MeshcatView) -> None:
+    _begin(view)
+    path = np.array([[0.0, 1.0, 2.0], [0.0, 0.0, 1.0]])
+    view.drawing(1.0, "robot", "plan", path)
+    assert _has(view, "crowdbot/thoughts/robot/plan")
+    view.drawing(1.1, "robot", "plan", path[:, :0])
+    assert not _has(view, "crowdbot/thoughts/robot/plan")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.live.person.page_server import PageServer
-from crowdbot.core.planning.planner import Observation
+from crowdbot.core.planning.planner import TRACKS, Observation
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.replay.encode import scenery_numbers
@@ -42,6 +42,7 @@ class LivePicture:
         """Prepare a run's picture. ``about``: more fields of the scene."""
         self._server, self._builts = server, builts
         self.look: Callable[[], Mapping[str, Observation]] = dict
+        self._drawn: dict[tuple[str, str], dict[str, Any]] = {}  # by robot and name
         models = {name: built.model for name, built in builts.items()}
         highest = max((model.height for model in models.values()), default=0.0)
         self._lidars = {
@@ -77,6 +78,7 @@ class LivePicture:
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
         """Show the scene of a recording that begins."""
         del shared, robots
+        self._drawn.clear()
         self.show()
 
     def sample(self, t: float, robots: Mapping[str, Sequence[float]], agents: Array | None) -> None:
@@ -88,8 +90,17 @@ class LivePicture:
                 "robots": [None if row is None else _fine(row[:5]) for row in found],
                 "people": [] if agents is None else [_fine(row) for row in agents],
                 "scans": self._scans(robots),
+                "drawings": list(self._drawn.values()),
             }
         )
+        self._drawn.clear()
+
+    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
+        """Show what a planner drew last with the next sample."""
+        self._drawn[robot, name] = {
+            "robot": robot, "name": name, "t": t, "tracks": name == TRACKS,
+            "columns": np.round(columns, 2).tolist(),
+        }  # fmt: skip
 
     def _scans(self, robots: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
         """Return what flat lidars saw last, from the robots' true poses."""

@@ -78,6 +78,7 @@ def _one_log(
     log = RunLog(
         writer, ids(engine), sideways=_sideways(built), aim=aim_of(engine),
         on_sample=watched.watch(built.name, people=True),
+        on_drawing=watched.drawings_of(built.name),
     )  # fmt: skip
     return RunLogs(people=log, robots={built.name: log})
 
@@ -105,7 +106,7 @@ def _several_logs(
         stack.callback(_close_robot, writer, endings[name])  # before the root is closed
         robots[name] = RunLog(
             writer, ids(engine), sideways=_sideways(built), people=False, robot=k,
-            on_sample=watched.watch(name, people=False),
+            on_sample=watched.watch(name, people=False), on_drawing=watched.drawings_of(name),
         )  # fmt: skip
     people = RunLog(
         root, ids(engine), robot=None, aim=aim_of(engine), on_sample=watched.watch("", people=True)

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from numpy.typing import ArrayLike
+
+from crowdbot.core.planning.planner import TRACKS
+from crowdbot.core.recording.drawings import drawing_in_world
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.sim.robot_ending import RobotEnding
@@ -11,6 +15,8 @@ from crowdbot.core.types.arrays import Array
 
 #: Takes a sample: time (s), the robot's row and the people, either missing.
 OnSample = Callable[[float, Sequence[float] | None, Array | None], None]
+#: Takes what a planner draws: time (s), name and rows in the robot's base frame.
+OnDrawing = Callable[[float, str, ArrayLike], None]
 
 
 class WatchedRun:
@@ -41,6 +47,20 @@ class WatchedRun:
                 self._show(t, agents)
 
         return on_sample
+
+    def drawings_of(self, robot: str) -> OnDrawing | None:
+        """Return the callback for what a robot's planner draws; None without watchers."""
+        if not self._watchers:
+            return None
+
+        def on_drawing(t: float, name: str, rows: ArrayLike) -> None:
+            if (row := self._rows.get(robot)) is None:
+                return
+            columns = drawing_in_world(row[0], row[1], row[2], rows, tracks=name == TRACKS)
+            for watcher in self._watchers:
+                watcher.drawing(t, robot, name, columns)
+
+        return on_drawing
 
     def _show(self, t: float, agents: Array | None) -> None:
         there = {name: row for name, row in self._rows.items() if not self._endings[name].gone}

@@ -51,13 +51,13 @@ function drawEyes(frame) {
   if (eyes.view === "eyes" || (eyes.view === "camera" && walks)) {
     const height = walks ? eyes.solid.parts.people.height(shown.walker) : 1.3;
     drawSolid(eyes.solid, frame, eyeOfPerson(own.x, own.y, own.theta, height, eyes.look), {
-      hiddenPerson: shown.walker, hiddenRobot: walks ? -1 : shown.driven, points: true,
+      hiddenPerson: shown.walker, hiddenRobot: walks ? -1 : shown.driven, points: true, thoughts: true,
     });
   } else if (eyes.view === "camera") {
     const eye = eyeOfRobot(own, solids.robots[shown.driven], reachOf(shown.run.robots[shown.driven]), eyes.look);
-    drawSolid(eyes.solid, frame, eye, { hiddenRobot: shown.driven, points: true });
+    drawSolid(eyes.solid, frame, eye, { hiddenRobot: shown.driven, points: true, thoughts: true });
   } else {
-    drawSolid(eyes.solid, frame, eyeAround(own, { ...eyes.around, yaw: own.theta + eyes.look.yaw }), { low: true, points: true });
+    drawSolid(eyes.solid, frame, eyeAround(own, { ...eyes.around, yaw: own.theta + eyes.look.yaw }), { low: true, points: true, thoughts: true });
   }
   return true;
 }

@@ -6,7 +6,7 @@ const shown = { topSpeed: 1.6, run: null, frame: null, earlier: null, driven: 0,
 function takeScene(scene) {
   const room = () => new Float64Array(scene.people.count);
   shown.run = {
-    ...scene, n: 0, t: [], contacts: [],
+    ...scene, n: 0, t: [], contacts: [], drawings: [],
     robots: scene.robots.map((robot) => ({ ...robot, x: [], y: [], theta: [], v: [], w: [] })),
     buffer: { x: room(), y: room(), speed: room(), heading: room().fill(NaN), person: room(), size: 0 },
   };
@@ -20,7 +20,7 @@ function takeScene(scene) {
 }
 
 /** Takes one sample: pose of each robot, x, y, vx, vy of people. */
-function takeFrame({ t, robots, people, scans }) {
+function takeFrame({ t, robots, people, scans, drawings }) {
   const { run } = shown;
   if (!run || (run.n && t <= run.t[run.n - 1])) return;
   run.t.push(t);
@@ -29,8 +29,17 @@ function takeFrame({ t, robots, people, scans }) {
     const row = robots[i] ?? [NaN, NaN, NaN, NaN, NaN];
     ["x", "y", "theta", "v", "w"].forEach((name, c) => robot[name].push(row[c] === null ? NaN : row[c] / 1000));
   });
+  drawings.forEach(takeDrawing);
   shown.earlier = shown.told;
   shown.told = { t, at: performance.now(), people, scans };
+}
+
+/** Keeps the latest drawing of each name of a planner, as the replay page has them. */
+function takeDrawing({ robot, name, t, tracks, columns }) {
+  const { drawings } = shown.run;
+  const drawing = { robot, name, tracks, t: [t], starts: [0], rows: [columns[0].length], columns };
+  const i = drawings.findIndex((one) => one.robot === robot && one.name === name);
+  drawings.splice(i < 0 ? drawings.length : i, i < 0 ? 0 : 1, drawing);
 }
 
 /** The picture at a moment: between the last two samples. */
