@@ -1,4 +1,4 @@
-"""What a planner draws in its robot's base frame, placed in the world, and as lines."""
+"""A planner's drawings, made in its robot's base frame, placed in the world and as lines."""
 
 from __future__ import annotations
 

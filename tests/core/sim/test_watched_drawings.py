@@ -52,7 +52,7 @@ class Watcher:
 def test_what_a_planner_draws_is_shown_while_it_drives(tmp_path: Path) -> None:
     watcher = Watcher()
     run = simulate(
-        alone("robots.robot.task.time_limit=1"), registry(), planner=Drawing(), out=tmp_path,
+        alone("robots.robot.task.time_limit=1"), registry(), planner=Drawing, out=tmp_path,
         options=RunOptions(references=False, replay=False, record="all"), watchers=[watcher],
     )  # fmt: skip
     recorded = Recording(run.directory / "run.mcap").drawings()
