@@ -25,7 +25,7 @@ sys.path.insert(0, str(ROOT))  # as a script, too
 from scripts.metric_pictures import near, people, robot  # noqa: E402
 from scripts.metric_pictures.registry import DRAWINGS  # noqa: E402
 from scripts.metric_pictures.world import World  # noqa: E402
-from scripts.write_metric_cards import with_parameters  # noqa: E402
+from scripts.write_metric_cards import with_declared, with_parameters  # noqa: E402
 
 DRAWN = (near, people, robot)
 HERE = Path(__file__).parent / "metric_pictures"
@@ -64,11 +64,12 @@ def draw(runs: Path, metrics: Sequence[str] = tuple(DRAWINGS)) -> None:
 
 
 def pages() -> dict[Path, str]:
-    """Return file -> text of each metric's page with its picture and its parameters."""
+    """Return file -> text of each metric's page with its picture, declared cells and parameters."""
     found = {}
     for metric in DRAWINGS:
         page = PAGES / f"{metric}.md"
-        card = with_parameters(page.read_text(encoding="utf-8"), metric)
+        card = with_declared(page.read_text(encoding="utf-8"), metric)
+        card = with_parameters(card, metric)
         found[page] = with_picture(card, metric)
     return found
 

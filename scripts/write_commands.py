@@ -1,4 +1,4 @@
-"""Tables of options in docs/reference/commands.md; scripts/generate.py writes them."""
+"""Help and options of commands in docs/reference/commands.md; scripts/generate.py writes them."""
 
 from __future__ import annotations
 
@@ -17,18 +17,35 @@ _TYPES = {int: "N", float: "NUMBER"}
 _EVERYWHERE = {"--verbose", "--quiet", "--help"}
 _SECTION = re.compile(r"^## crowdbot (.*)\n(?:(?!^## ).*\n)*", re.MULTILINE)
 _TABLE = re.compile(rf"{re.escape(HEAD)}(?:\|.*\n)*")
+_HELP_BEGIN = "<!-- Written by make generate: the command's help. -->"
+_HELP_END = "<!-- End of the help. -->"
+_HELP = re.compile(rf"\n(?:{_HELP_BEGIN}\n(?:.*\n)*?{_HELP_END}\n\n?)?")
 
 
 def page() -> str:
-    """Return the page with a table of the options of each command, from the command's own help."""
+    """Return the page with the help of each command and a table of its options."""
     commands = dict(_commands())
 
-    def with_table(section: re.Match[str]) -> str:
+    def with_help(section: re.Match[str]) -> str:
         command = commands.get(section[1])
-        table = HEAD + "".join(_rows(command)) if command is not None else ""
-        return _TABLE.sub(lambda _: table, section[0], count=1)
+        if command is None:
+            return section[0]
+        heading, rest = section[0].split("\n", 1)
+        rest = _HELP.sub(lambda _: f"\n{_help(section[1], command)}\n", rest, count=1)
+        table = HEAD + "".join(_rows(command))
+        return f"{heading}\n{_TABLE.sub(lambda _: table, rest, count=1)}"
 
-    return _SECTION.sub(with_table, PAGE.read_text(encoding="utf-8"))
+    return _SECTION.sub(with_help, PAGE.read_text(encoding="utf-8"))
+
+
+def _help(name: str, command: Any) -> str:
+    """Return how a command is called and what it does, between two comments."""
+    arguments = [p for p in command.params if p.param_type_name == "argument"]
+    called = " ".join(["crowdbot", name, *(p.metavar or p.name.upper() for p in arguments)])
+    about = (command.help or "").partition("Example:")[0].strip()
+    first, *more = (" ".join(part.split()) for part in re.split(r"\n\s*\n", about))
+    text = "\n\n".join([f"`{called}`: {first[:1].lower()}{first[1:]}", *more])
+    return f"{_HELP_BEGIN}\n{text}\n{_HELP_END}\n"
 
 
 def _commands() -> Iterator[tuple[str, Any]]:

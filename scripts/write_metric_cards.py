@@ -1,10 +1,11 @@
-"""Tables of parameters on the cards of metrics; scripts/generate.py writes them."""
+"""Cards of metrics: declared cells and tables of parameters; scripts/generate.py writes them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from pydantic.fields import FieldInfo
 
@@ -14,6 +15,29 @@ from scripts.write_reference import default_of, units_of
 PAGES = Path(__file__).parent.parent / "docs" / "reference" / "metrics"
 _HEAD = "| parameter | default | meaning |\n|---|---|---|\n"
 _TABLE = re.compile(rf"{re.escape(_HEAD)}((?:\|.*\n)*)")
+
+
+def with_declared(page: str, metric: str) -> str:
+    """Return a card with symbol, category, unit and direction as the metric declares them."""
+    declared: Any = discover(entry_points=False).components("metric")[metric]
+    head = {
+        "symbol": declared.symbol.replace("|", "\\|"),
+        "category": declared.score_category,
+        "unit": declared.unit,
+        "better": declared.better,
+    }
+    for name, value in head.items():
+        page = _with_first(page, rf"^\| {name} \| .* \|$", f"| {name} | {value} |")
+    for name, variant in declared.variants.items():
+        cells = f"| `{name}` | {variant.unit} | {variant.better} |"
+        row = rf"^\| `{name}` \| [^|]* \| (?:lower|higher|reference|none) \|"
+        page = _with_first(page, row, cells)
+    return page
+
+
+def _with_first(page: str, line: str, text: str) -> str:
+    """Return a page whose first match of a regular expression is replaced by a text."""
+    return re.sub(line, lambda _: text, page, count=1, flags=re.MULTILINE)
 
 
 def with_parameters(page: str, metric: str) -> str:

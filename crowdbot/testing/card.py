@@ -1,7 +1,8 @@
 """A metric's card, which explains its numbers, compared with the code.
 
 The format is fixed, so that cards can be checked: a table of two columns, then the sections of
-`SECTIONS`; those of variants and parameters begin with a table.
+`SECTIONS`; those of variants and parameters begin with a table. What a metric does not have may be
+left out: parameters, a literal form, references, an effect of sampling.
 """
 
 from __future__ import annotations
@@ -28,8 +29,9 @@ SECTIONS = (
 )
 #: Combination of runs, if it is not the mean of their scores.
 OPTIONAL = "Many runs"
-#: Rows of the table at the top.
+#: Rows of the table at the top; `MAY_LACK` are those for "none".
 HEAD = ("symbol", "category", "unit", "better", "range", "sampling", "needs")
+MAY_LACK = ("sampling", "needs")
 
 
 def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
@@ -41,13 +43,9 @@ def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
     title = text.splitlines()[0]
     assert title == f"# {component.kind}", f"the card is called '{title}'"
     sections = re.findall(r"^## (.+)$", text, re.MULTILINE)
-    assert [s for s in sections if s != OPTIONAL] == list(SECTIONS), (
-        f"sections are {', '.join(sections)}; expected are {', '.join(SECTIONS)}"
-    )
+    _assert_names("sections", sections, (*SECTIONS, OPTIONAL), (*_without(metric), OPTIONAL))
     head = {name: value for name, value in rows(text.partition("\n## ")[0]) if name}
-    assert tuple(head) == HEAD, (
-        f"the table at the head has {', '.join(head)}; expected are {', '.join(HEAD)}"
-    )
+    _assert_names("rows of the table at the head", list(head), HEAD, MAY_LACK)
     declared = {
         "symbol": metric.symbol,
         "category": metric.score_category,
@@ -59,7 +57,7 @@ def check_card_says_what_the_scores_say(component: Component[Any]) -> None:
     assert all(head.values()), "an empty cell in the table at the head"
     _assert_variants(metric, dict(_named(section(text, "Variants"))))
     _assert_parameters(component, dict(_named(section(text, "Parameters"))))
-    for name in SECTIONS:
+    for name in sections:
         assert section(text, name).strip(), f"section '{name}' is empty"
     _assert_reasons(component, text)
 
@@ -95,6 +93,23 @@ def _named(text: str) -> Iterator[tuple[str, list[str]]]:
     for name, *cells in rows(text):
         if re.fullmatch(r"`[^`]+`", name):
             yield name.strip("`"), cells
+
+
+def _without(metric: MetricComponent[Any]) -> Iterator[str]:
+    """Yield the sections that the card of this metric may leave out."""
+    if "literal" not in metric.variants:
+        yield "What the literal form gets wrong"
+    if set(metric.spec.model_fields) <= {"kind"}:
+        yield "Parameters"
+
+
+def _assert_names(
+    what: str, found: list[str], known: tuple[str, ...], may_lack: tuple[str, ...]
+) -> None:
+    """Check that the known names are there, in their order, except those that may be lacking."""
+    expected = [n for n in known if n in found or n not in may_lack]
+    in_order = [n for n in found if n != OPTIONAL] == [n for n in expected if n != OPTIONAL]
+    assert in_order, f"{what} are {', '.join(found)}; expected are {', '.join(expected)}"
 
 
 def _assert_variants(metric: MetricComponent[Any], table: Mapping[str, list[str]]) -> None:
