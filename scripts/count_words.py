@@ -3,9 +3,10 @@
     python scripts/count_words.py                    # words by group
     python scripts/count_words.py --sentences 100    # random sentences, to be judged
 
-Code blocks are counted apart. Generated is what ``make generate`` and scripts that measure write: whole pages, parts
-between comments, tables of options; on the cards of metrics tables of parameters, what the metric
-declares (symbol, category, units, directions) and the picture with its text.
+Code blocks are counted apart. Generated is what ``make generate`` and scripts that
+measure write: whole pages, parts between comments, tables of options; on the cards of metrics
+tables of parameters, what the metric declares (symbol, category, units, directions) and the
+picture with its text.
 """
 
 from __future__ import annotations
