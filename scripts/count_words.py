@@ -23,6 +23,7 @@ DOCS = Path(__file__).parent.parent / "docs"
 _DEVELOPERS = ("decisions/", "developers/")
 #: Pages that are generated as a whole.
 _GENERATED = (
+    "gallery_of_clips.md",
     "reference/scenario.md",
     "reference/components/",
     "reference/crowd/flow_validation.md",

@@ -23,6 +23,7 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.read_and_score import SeenRun, read_robots
 from crowdbot.core.runs.run_record import RunRecord
+from crowdbot.core.runs.scenario_words import scenario_words
 from crowdbot.core.runs.solids import solid_people, solids_of
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population
@@ -31,7 +32,6 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.matrix import DRAW
 from crowdbot.errors import InputError, UsageError
 
 
@@ -48,18 +48,6 @@ def replay_facts(record: RunRecord) -> dict[str, str]:
         "Arrived at": "—" if arrival is None else f"{arrival:.2f} s",
         "Spec": record.hashes.spec[:24],
     }
-
-
-def scenario_words(record: RunRecord) -> str:
-    """Return one sentence that says what the words of a scenario's id mean; empty without any."""
-    told = []
-    for axis, label in record.axes.items():
-        if axis == DRAW:
-            told.append(f"{label}: one of several draws of its people")
-        elif words := record.axis_words.get(axis):
-            title, value = words
-            told.append(f"{label}: {title} {value}")
-    return f"In this scenario's name, {'; '.join(told)}." if told else ""
 
 
 def scenery(parts: EnvironmentParts, height: float) -> Scenery:
@@ -165,7 +153,7 @@ def shown_run(
         title=f"{scenario.id} · {record.planner.label}",
         label=record.planner.label,
         facts={**several, **replay_facts(record)},
-        words=scenario_words(record),
+        words=scenario_words(record, scenario),
         scans=seen[last].scans,
         images=images,
         drawings=seen[last].drawings,
