@@ -19,6 +19,7 @@ from crowdbot.plugin import (
     Observation,
     Pose,
     Reading,
+    RobotBody,
     RobotLimits,
     SensorInfo,
     Task,
@@ -40,6 +41,7 @@ from crowdbot.plugins.planners.shared.robot_outline_build import (
     disc_radius,
     swept_half_width,
 )
+from crowdbot.plugins.planners.shared.stuck_build import Stuck, compile_stuck
 
 _ARRIVED = 0.1
 #: A direction must be wider than the margin by this, m; that of a robot with an outline, which is
@@ -62,9 +64,12 @@ class Dwa:
         self._sideways = False
         self._manoeuvring: Manoeuvring | None = None
         self._p: Array = np.zeros(PARAMETERS)
+        self._sensors: Mapping[str, SensorInfo] = {}
+        self._body: RobotBody | None = None
         self._forget()
 
     def _forget(self) -> None:
+        self._stuck = Stuck(self._spec.robot_radius, self._body, self._sensors)
         self._heading_by_walls = HeadingByWalls()
         self._scene = PerceivedScene(self._spec, splits=self._manoeuvring is not None)
         self._dead_ends = DeadEnds(
@@ -81,7 +86,7 @@ class Dwa:
         """Store the limits and mounts; compile kernels that are not compiled yet."""
         del seed
         spec = self._spec
-        self._limits = limits
+        self._limits, self._body, self._sensors = limits, task.robot, sensors
         self._lidars = LidarPoints(sensors)
         self._half_width = swept_half_width(spec.robot_radius, task.robot)
         self._core, rounding = core_of(spec.robot_radius, task.robot)
@@ -100,6 +105,7 @@ class Dwa:
         """Run two steps in a made-up world, so that no step of the run waits for compilation."""
         compile_map()
         compile_heading()
+        compile_stuck()
         for t in (0.0, self._spec.look_back):
             readings = {
                 n: Reading(t, immutable(np.full(s.shape, 1.0 + t))) for n, s in sensors.items()
@@ -118,7 +124,7 @@ class Dwa:
     def step(self, obs: Observation) -> Command:
         """Return the next command; zero at the goal."""
         seen = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
-        pose = self._heading_by_walls.pose(obs.pose, seen)
+        pose, seen = self._stuck.see(obs, self._heading_by_walls.pose(obs.pose, seen), seen)
         distance, goal = bearing(pose, obs.goal)
         period = 1.0 / 16.0 if self._time is None else max(1e-3, obs.t - self._time)
         self._time = obs.t
@@ -126,6 +132,11 @@ class Dwa:
         if distance <= _ARRIVED:
             return Command(0.0, 0.0)
         points, velocities = self._scene.see(obs.t, pose, seen, period)
+        away = self._stuck.way_back(obs, pose, seen)
+        if away is not None:
+            self._dead_ends.lose_way(obs.t, distance)
+            self._last = (away.v, away.w, away.vy)
+            return away
         detour = self._dead_ends.detour(obs, pose, goal, distance, self._scene, period)
         if detour.command is not None:
             self._last = detour.command
@@ -137,7 +148,7 @@ class Dwa:
         self._last = self._choose_velocity(obs, distance, detour, direction, points, velocities)
         obs.log("dwa/direction", direction)
         obs.log("dwa/free_time", free)
-        return Command(*self._last)
+        return self._stuck.told(Command(*self._last), period)
 
     def _choose_direction(
         self, pose: Pose, detour: Detour, points: Array, velocities: Array

@@ -32,7 +32,7 @@ class Mppi:
 
     def __init__(self, spec: MppiSpec) -> None:
         self._spec = spec
-        self._surroundings = PlannerSurroundings(spec)
+        self._surroundings = PlannerSurroundings(spec, leaves=True)
         self._field = DistanceField()
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
@@ -47,7 +47,7 @@ class Mppi:
         """Draw the noise; compile kernels that are not compiled yet."""
         spec = self._spec
         self._limits, self._next = limits, 0.0
-        self._surroundings.reset(sensors)
+        self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(spec.robot_radius, task.robot)
         self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = _parameters(spec, limits)
@@ -69,6 +69,8 @@ class Mppi:
         if distance <= _ARRIVED:
             self._samples.plan[:] = 0.0
             return Command(0.0, 0.0)
+        if self._surroundings.away is not None:
+            return self._surroundings.away
         self._shift(obs.t)
         top = min(spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
         self._p[rollouts.TOP] = top

@@ -42,7 +42,7 @@ class PeopleMpc:
 
     def __init__(self, spec: PeopleMpcSpec) -> None:
         self._spec = spec
-        self._surroundings = PlannerSurroundings(spec)
+        self._surroundings = PlannerSurroundings(spec, leaves=True)
         self._field = DistanceField()
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
@@ -57,7 +57,7 @@ class PeopleMpc:
         del seed
         spec = self._spec
         self._limits = limits
-        self._surroundings.reset(sensors)
+        self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(spec.robot_radius, task.robot)
         self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = _parameters(spec, limits)
@@ -79,6 +79,9 @@ class PeopleMpc:
         if distance <= _ARRIVED:
             self._last = (0.0, 0.0, 0.0)
             return Command(0.0, 0.0)
+        if self._surroundings.away is not None:
+            self._last = (self._surroundings.away.v, 0.0, 0.0)
+            return self._surroundings.away
         aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
         _, error = bearing(pose, aim)
         top = min(

@@ -38,7 +38,7 @@ class Rpp:
 
     def __init__(self, spec: RppSpec) -> None:
         self._spec = spec
-        self._surroundings = PlannerSurroundings(spec)
+        self._surroundings = PlannerSurroundings(spec, leaves=True)
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
         self._way = Way(1.0)
@@ -49,7 +49,7 @@ class Rpp:
         """Store limits, outline and mounts; compile kernels that are not compiled yet."""
         del seed
         self._limits = limits
-        self._surroundings.reset(sensors)
+        self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(self._spec.robot_radius, task.robot)
         self._way = Way(swept_half_width(self._spec.robot_radius, task.robot) + _BESIDE)
         arc_gap(np.ones((1, 3)), self._robot, 0.1, 0.0, 0.1)
@@ -62,6 +62,8 @@ class Rpp:
         distance, _ = bearing(scene.pose, obs.goal)
         if distance <= _ARRIVED:
             return Command(0.0, 0.0)
+        if self._surroundings.away is not None:
+            return self._surroundings.away
         aim = self._way.aim(obs.t, scene.pose, scene.seen, obs.goal)
         far, error = bearing(scene.pose, aim)
         if abs(error) > spec.turn_in_place:

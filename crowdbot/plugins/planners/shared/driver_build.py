@@ -35,7 +35,7 @@ class VelocityPlanner(ABC):
 
     def __init__(self, spec: RungSpec) -> None:
         self._rungs = spec
-        self._surroundings = PlannerSurroundings(spec)
+        self._surroundings = PlannerSurroundings(spec, leaves=True)
         self._way = Way(1.0)
         self.limits: RobotLimits | None = None
         self.body: RobotBody | None = None
@@ -48,7 +48,7 @@ class VelocityPlanner(ABC):
         del seed
         self.limits, self.body = limits, task.robot
         self.radius = disc_radius(self._rungs.robot_radius, task.robot)
-        self._surroundings.reset(sensors)
+        self._surroundings.reset(sensors, task.robot)
         self._way = Way(swept_half_width(self._rungs.robot_radius, task.robot) + _BESIDE)
         self.forget()
 
@@ -59,6 +59,8 @@ class VelocityPlanner(ABC):
         distance, _ = bearing(scene.pose, obs.goal)
         if distance <= _ARRIVED:
             return Command(0.0, 0.0)
+        if self._surroundings.away is not None:
+            return self._surroundings.away
         aim = self._way.aim(obs.t, scene.pose, scene.seen, obs.goal)
         _, error = bearing(scene.pose, aim)
         top = min(self._rungs.speed * self.limits.v_max, braking_speed(distance, self.limits.a_max))

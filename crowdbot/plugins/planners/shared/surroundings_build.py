@@ -10,11 +10,13 @@ import numpy as np
 
 from crowdbot.plugin import (
     Array,
+    Command,
     Indices,
     LidarPoints,
     Observation,
     PeopleTracker,
     Pose,
+    RobotBody,
     SensorInfo,
     Truth,
     array_kernel,
@@ -24,6 +26,7 @@ from crowdbot.plugins.planners.shared.people_build import people_in
 from crowdbot.plugins.planners.shared.people_motion_build import PeopleMotion
 from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
 from crowdbot.plugins.planners.shared.rungs import LadderSpec
+from crowdbot.plugins.planners.shared.stuck_build import Stuck, compile_stuck
 
 #: Lidar points farther away play no part, m; in each sector the nearest one counts.
 REACH, SECTORS = 6.0, 180
@@ -57,16 +60,36 @@ class PlannerScene:
 
 
 class PlannerSurroundings:
-    """Makes a `PlannerScene` of each observation; made and reset together with a planner."""
+    """Makes a `PlannerScene` of each observation; made and reset together with a planner.
 
-    def __init__(self, spec: LadderSpec) -> None:
-        self._spec = spec
+    Args:
+        spec: of the planner.
+        leaves: True if the planner obeys `away`, so that the robot leaves barriers that no lidar
+            sees.
+
+    Attributes:
+        away: command that leads away from such a barrier in this step; None: there is none.
+    """
+
+    def __init__(self, spec: LadderSpec, *, leaves: bool = False) -> None:
+        self._spec, self._leaves = spec, leaves
+        self._stuck = Stuck()
+        self.away: Command | None = None
         self._lidars = LidarPoints({})
         self._tracker: PeopleTracker | None = None
         self._heading, self._motion = HeadingByWalls(), PeopleMotion(_LOOK_BACK)
 
-    def reset(self, sensors: Mapping[str, SensorInfo]) -> None:
-        """Forget everything; compile what is not compiled yet."""
+    def reset(self, sensors: Mapping[str, SensorInfo], body: RobotBody | None = None) -> None:
+        """Forget everything; compile what is not compiled yet.
+
+        Args:
+            sensors: description of each sensor that the planner gets.
+            body: of the robot.
+        """
+        truth = self._spec.localisation == "truth"
+        self._stuck = Stuck(self._spec.robot_radius, body, sensors, slips=not truth)
+        self.away = None
+        compile_stuck()
         self._lidars = LidarPoints(sensors)
         compile_heading()
         self._heading, self._motion = HeadingByWalls(), PeopleMotion(_LOOK_BACK)
@@ -85,6 +108,9 @@ class PlannerSurroundings:
         """Return the surroundings at the time of an observation."""
         points = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
         pose = self._pose(obs, points)
+        if self._leaves:
+            pose, points = self._stuck.see(obs, pose, points)
+            self.away = self._stuck.way_back(obs, pose, points)
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         to_world = np.array([[c, s], [-s, c]])  # of row vectors
         here = np.array([pose.x, pose.y])

@@ -24,6 +24,8 @@ _MAPPED = 0.5
 _WAITING = 0.8
 #: Duration of the way back out of a dead end, s.
 _ESCAPE = 2.0
+#: Time after a barrier barred the way in which waiting for people does not help, s.
+_BARRED = 20.0
 _NOTHING = np.empty((0, 2))
 
 
@@ -74,7 +76,7 @@ class DeadEnds:
         self._moved_at: tuple[float, float, float] | None = None
         self._escape_until = -math.inf
         self._nearest: tuple[float, float] | None = None
-        self._lost = False
+        self._lost, self._barred_until = False, -math.inf
         if manoeuvring is not None:
             manoeuvring.forget()
 
@@ -91,7 +93,7 @@ class DeadEnds:
             scene: around the robot.
             period: since the last step, s.
         """
-        if scene.walking:
+        if scene.walking and obs.t >= self._barred_until:
             self._wait(period)
         escaping = self._is_stuck(obs.t, pose)
         self._lost = self._is_lost(obs.t, distance)
@@ -113,6 +115,16 @@ class DeadEnds:
             return Detour(goal, distance, escaping, beside=beside)
         room = min(AIM, distance)
         return Detour(self._way - pose.yaw, room, escaping, mapped=True, beside=beside)
+
+    def lose_way(self, t: float, distance: float) -> None:
+        """Look for another way at once: the straight one is barred.
+
+        Args:
+            t: now, s.
+            distance: of the goal, m.
+        """
+        self._moved_at, self._barred_until = None, t + _BARRED
+        self._nearest = (distance, t - 2.0 * self._spec.patience - _MAP_PERIOD)
 
     def _wait(self, period: float) -> None:
         """Let time without progress count less while people walk nearby, who will be gone."""
