@@ -8,7 +8,7 @@ from typing import Any, cast, get_args
 
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.support.source_digest import declared_data
-from crowdbot.dsl.spec.component_specs import PlannerRole
+from crowdbot.dsl.spec.component_specs import PlannerRole, PlannerSpec
 from crowdbot.errors import InputError, did_you_mean, nearest
 
 
@@ -46,6 +46,11 @@ def described(holder: type, call: PluginCall) -> PlannerDescription:
             role=role_of(holder),
             data=declared_data(holder),
         )
+
+
+def sensors_of(needs: tuple[str, ...] | None, spec: PlannerSpec) -> tuple[str, ...] | None:
+    """Return the sensors that a planner with a spec reads: its needs and what it wants beside."""
+    return None if needs is None else (*needs, *(f"{want}?" for want in spec.wants))
 
 
 def read_description(said: Mapping[str, Any], who: str) -> PlannerDescription:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core.planning.choice import PlannerChoice, label_of
-from crowdbot.core.planning.description import described
+from crowdbot.core.planning.description import described, sensors_of
 from crowdbot.core.planning.half import HalfPlanner, PlannerWithHalf
 from crowdbot.core.planning.registered import build_of_kind, is_privileged
 from crowdbot.core.registry.build_reference import load_build
@@ -68,7 +68,8 @@ def choice_with_half(
     """
     load_build(component, registry.plugin_call(spec))
     said = described(component.spec, registry.plugin_call(spec))
-    both = None if said.needs is None or half.needs is None else (*said.needs, *half.needs)
+    own = sensors_of(said.needs, spec)
+    both = None if own is None or half.needs is None else (*own, *half.needs)
     privileged = is_privileged(spec) or half.privileged
     as_given = is_default(component, spec)
     dump = {**spec.model_dump(mode="json"), spec.half: half.spec_dump}

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.containment.declared import needs_of_class, needs_of_kind
-from crowdbot.core.planning.description import described, role_of
+from crowdbot.core.planning.description import described, role_of, sensors_of
 from crowdbot.core.planning.external import external_choice, is_external
 from crowdbot.core.planning.files_of_spec import (
     files_of_spec,
@@ -202,7 +202,7 @@ def _from_kind(
         build=build,
         pinned=owner.pinned,
         origin=owner.distribution,
-        needs=description.needs,
+        needs=sensors_of(description.needs, spec),
         label=label_of(kind, {} if as_given else dump, is_privileged(spec)),
         privileged=is_privileged(spec),
         role=description.role if as_given else "candidate",

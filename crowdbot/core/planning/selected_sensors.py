@@ -18,7 +18,8 @@ def select_sensors(
     """Return the names of the sensors that a planner gets, in the robot's order.
 
     Args:
-        needs: names or categories; None: all that it may have.
+        needs: names or categories; None: all that it may have. One that ends with ``?`` is taken
+            where the robot has it.
         sensors: the robot's sensors.
         planner: name for messages.
         privileged: True if it may have privileged sensors.
@@ -29,11 +30,12 @@ def select_sensors(
     if needs is None:
         return tuple(n for n, s in sensors.items() if privileged or not s.privileged)
     offered = {*sensors, *(s.category for s in sensors.values())}
+    wanted = {need.removesuffix("?") for need in needs}
     for need in needs:
-        if need not in offered:
+        if need not in offered and not need.endswith("?"):
             has = ", ".join(sorted(offered)) or "none"
             raise InputError(f"planner '{planner}' needs '{need}'; the robot's sensors: {has}")
-    found = tuple(n for n, s in sensors.items() if n in needs or s.category in needs)
+    found = tuple(n for n, s in sensors.items() if n in wanted or s.category in wanted)
     for name in found:
         if sensors[name].privileged and not privileged:
             raise InputError(

@@ -184,6 +184,11 @@ class PlannerSpec(ComponentSpec):
     #: function gets that planner, built, as its second argument. Empty: it uses none.
     half: ClassVar[str] = ""
 
+    @property
+    def wants(self) -> tuple[str, ...]:
+        """Return categories of further sensors that it takes where the robot has them."""
+        return ()
+
 
 class CrowdPolicySpec(ComponentSpec):
     """Abstract crowd policy: decides where people walk."""

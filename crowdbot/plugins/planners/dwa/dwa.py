@@ -25,6 +25,7 @@ from crowdbot.plugin import (
     PositiveLength,
     PositiveSpeed,
 )
+from crowdbot.plugins.planners.shared.near_sensors import NEAR_SENSORS, near_sensors_field
 
 Weight = Annotated[float, Ge(0)]
 
@@ -86,7 +87,13 @@ class DwaSpec(PlannerSpec):
     heading: Weight = Field(default=0.4, description="Weight of the final heading.")
     clearance: Weight = Field(default=0.6, description="Weight of the closest approach.")
     impact: Weight = Field(default=1.2, description="Weight of an early predicted hit.")
+    near_sensors: bool = near_sensors_field()
     smoothness: Weight = Field(default=0.05, description="Weight of a change of command.")
+
+    @property
+    def wants(self) -> tuple[str, ...]:
+        """Return the near sensors, if it takes them."""
+        return NEAR_SENSORS if self.near_sensors else ()
 
 
 DWA = Component(

@@ -36,6 +36,7 @@ from crowdbot.plugins.planners.dwa.scene_build import REACH, PerceivedScene
 from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_aside
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.shared.heading_by_walls_build import HeadingByWalls, compile_heading
+from crowdbot.plugins.planners.shared.near_points_build import NearPoints
 from crowdbot.plugins.planners.shared.robot_outline_build import (
     core_of,
     disc_radius,
@@ -56,7 +57,7 @@ class Dwa:
 
     def __init__(self, spec: DwaSpec) -> None:
         self._spec = spec
-        self._lidars = LidarPoints({})
+        self._lidars, self._near = LidarPoints({}), NearPoints({})
         self._limits: RobotLimits | None = None
         self._core, _ = core_of(spec.robot_radius, None)
         self._half_width = disc_radius(spec.robot_radius, None)
@@ -87,7 +88,7 @@ class Dwa:
         del seed
         spec = self._spec
         self._limits, self._body, self._sensors = limits, task.robot, sensors
-        self._lidars = LidarPoints(sensors)
+        self._lidars, self._near = LidarPoints(sensors), NearPoints(sensors)
         self._half_width = swept_half_width(spec.robot_radius, task.robot)
         self._core, rounding = core_of(spec.robot_radius, task.robot)
         self._sideways = limits.vy_max > 0.0
@@ -124,7 +125,10 @@ class Dwa:
     def step(self, obs: Observation) -> Command:
         """Return the next command; zero at the goal."""
         seen = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
-        pose, seen = self._stuck.see(obs, self._heading_by_walls.pose(obs.pose, seen), seen)
+        pose = self._heading_by_walls.pose(obs.pose, seen)
+        if len(self._near):
+            seen = np.concatenate([seen, self._near(obs, seen)])
+        pose, seen = self._stuck.see(obs, pose, seen)
         distance, goal = bearing(pose, obs.goal)
         period = 1.0 / 16.0 if self._time is None else max(1e-3, obs.t - self._time)
         self._time = obs.t

@@ -13,8 +13,6 @@ import numpy as np
 
 from crowdbot.plugin import Array, Observation, Pinhole, SensorInfo, rotation
 
-#: Sensors that a planner may take beside its lidars, where the robot has them.
-NEAR_SENSORS = ("ultrasound", "infrared", "camera")
 #: Points on the arc of a cone's hit.
 _ARC = 5
 #: A lidar point in the cone explains a range up to this much longer or shorter, m.

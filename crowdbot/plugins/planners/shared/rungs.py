@@ -8,6 +8,7 @@ from annotated_types import Gt, Le
 from pydantic import Field
 
 from crowdbot.plugin import NonNegativeLength, PlannerSpec, PositiveLength
+from crowdbot.plugins.planners.shared.near_sensors import NEAR_SENSORS, near_sensors_field
 
 
 class LadderSpec(PlannerSpec):
@@ -32,6 +33,13 @@ class LadderSpec(PlannerSpec):
     person_radius: NonNegativeLength = Field(
         default=0.25, description="Disc that is kept clear around people, m."
     )
+
+    near_sensors: bool = near_sensors_field()
+
+    @property
+    def wants(self) -> tuple[str, ...]:
+        """Return the near sensors, if it takes them."""
+        return NEAR_SENSORS if self.near_sensors else ()
 
     @property
     def privileged(self) -> bool:

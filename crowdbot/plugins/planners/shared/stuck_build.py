@@ -109,8 +109,10 @@ class Stuck:
         since, place, way = self._back_from
         gone = math.hypot(pose.x - place.x, pose.y - place.y)
         free = self._front if way > 0.0 else self._back
-        if gone >= _WAY_BACK or obs.t - since >= _BACK_TIME or self._blocked(
-            points, way, free + _ROOM
+        if (
+            gone >= _WAY_BACK
+            or obs.t - since >= _BACK_TIME
+            or self._blocked(points, way, free + _ROOM)
         ):
             self._back_from = self._start = None
             return None
@@ -228,9 +230,7 @@ def _moved(then: Pose, now: Pose) -> tuple[float, float]:
 
 
 @kernel
-def _votes(
-    before: Array, now: Array, ahead: float, aside: float, turn: float
-) -> tuple[int, int]:
+def _votes(before: Array, now: Array, ahead: float, aside: float, turn: float) -> tuple[int, int]:
     """Count points of an earlier scan by whether they say that the robot stands or has moved.
 
     Args:

@@ -22,6 +22,7 @@ from crowdbot.plugin import (
     array_kernel,
 )
 from crowdbot.plugins.planners.shared.heading_by_walls_build import HeadingByWalls, compile_heading
+from crowdbot.plugins.planners.shared.near_points_build import NearPoints
 from crowdbot.plugins.planners.shared.people_build import people_in
 from crowdbot.plugins.planners.shared.people_motion_build import PeopleMotion
 from crowdbot.plugins.planners.shared.points_build import nearest_per_sector
@@ -73,7 +74,7 @@ class PlannerSurroundings:
 
     def __init__(self, spec: LadderSpec, *, leaves: bool = False) -> None:
         self._spec, self._leaves = spec, leaves
-        self._stuck = Stuck()
+        self._stuck, self._near = Stuck(), NearPoints({})
         self.away: Command | None = None
         self._lidars = LidarPoints({})
         self._tracker: PeopleTracker | None = None
@@ -89,6 +90,7 @@ class PlannerSurroundings:
         truth = self._spec.localisation == "truth"
         self._stuck = Stuck(self._spec.robot_radius, body, sensors, slips=not truth)
         self.away = None
+        self._near = NearPoints(sensors)
         compile_stuck()
         self._lidars = LidarPoints(sensors)
         compile_heading()
@@ -108,6 +110,8 @@ class PlannerSurroundings:
         """Return the surroundings at the time of an observation."""
         points = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
         pose = self._pose(obs, points)
+        if len(self._near):
+            points = np.concatenate([points, self._near(obs, points)])
         if self._leaves:
             pose, points = self._stuck.see(obs, pose, points)
             self.away = self._stuck.way_back(obs, pose, points)
