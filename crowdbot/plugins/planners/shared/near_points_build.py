@@ -12,11 +12,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from crowdbot.plugin import Array, Observation, Pinhole, SensorInfo, rotation
+from crowdbot.plugins.planners.shared.points_build import apart
 
 #: Points on the arc of a cone's hit.
 _ARC = 5
-#: A lidar point in the cone explains a range up to this much longer or shorter, m.
-_SAME = 0.2
+#: A lidar point in the cone explains a range up to this much longer or shorter, and what a camera
+#: sees so near to it, m.
+_SAME = 0.25
 #: Echoes farther away than this are left out: their arc is too wide to say where, m.
 _FARTHEST = 1.5
 #: Heights above the floor of what a depth camera shows as an obstacle, from and to, m.
@@ -59,7 +61,8 @@ class NearPoints:
                     found.append(_arc(mount, edges, reach, lidar))
         for name, camera in self._cameras.items():
             if name in obs.readings:
-                found.append(camera.points(obs.readings[name].values))
+                seen = camera.points(obs.readings[name].values)
+                found.append(seen[apart(seen, lidar, _SAME)])
         return np.concatenate(found)
 
 

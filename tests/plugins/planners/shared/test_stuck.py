@@ -54,7 +54,8 @@ def test_slipping_wheels_are_noticed_and_the_robot_backs_off() -> None:
     stuck = Stuck(_RADIUS)
     pose, command = _drive(stuck, 4.0, real=0.0)
     assert stuck.count == 1
-    assert command is not None and command.v < 0.0
+    assert command is not None
+    assert command.v < 0.0
     assert math.hypot(pose.x, pose.y) < 0.05  # the slip is no way
     assert np.all(stuck.places[:, 0] > _RADIUS)
     assert np.ptp(stuck.places[:, 1]) >= 2.0 * _RADIUS
@@ -67,7 +68,8 @@ def test_a_robot_that_drives_sees_and_remembers_nothing_new() -> None:
         pose = Pose(0.6 * t, 0.2 * math.sin(t), 0.3 * math.cos(t))
         seen = _scan(pose)
         corrected, points = stuck.see(_observation(t, pose, 0.6), pose, seen)
-        assert corrected is pose and points is seen
+        assert corrected is pose
+        assert points is seen
         assert stuck.way_back(_observation(t, pose, 0.6), pose, seen) is None
     assert stuck.count == 0
 
@@ -75,7 +77,8 @@ def test_a_robot_that_drives_sees_and_remembers_nothing_new() -> None:
 def test_stalled_wheels_are_noticed() -> None:
     stuck = Stuck(_RADIUS)
     _, command = _drive(stuck, 3.0, wheels=0.0, real=0.0)
-    assert stuck.count == 1 and command is not None
+    assert stuck.count == 1
+    assert command is not None
     standing = Stuck(_RADIUS)
     _drive(standing, 3.0, wheels=0.0, real=0.0, told=0.0)
     assert standing.count == 0
