@@ -23,7 +23,7 @@ _SAME = 0.25
 _FARTHEST = 1.5
 #: Heights above the floor of what a depth camera shows as an obstacle, from and to, m.
 _LOW, _HIGH = 0.06, 0.5
-#: A camera's images are thinned to so many columns and rows.
+#: A camera's images are thinned to at most this number of columns and rows.
 _COLUMNS, _ROWS = 64, 48
 
 

@@ -19,7 +19,7 @@ from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius
 
 #: The wheels roll this far between two scans that are compared (m), in this time at most (s).
 _ROLLED, _PATIENCE = 0.35, 3.0
-#: Each of so many points of the earlier scan is compared.
+#: About this number of points of the earlier scan are compared.
 _SAMPLE, _REACH = 150, 10.0
 #: A point counts for the hypothesis that it fits better by this plus a share of its distance, m.
 _CLEAR, _CLEAR_SHARE = 0.06, 0.02

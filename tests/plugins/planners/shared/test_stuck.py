@@ -56,7 +56,7 @@ def test_slipping_wheels_are_noticed_and_the_robot_backs_off() -> None:
     assert stuck.count == 1
     assert command is not None
     assert command.v < 0.0
-    assert math.hypot(pose.x, pose.y) < 0.05  # the slip is no way
+    assert math.hypot(pose.x, pose.y) < 0.05  # slip does not count
     assert np.all(stuck.places[:, 0] > _RADIUS)
     assert np.ptp(stuck.places[:, 1]) >= 2.0 * _RADIUS
 
