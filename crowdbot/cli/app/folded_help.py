@@ -8,7 +8,7 @@ from typing import Any
 _COMMON = {
     "--plugin": "--plugin PATH loads a plugin that is not installed (repeatable)",
     "--no-plugins": "--no-plugins loads crowdbot's own only",
-    "--verbose": "-v says more",
+    "--verbose": "-v prints more",
     "--quiet": "-q prints errors only",
     "--help": "-h shows this help",
 }

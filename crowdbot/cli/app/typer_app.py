@@ -127,7 +127,11 @@ def _set_level(level: int) -> Any:
 _Verbose = Annotated[
     bool,
     typer.Option(
-        "-v", "--verbose", help="Say more.", callback=_set_level(logging.DEBUG), expose_value=False
+        "-v",
+        "--verbose",
+        help="Print more.",
+        callback=_set_level(logging.DEBUG),
+        expose_value=False,
     ),
 ]
 _Quiet = Annotated[

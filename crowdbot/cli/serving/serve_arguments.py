@@ -73,7 +73,9 @@ Rate = Annotated[
     typer.Option(metavar="FACTOR", help="Keep to real time, times FACTOR; else lockstep."),
 ]
 Clock = Annotated[ClockChoice, typer.Option(help="Where simulated time comes from.")]
-Budget = Annotated[float, typer.Option(metavar="SECONDS", help="Lockstep: how long a step waits.")]
+Budget = Annotated[
+    float, typer.Option(metavar="SECONDS", help="Lockstep: how long a step waits for a command.")
+]
 Missed = Annotated[MissedChoice, typer.Option(help="What a step without a command does.")]
 Hold = Annotated[
     float, typer.Option(metavar="SECONDS", help="Real time: how long a command counts.")
@@ -86,6 +88,4 @@ Epoch = Annotated[int, typer.Option(min=0, metavar="SECONDS", help="Time at whic
 RosVersion = Annotated[int, typer.Option(min=1, max=2, help="ROS 1 or ROS 2 messages.")]
 PlannerName = Annotated[str, typer.Option(help="Name of the planner that drives.")]
 Stay = Annotated[bool, typer.Option("--stay", help="After a run, wait for reset or next_scenario.")]
-References = Annotated[
-    bool, typer.Option(help="Make the calibration runs first: robot alone, people alone.")
-]
+References = Annotated[bool, typer.Option(help="First run the robot alone and the people alone.")]

@@ -18,11 +18,13 @@ if TYPE_CHECKING:
 
 Accept = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAME", help="Compare although this differs; repeatable."),
+    typer.Option(metavar="NAME", help="Compare although bundles differ in this; repeatable."),
 ]
 Keys = Annotated[
     list[str] | None,
-    typer.Option(metavar="HEX", help="Believe records that this public key signed; repeatable."),
+    typer.Option(
+        metavar="HEX", help="Accept outcomes of verify that this public key signed; repeatable."
+    ),
 ]
 
 

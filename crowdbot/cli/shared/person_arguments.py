@@ -13,7 +13,9 @@ PagePort = Annotated[
 OpenPage = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
 Rate = Annotated[
     float,
-    typer.Option(min=0.1, max=10.0, metavar="FACTOR", help="Times real time."),
+    typer.Option(
+        min=0.1, max=10.0, metavar="FACTOR", help="Speed of the simulation; 1: real time."
+    ),
 ]
 ReplayRun = Annotated[
     Path | None,

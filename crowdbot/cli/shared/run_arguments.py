@@ -23,7 +23,7 @@ ScenarioArgument = Annotated[
 ]
 Overrides = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+    typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
 ]
 RunSeed = Annotated[int, typer.Option(min=0, help="Run seed: sensor noise and planner.")]
 OutRoot = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]

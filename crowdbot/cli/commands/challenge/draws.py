@@ -116,7 +116,7 @@ def check(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Show if the draws of a suite are hidden, or revealed as committed.
+    """Check that the draws of a suite are hidden, or revealed as committed.
 
     Exit code 1 if seed and salt do not fit, or the commitment is not the given one.
 

@@ -32,7 +32,7 @@ def seal(
         str, typer.Option(metavar="FILE", help="File beside it that lists needed libraries.")
     ] = "",
     team: Annotated[str, typer.Option(metavar="TEXT", help="Name of the team.")] = "",
-    contact: Annotated[str, typer.Option(metavar="TEXT", help="How to reach it.")] = "",
+    contact: Annotated[str, typer.Option(metavar="TEXT", help="How to reach the team.")] = "",
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,

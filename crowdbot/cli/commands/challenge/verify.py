@@ -92,7 +92,7 @@ def verify(
         bool,
         typer.Option(
             "--not-contained",
-            help="Run the planner also where this system cannot keep it from files and processes.",
+            help="Run the planner even if this system cannot keep it from files and processes.",
         ),
     ] = False,
     plugin: Plugins = None,

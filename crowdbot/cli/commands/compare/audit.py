@@ -36,7 +36,9 @@ def audit(
     seeds: Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")] = "0",
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change every scenario; repeatable."),
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."
+        ),
     ] = None,
     out: Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")] = Path(
         "runs"
@@ -53,7 +55,7 @@ def audit(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The audit as JSON on stdout.")] = False,
 ) -> None:
-    """Run floors, baselines and ceilings; exit code 1 if the suite cannot separate them.
+    """Check that a suite tells careful planners from blind ones; exit code 1 if it does not.
 
     Example: crowdbot audit challenge-2020 --scenarios 18 --jobs 2
 

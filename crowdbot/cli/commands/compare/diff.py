@@ -24,7 +24,9 @@ def diff(
     b: Annotated[str, typer.Argument(metavar="B", help=_SIDE)],
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change B first; repeatable."),
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="Set a value of B before comparing; repeatable."
+        ),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -52,13 +52,13 @@ def realism(
         str | None,
         typer.Option(
             metavar="1,2,3|1..5",
-            help="Draws; default 1..16, with --robot 1..2.",
+            help="Draws of people; default 1..16, with --robot 1..2.",
             show_default=False,
         ),
     ] = None,
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd; repeatable."),
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the crowd; repeatable."),
     ] = None,
     out: Annotated[
         Path | None,

@@ -29,7 +29,7 @@ def show(
     ] = "crowdbot",
     as_json: _Json = False,
 ) -> None:
-    """Say what the reference scores hold: suites, planners, seeds, machine and command.
+    """Show what the reference scores contain: suites, planners, seeds, machine and command.
 
     Example: crowdbot references
     """
@@ -80,7 +80,7 @@ def make(
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
 ) -> None:
-    """Run planners in suites, or what is missing of that, and keep the scores in one small file.
+    """Run planners in suites, and keep their scores in one file; finished runs are skipped.
 
     Example: crowdbot references make challenge-2026 --only '*-n01' --seeds 0
     """

@@ -53,7 +53,8 @@ def report(
     accept: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="CONFOUND", help="Compare although this differs; the page says so; repeatable."
+            metavar="CONFOUND",
+            help="Compare although runs differ in this; the page says so; repeatable.",
         ),
     ] = None,
     audit: Annotated[

@@ -64,13 +64,16 @@ def show(
         typer.Option(metavar="NAME", help="Variant; default: rate or pace, or else corrected."),
     ] = None,
     by: Annotated[
-        str, typer.Option(metavar="AXIS,AXIS", help="Groups: axes, planner, seed, status.")
+        str,
+        typer.Option(
+            metavar="AXIS,AXIS", help="Group by these: planner, seed, status, axes of the suite."
+        ),
     ] = "planner",
     planner: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Only this planner; repeatable.")
     ] = None,
     status: Annotated[
-        str | None, typer.Option(metavar="STATUS", help="Only runs that ended like this.")
+        str | None, typer.Option(metavar="STATUS", help="Only runs that ended so, such as timeout.")
     ] = None,
     reference: Reference = None,
     worst: Annotated[

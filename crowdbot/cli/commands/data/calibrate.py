@@ -53,11 +53,18 @@ def calibrate(
     ] = False,
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change the crowd first; repeatable."),
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Set a value of the crowd before the fit; repeatable.",
+        ),
     ] = None,
     generations: Annotated[int, typer.Option(min=1, metavar="N", help="Steps of the fit.")] = 40,
     population: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Crowds in each step; 0: 4 + 3 ln(numbers).")
+        int,
+        typer.Option(
+            min=0, metavar="N", help="Crowds tried in each step; 0: 4 + 3 ln(fitted numbers)."
+        ),
     ] = 0,
     seed: Annotated[
         int, typer.Option(min=1, help="Seed of the fit; equal seeds give equal fits.")

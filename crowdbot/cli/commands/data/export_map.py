@@ -32,7 +32,7 @@ def export_map(
     ] = 0.05,
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

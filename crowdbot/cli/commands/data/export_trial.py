@@ -23,13 +23,13 @@ def export_trial(
     ] = None,
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,
 ) -> None:
-    """Write a scenario as trial XML of the original, and its policies beside it where needed.
+    """Write a scenario as trial XML of the original CrowdBot simulator, with its policies.
 
     Example: crowdbot export-trial challenge-2020 in-d0125-slow-c20-r05 --out trial1.xml
     """

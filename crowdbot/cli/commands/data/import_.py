@@ -22,7 +22,7 @@ def import_(
         list[Path],
         typer.Argument(
             metavar="FILE...",
-            help="Trials of the original, UMANS XML, scenes of other programs; together.",
+            help="Files that belong together: trials of the original, UMANS XML, other programs.",
         ),
     ],
     out: Annotated[

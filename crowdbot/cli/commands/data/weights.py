@@ -20,7 +20,7 @@ def weights(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Names and shapes as JSON.")] = False,
 ) -> None:
-    """Read weights without PyTorch, and without running anything in the file.
+    """List or convert a network's weights without PyTorch; no code in the file is run.
 
     Example: crowdbot weights rl_model.pth --out sarl.npz
     """

@@ -45,7 +45,7 @@ def view(
     open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change the scenario; repeatable."),
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

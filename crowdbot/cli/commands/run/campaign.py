@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _Set = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change every scenario; repeatable."),
+    typer.Option("--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."),
 ]
 _PlannerSet = Annotated[
     list[str] | None,
@@ -68,10 +68,10 @@ def campaign(
     planner_set: _PlannerSet = None,
     floors: Annotated[
         bool,
-        typer.Option(help="Run floors and ceilings besides, in at most 18 scenarios of a suite."),
+        typer.Option(help="Also run floors and ceilings, in at most 18 scenarios of a suite."),
     ] = True,
     retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Run again the runs whose planner failed.")
+        bool, typer.Option("--retry-failed", help="Repeat runs whose planner failed.")
     ] = False,
     force: Annotated[
         bool, typer.Option("--force", help="Run everything again, calibration runs too.")

@@ -35,7 +35,7 @@ _Metrics = Annotated[
     list[str] | None,
     typer.Option(
         metavar="GLOB",
-        help="Which metrics, default all; experimental ones by their names; repeatable.",
+        help="Which metrics; default: all but experimental ones; repeatable.",
     ),
 ]
 _Variant = Annotated[str, typer.Option(metavar="NAME|all", help="Which variants.")]

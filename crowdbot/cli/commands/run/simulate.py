@@ -43,7 +43,7 @@ def simulate(
     overrides: Overrides = None,
     planner_set: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Change the planner; repeatable."),
+        typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
     ] = None,
     seed: RunSeed = 0,
     out: OutRoot = Path("runs"),
@@ -52,10 +52,10 @@ def simulate(
         typer.Option(help="Sensors to simulate and record; default: the suite's, or used."),
     ] = None,
     references: Annotated[
-        bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
+        bool, typer.Option(help="First run robot_alone and crowd_alone, unless done before.")
     ] = True,
     force: Annotated[
-        bool, typer.Option("--force", help="Run again even what is complete.")
+        bool, typer.Option("--force", help="Run again, even if the run is complete.")
     ] = False,
     step_budget: Annotated[
         float | None,

@@ -102,7 +102,7 @@ def run(
 ) -> None:
     """Lead a participant through the study, on a page that this machine alone can open.
 
-    What is done is kept after each step: the same command goes on where it was.
+    Every finished step is kept: after an interruption the same command continues.
 
     Example: crowdbot study run study.yaml --participant p01
 

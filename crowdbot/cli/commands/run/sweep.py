@@ -48,17 +48,21 @@ def sweep(
         list[str] | None, typer.Option(metavar="GLOB", help="Only these scenarios; repeatable.")
     ] = None,
     sample: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Scenarios, by chance; 0: all.")
+        int, typer.Option(min=0, metavar="N", help="Number of scenarios, drawn at random; 0: all.")
     ] = 9,
     check: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Best trials that are run with other people.")
+        int,
+        typer.Option(min=0, metavar="N", help="Number of best trials to check with other people."),
     ] = 3,
     planner_set: Annotated[
         list[str] | None,
         typer.Option(metavar="KEY=VALUE", help="Fixed parameters of the planner; repeatable."),
     ] = None,
     seed: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Of people and chance; not the suite's.")
+        int,
+        typer.Option(
+            min=0, metavar="N", help="Seed of people and trials; people differ from the suite's."
+        ),
     ] = 1,
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Folder to write; the same one resumes the sweep.")

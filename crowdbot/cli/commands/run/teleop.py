@@ -42,7 +42,7 @@ def teleop(
     ] = None,
     planner_set: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Change the planner; repeatable."),
+        typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
     ] = None,
     port: PagePort = 0,
     open_: OpenPage = False,
@@ -71,7 +71,7 @@ def teleop(
         RecordChoice, typer.Option(help="Sensors to simulate and record.")
     ] = RecordChoice.used,
     references: Annotated[
-        bool, typer.Option(help="Simulate the people alone before, where that is missing.")
+        bool, typer.Option(help="First simulate the people alone, unless done before.")
     ] = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -80,7 +80,7 @@ def teleop(
 ) -> None:
     """Drive a robot yourself: keyboard, mouse, touch or gamepad, in a page on this machine.
 
-    The run keeps to real time and waits while no page is there. Its directory is that of an
+    The run takes real time and waits while no page is open. Its directory is that of an
     ordinary run; your commands are the readings of a joystick in its recording.
 
     Example: crowdbot teleop challenge-2020 counter-d0250-dispersed-c20-r05 --open

@@ -42,7 +42,7 @@ def walk(
     ] = None,
     speed: Annotated[
         float,
-        typer.Option(min=0.1, max=2.5, metavar="M/S", help="Speed of full deflection."),
+        typer.Option(min=0.1, max=2.5, metavar="M/S", help="Your speed at full deflection."),
     ] = 1.4,
     planner: Annotated[
         list[str] | None,
@@ -53,7 +53,7 @@ def walk(
     ] = None,
     planner_set: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Change the planner; repeatable."),
+        typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
     ] = None,
     duration: Annotated[
         float | None,
@@ -70,7 +70,7 @@ def walk(
         RecordChoice, typer.Option(help="Sensors to simulate and record.")
     ] = RecordChoice.used,
     references: Annotated[
-        bool, typer.Option(help="Run robot_alone and crowd_alone where they are missing.")
+        bool, typer.Option(help="First run robot_alone and crowd_alone, unless done before.")
     ] = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -79,7 +79,7 @@ def walk(
 ) -> None:
     """Walk in the crowd yourself, with a body that people and robots see and avoid.
 
-    The run keeps to real time and waits while no page is there. Your own way is not scored, unless
+    The run takes real time and waits while no page is open. Your own way is not scored, unless
     it has a goal.
 
     Example: crowdbot walk challenge-2020 counter-d0250-dispersed-c20-r05 --at 6,0 --open

@@ -37,7 +37,9 @@ def expand(
     as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change every scenario; repeatable."),
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."
+        ),
     ] = None,
 ) -> None:
     """List the scenarios of a suite with their hashes, or print one in full.

@@ -40,6 +40,7 @@ def validate(
     """Check suites and scenarios; report every error with its position.
 
     Example: crowdbot validate challenge-2020 my_suite.yaml
+
     Example: crowdbot validate my_building.yaml --against-image
     """
     form = "json" if as_json else format_.value
