@@ -16,6 +16,10 @@ from crowdbot.core.sensing.projection import (
     BEGIN,
     DOWN,
     END,
+    HIDER,
+    HIDER_HIGH,
+    HIDER_LOW,
+    NEAR,
     NOTHING,
     RAY_X,
     RAY_Y,
@@ -32,7 +36,7 @@ from crowdbot.core.sensing.projection import (
     project_body,
 )
 from crowdbot.core.support.compiling.compile import kernel
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Indices
 
 
 @kernel
@@ -120,13 +124,42 @@ def _in_view(low: float, high: float, slope: Array, farthest: float) -> bool:
 
 
 @kernel
+def _is_hidden(low: float, high: float, first: int, last: int, rays: Array) -> bool:
+    """Return True if nearer plates, as low and as high, hide a plate in the columns [first, last).
+
+    A ray is there at a height between the camera's, 0, and that of what it would hit.
+    """
+    near, hider = rays[NEAR, first:last], rays[HIDER, first:last]
+    lows, highs = rays[HIDER_LOW, first:last], rays[HIDER_HIGH, first:last]
+    for c in range(near.shape[0]):
+        if near[c] < hider[c] or (near[c] < math.inf and (low < lows[c] or high > highs[c])):
+            return False
+    return True
+
+
+@kernel
+def _hide_behind(low: float, high: float, first: int, last: int, rays: Array) -> None:
+    """Let a plate hide what is behind it, where it is nearer than what hid that, or larger."""
+    near, hider = rays[NEAR, first:last], rays[HIDER, first:last]
+    lows, highs = rays[HIDER_LOW, first:last], rays[HIDER_HIGH, first:last]
+    for c in range(near.shape[0]):
+        wider = low <= lows[c] and high >= highs[c]
+        if near[c] < math.inf and (near[c] < hider[c] or hider[c] == math.inf) and wider:
+            hider[c], lows[c], highs[c] = near[c], low, high
+
+
+@kernel
 def _render_walls(
     x: float, y: float, z: float, cos_yaw: float, sin_yaw: float, walls: Array, heights: Array,
-    target: RenderPass,
+    order: Indices, target: RenderPass,
 ) -> None:  # fmt: skip
-    """Render upright plates, seen from a camera at (x, y, z)."""
+    """Render upright plates, seen from a camera at (x, y, z), that nearer ones do not hide.
+
+    Args:
+        order: (S,) the plates, about nearest first.
+    """
     lens, cosines, rays = target.lens, target.cos_azimuth, target.rays
-    for i in range(walls.shape[0]):
+    for i in order:
         px, py, qx, qy = walls[i, 0] - x, walls[i, 1] - y, walls[i, 2] - x, walls[i, 3] - y
         forward0, forward1 = cos_yaw * px + sin_yaw * py, cos_yaw * qx + sin_yaw * qy
         if max(forward0, forward1) < 0.0 or min(forward0, forward1) > lens.farthest:
@@ -137,7 +170,11 @@ def _render_walls(
         left0, left1 = cos_yaw * py - sin_yaw * px, cos_yaw * qy - sin_yaw * qx
         first, last = columns_of_wall(forward0, left0, forward1, left1, lens, cosines.shape[0])
         cross_wall(px, py, qx - px, qy - py, first, last, rays, cosines)
+        if _is_hidden(low, high, first, last, rays):
+            continue
         _render_body(low, high, first, last, target)
+        if low <= 0.0 <= high:
+            _hide_behind(low, high, first, last, rays)
 
 
 @kernel
@@ -177,7 +214,7 @@ def render_depth(
     x: float, y: float, z: float, yaw: float,
     focal: float, column: float, row: float, nearest: float, farthest: float, steps: float,
     slope: Array, cos_azimuth: Array, cos: Array, sin: Array,
-    walls: Array, wall_heights: Array, discs: Array,
+    walls: Array, wall_heights: Array, order: Indices, discs: Array,
     rays: Array, edges: Edges, faces: Image, image: Image,
 ) -> None:  # fmt: skip
     """Render depth along the axis of a level camera: 0 if too near, inf if nothing is in range.
@@ -191,6 +228,7 @@ def render_depth(
         cos, sin: (W,) of the columns' azimuths.
         walls, wall_heights, discs: (S, 4), (S, 2), (D, 5) as in
             `crowdbot.core.sensing.raycast_columns.Obstacles`.
+        order: (S,) the walls, about nearest first.
         rays, edges, faces: scratch as in `RenderPass`.
         image: (H, W) result; whole numbers only if the lens has steps.
     """
@@ -202,7 +240,8 @@ def render_depth(
     for c in range(cos.shape[0]):
         rays[RAY_X, c] = cos_yaw * cos[c] - sin_yaw * sin[c]
         rays[RAY_Y, c] = sin_yaw * cos[c] + cos_yaw * sin[c]
-    _render_walls(x, y, z, cos_yaw, sin_yaw, walls, wall_heights, target)
+        rays[HIDER, c], rays[HIDER_LOW, c], rays[HIDER_HIGH, c] = math.inf, 0.0, 0.0
+    _render_walls(x, y, z, cos_yaw, sin_yaw, walls, wall_heights, order, target)
     _render_discs(x, y, z, cos_yaw, sin_yaw, discs, target)
     if steps > 0.0:
         _finish(image)

@@ -6,6 +6,7 @@ import numpy as np
 
 from crowdbot.core.sensing.depth import render_depth
 from crowdbot.core.sensing.projection import EDGE_ROWS, RAY_ROWS, Image, Lens
+from crowdbot.core.sensing.walls_near import Walls
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import Pinhole
 
@@ -44,8 +45,7 @@ class DepthRenderer:
         image: Image,
         at: tuple[float, float, float],
         yaw: float,
-        walls: Array,
-        wall_heights: Array,
+        walls: Walls,
         discs: Array,
     ) -> None:
         """Write the camera's view of walls, upright cylinders and the floor z = 0.
@@ -56,12 +56,12 @@ class DepthRenderer:
                 with a range below `MOST_MILLIMETRES`.
             at: its position, world frame, m.
             yaw: its heading, world frame, rad.
-            walls, wall_heights: (S, 4), (S, 2), m, as in `crowdbot.core.sensing.scene.Scene`.
+            walls: those that it may see.
             discs: (D, 5) cylinders, as in `crowdbot.core.sensing.body_model`.
         """
         lens = self._lens_mm if image.dtype == np.uint16 else self._lens
         faces = np.empty(self.shape[1], image.dtype)
         render_depth(
-            *at, yaw, *lens, self.slope, self.cos_azimuth, self._cos, self._sin, walls,
-            wall_heights, discs, self._rays, self._edges, faces, image,
+            *at, yaw, *lens, self.slope, self.cos_azimuth, self._cos, self._sin, walls.segments,
+            walls.heights, walls.order, discs, self._rays, self._edges, faces, image,
         )  # fmt: skip

@@ -26,9 +26,10 @@ Image = NDArray[np.float32] | NDArray[np.uint16]
 UP, BEGIN, END, DOWN = range(4)
 EDGE_ROWS = 4
 #: Rows of `RenderPass.rays`, with a column per image column: direction in the world frame; depths
-#: at which the ray enters and leaves a body, m.
-RAY_X, RAY_Y, NEAR, FAR = range(4)
-RAY_ROWS = 4
+#: at which the ray enters and leaves a body, m; depth, bottom and top of the plate that hides what
+#: is behind it, m.
+RAY_X, RAY_Y, NEAR, FAR, HIDER, HIDER_LOW, HIDER_HIGH = range(7)
+RAY_ROWS = 7
 _ROOM = 1e-6  # m; closer points have no projection
 _TOUCH = 1e-12  # m; depth of bodies around the camera
 #: Whole millimetres that mark nothing in range, until an image is finished.

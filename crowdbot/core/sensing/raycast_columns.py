@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from crowdbot.core.geometry.rough_angle import rough_angle
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
-from crowdbot.core.support.compiling.compile import kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: Largest number of bodies per column; the farthest are dropped.
@@ -27,8 +27,11 @@ WORK_COLUMNS = 6
 _TURN = 2.0 * math.pi
 _MARGIN = 1e-9  # rad; columns at the very edge use the exact test
 _WIDE_MARGIN = 3e-5  # rad; larger than the errors of `rough_angle` and `rough_half`
+_ALMOST = 3.141  # rad; almost half a turn
 _BAND = 1e-9  # relative, of squared distances; nearer to a limit the exact distance decides
-#: Number of walls after which the farthest visible distance of level rays is found again.
+#: Rank of bodies that come after all others at the same distance.
+_LAST = -(2**62)
+#: Number of walls after which the farthest visible distance is found again.
 _OFTEN = 16
 #: Ends of a wall are extended by this fraction, so that no ray passes through a corner.
 OVERLAP = 1e-9
@@ -57,7 +60,8 @@ class GridArrays(NamedTuple):
         slope, slope_scale: (R,), (C,).
         work: (C, K, `WORK_COLUMNS`) scratch: the K nearest bodies of each column, nearest first.
         filled: (C,) scratch: number of bodies per column.
-        directions: (2, C) scratch: the columns' directions in the world frame.
+        directions: (5, C) scratch: the columns' directions in the world frame; distance, bottom and
+            top of the plate that hides what is behind it, m.
         runs: (3, 2) scratch.
     """
 
@@ -98,7 +102,7 @@ class RayGrid:
         self.arrays = GridArrays(
             self.azimuth, np.cos(self.azimuth), np.sin(self.azimuth), self.slope,
             self.slope_scale, np.empty((columns, deepest, WORK_COLUMNS)),
-            np.zeros(columns, np.int64), np.empty((2, columns)), np.empty((3, 2), np.int64),
+            np.zeros(columns, np.int64), np.empty((5, columns)), np.empty((3, 2), np.int64),
         )  # fmt: skip
 
     @property
@@ -164,7 +168,7 @@ def _cover(azimuth: Array, low: float, high: float, runs: Indices) -> int:
     while low + turn <= last and count < 3:
         if high + turn >= azimuth[0]:
             begin = _first_from(azimuth, low + turn)
-            end = begin
+            end = max(begin, _first_from(azimuth, high + turn))
             while end < azimuth.shape[0] and azimuth[end] <= high + turn:
                 end += 1
             runs[count, 0], runs[count, 1] = begin, end
@@ -179,20 +183,36 @@ def _insert(
     near: float, far: float, facing: float, low: float, high: float, who: int,
 ) -> None:  # fmt: skip
     """Insert a body into column c, nearest first; equal distances keep the insertion order."""
+    _insert_before(columns, c, near, far, facing, low, high, who, _LAST)
+
+
+@inline_kernel
+def _insert_before(
+    columns: _Columns, c: int,
+    near: float, far: float, facing: float, low: float, high: float, who: int, rank: int,
+) -> None:  # fmt: skip
+    """As `_insert`, but before bodies at the same distance whose owner is below ``rank``."""
     work, filled = columns.work, columns.filled
     n = filled[c]
     if n == work.shape[1]:
-        if near >= work[c, n - 1, NEAR]:
-            return
         n -= 1
-    k = n
-    while k > 0 and work[c, k - 1, NEAR] > near:
-        for column in range(WORK_COLUMNS):
-            work[c, k, column] = work[c, k - 1, column]
-        k -= 1
-    work[c, k, NEAR], work[c, k, FAR], work[c, k, FACING] = near, far, facing
-    work[c, k, LOW], work[c, k, HIGH], work[c, k, WHO] = low, high, who
-    filled[c] = n + 1
+        if not _is_before(near, rank, work[c, n, NEAR], work[c, n, WHO]):
+            n = -1
+    else:
+        filled[c] = n + 1
+    if n >= 0:
+        while n > 0 and _is_before(near, rank, work[c, n - 1, NEAR], work[c, n - 1, WHO]):
+            for column in range(WORK_COLUMNS):
+                work[c, n, column] = work[c, n - 1, column]
+            n -= 1
+        work[c, n, NEAR], work[c, n, FAR], work[c, n, FACING] = near, far, facing
+        work[c, n, LOW], work[c, n, HIGH], work[c, n, WHO] = low, high, who
+
+
+@inline_kernel
+def _is_before(near: float, rank: int, other: float, owner: float) -> bool:
+    """Return True if a body comes before another one of a column."""
+    return near < other or (near == other and owner < rank)
 
 
 @kernel
@@ -244,6 +264,25 @@ def _covered_by(
         turn += _TURN
     start = (begin if turn >= 0.0 else begin + turn) - yaw
     return _cover(azimuth, start - _MARGIN, start + abs(turn) + _MARGIN, runs)
+
+
+@kernel
+def _covered_roughly(
+    px: float, py: float, ex: float, ey: float, yaw: float, azimuth: Array, runs: Indices
+) -> int:
+    """As `_covered_by`, faster, and perhaps with a column more at each end."""
+    if (px == 0.0 and py == 0.0) or (px + ex == 0.0 and py + ey == 0.0):
+        return _covered_by(px, py, ex, ey, yaw, azimuth, runs)
+    begin, end = rough_angle(px, py), rough_angle(px + ex, py + ey)
+    turn = end - begin
+    if turn > math.pi:
+        turn -= _TURN
+    elif turn < -math.pi:
+        turn += _TURN
+    if abs(turn) > _ALMOST:  # on which side it passes is for exact angles to say
+        return _covered_by(px, py, ex, ey, yaw, azimuth, runs)
+    start = (begin if turn >= 0.0 else begin + turn) - yaw
+    return _cover(azimuth, start - _WIDE_MARGIN, start + abs(turn) + _WIDE_MARGIN, runs)
 
 
 @kernel
@@ -300,17 +339,6 @@ def _add_discs(
 
 
 @kernel
-def _farthest(grid: GridArrays) -> float:
-    """Return the distance beyond which level rays see nothing more, m; inf if one sees far."""
-    farthest = 0.0
-    for c in range(grid.filled.shape[0]):
-        if grid.filled[c] == 0:
-            return math.inf
-        farthest = max(farthest, grid.work[c, 0, NEAR])
-    return farthest
-
-
-@kernel
 def fill_columns(
     x: float,
     y: float,
@@ -338,69 +366,93 @@ def fill_columns(
 
 
 @kernel
-def _fill_level(
-    x: float, y: float, yaw: float, z: float, max_range: float, grid: GridArrays,
-    obstacles: Obstacles, order: Indices, bound: Array,
+def _fill_visible(
+    x: float, y: float, z: float, yaw: float, lowest: float, highest: float, max_range: float,
+    grid: GridArrays, obstacles: Obstacles, order: Indices, bound: Array,
 ) -> None:  # fmt: skip
-    """As `fill_columns` for level rays, which see only the nearest body: hidden walls are skipped.
+    """As `fill_columns` for rays from a height ``z``, without walls that nearer ones hide.
 
     Args:
         order, bound: (S,) the walls, nearest first, and lower bounds of their distances, m.
     """
     columns = _turned(grid, yaw)
-    walls, heights, most = obstacles.walls, obstacles.wall_heights, max_range
+    walls, heights, hider = obstacles.walls, obstacles.wall_heights, grid.directions[2]
+    low, high, most = z, z, max_range
+    for c in range(hider.shape[0]):
+        hider[c], grid.directions[3, c], grid.directions[4, c] = math.inf, z, z
+    for i in order:
+        low, high = min(low, heights[i, 0]), max(high, heights[i, 1])
+    low, high = max(low, lowest), min(high, highest)
     for k in range(order.shape[0]):
         i = order[k]
         if bound[k] > most:
             break
-        if heights[i, 0] <= z <= heights[i, 1]:
-            _add_level_wall(x, y, yaw, walls[i], heights[i], -(2 + i), most, max_range, columns)
+        if heights[i, 0] <= highest and heights[i, 1] >= lowest:
+            _add_visible_wall(
+                x, y, z, yaw, walls[i], heights[i], max(heights[i, 0], lowest),
+                min(heights[i, 1], highest), -(2 + i), most, max_range, columns, grid.directions,
+            )  # fmt: skip
         if k % _OFTEN == _OFTEN - 1:
-            most = min(max_range, _farthest(grid) * (1.0 + _BAND))
-    _add_discs(x, y, yaw, z, z, max_range, obstacles.discs, obstacles.owner, columns)
+            most = min(max_range, _farthest(low, high, grid.directions) * (1.0 + _BAND))
+    _add_discs(x, y, yaw, lowest, highest, max_range, obstacles.discs, obstacles.owner, columns)
 
 
 @kernel
-def _add_level_wall(
-    ox: float, oy: float, yaw: float, wall: Array, heights: Array, who: int, most: float,
-    reach: float, columns: _Columns,
-) -> None:  # fmt: skip
-    """Put an upright plate into every column in which it is the nearest one.
+def _farthest(low: float, high: float, directions: Array) -> float:
+    """Return the distance beyond which bodies between two heights are hidden, m; inf: none is."""
+    farthest = 0.0
+    for c in range(directions.shape[1]):
+        if directions[3, c] > low or directions[4, c] < high:
+            return math.inf
+        farthest = max(farthest, directions[2, c])
+    return farthest
 
-    Of plates at the same distance the first in the scene counts, in whatever order they come.
+
+@inline_kernel
+def _add_visible_wall(
+    ox: float, oy: float, oz: float, yaw: float, wall: Array, heights: Array, low: float,
+    high: float, who: int, most: float, reach: float, columns: _Columns, directions: Array,
+) -> None:  # fmt: skip
+    """Insert an upright plate into every column in which no nearer one, as low and high, hides it.
+
+    A ray is there at a height between its origin's and that of what it would hit. Of plates at the
+    same distance the first in the scene comes first, in whatever order they are inserted.
 
     Args:
+        low, high: the part of its heights that rays reach, m.
         most: distance beyond which it is hidden in every column, m.
+        directions: of `GridArrays`.
     """
-    azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
-    work, filled = columns.work, columns.filled
+    cos, sin = columns.cos, columns.sin
+    hider, lows, highs = directions[2], directions[3], directions[4]
     px, py = wall[0] - ox, wall[1] - oy
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
-    length = math.hypot(ex, ey)
-    if length == 0.0:
-        return
-    gap = _gap(px, py, ex, ey)
-    if gap > most:
-        return
-    number = _covered_by(px, py, ex, ey, yaw, azimuth, runs)
-    nearest = gap * (1.0 - _BAND)
+    length, square = 0.0, ex * ex + ey * ey
+    share = min(1.0, max(0.0, -(px * ex + py * ey) / square)) if square > 0.0 else 0.0
+    gx, gy, number = px + share * ex, py + share * ey, 0
+    nearest = math.sqrt(gx * gx + gy * gy) * (1.0 - _BAND) if square > 0.0 else math.inf
+    if nearest <= most:
+        number = _covered_roughly(px, py, ex, ey, yaw, columns.azimuth, columns.runs)
+    swept = px * ey - py * ex
+    surely = abs(swept) * (1.0 - _BAND)
     for run in range(number):
-        for c in range(runs[run, 0], runs[run, 1]):
-            if filled[c] > 0 and work[c, 0, NEAR] < nearest:
+        for c in range(columns.runs[run, 0], columns.runs[run, 1]):
+            hides = lows[c] <= low and highs[c] >= high
+            if hides and hider[c] < nearest:
                 continue
             across = cos[c] * ey - sin[c] * ex
-            if across == 0.0:
+            if across == 0.0 or (hides and surely > hider[c] * abs(across)):
                 continue
-            t = (px * ey - py * ex) / across
+            t = swept / across
             s = (px * sin[c] - py * cos[c]) / across
             if t < 0.0 or t > reach or s < -OVERLAP or s > 1.0 + OVERLAP:
                 continue
-            if filled[c] > 0:
-                now = work[c, 0]
-                if t > now[NEAR] or (t == now[NEAR] and who < now[WHO]):
-                    continue
-                filled[c] = 0
-            _insert(columns, c, t, t, abs(across) / length, heights[0], heights[1], who)
+            if length == 0.0:  # most plates are hidden
+                length = math.hypot(ex, ey)
+            _insert_before(columns, c, t, t, abs(across) / length, heights[0], heights[1], who, who)
+            wider = low <= oz <= high and low <= lows[c] and high >= highs[c]
+            if wider and (t < hider[c] or low < lows[c] or high > highs[c]):
+                hider[c], lows[c], highs[c] = t, low, high
 
 
 @kernel
@@ -458,10 +510,9 @@ def cast_columns(
     grid = GridArrays(azimuth, cos, sin, slope, slope_scale, work, filled, directions, runs)
     lowest, highest = heights_of(z, grid, max_range)
     obstacles = Obstacles(walls, wall_heights, discs, owner)
-    if work.shape[1] == 1 and lowest == highest:
-        _fill_level(x, y, yaw, lowest, max_range, grid, obstacles, order, bound)
-    else:
-        fill_columns(x, y, yaw, lowest, highest, max_range, grid, obstacles)
+    if floor:
+        lowest = max(lowest, min(0.0, z))
+    _fill_visible(x, y, z, yaw, lowest, highest, max_range, grid, obstacles, order, bound)
     wants_incidence, wants_body = incidence.shape[0] > 0, body.shape[0] > 0
     for r in range(slope.shape[0]):
         for c in range(azimuth.shape[0]):

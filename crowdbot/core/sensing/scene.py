@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
@@ -276,7 +277,9 @@ class Scene:
         everything = self._everything
         if not _have_one_origin(origins):
             return cast_rays(origins, directions, max_range, *everything)
-        walls = self._near.near(float(origins[0, 0]), float(origins[0, 1]), max_range)
+        x, y, z = origins[0].tolist()
+        same = bool((origins[:, 2] == z).all())
+        walls = self._near.near(x, y, max_range, z if same else math.nan)
         found = cast_rays(
             origins, directions, max_range, walls.segments, walls.heights, *everything[2:]
         )
@@ -299,7 +302,7 @@ class Scene:
         """
         distance, incidence = np.full(len(rays), np.inf), np.zeros(len(rays))
         body = np.full(len(rays), -1, dtype=np.int64)
-        walls, discs, owner = self._near.near(at[0], at[1], max_range), *self._everything[2:]
+        walls, discs, owner = self._near.near(at[0], at[1], max_range, at[2]), *self._everything[2:]
         cast_tilted_rays(
             *at, turn, np.ascontiguousarray(rays), max_range, walls.segments, walls.heights, discs,
             owner, distance, incidence, body,
@@ -335,7 +338,7 @@ class Scene:
             incidence, body = np.empty(grid.shape), np.empty(grid.shape, dtype=np.int64)
         if distance.size:
             x, y, z = at
-            walls, discs, owner = self._near.near(x, y, max_range), *self._everything[2:]
+            walls, discs, owner = self._near.near(x, y, max_range, z), *self._everything[2:]
             cast_columns(
                 x, y, z, yaw, max_range, floor, *grid.arrays, walls.segments, walls.heights,
                 discs, owner, walls.order, walls.bound, distance, incidence, body,
@@ -379,5 +382,5 @@ class Scene:
         yaw: float,
     ) -> None:
         discs = self._everything.discs
-        walls = self._near.near(at[0], at[1], renderer.reach)
-        renderer.render_depth(image, at, yaw, walls.segments, walls.heights, discs)
+        walls = self._near.near(at[0], at[1], renderer.reach, at[2])
+        renderer.render_depth(image, at, yaw, walls, discs)

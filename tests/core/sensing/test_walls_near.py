@@ -65,6 +65,35 @@ def test_all_readings_are_those_of_all_walls(monkeypatch: pytest.MonkeyPatch) ->
     assert near == _readings()
 
 
+def _rooms() -> Array:
+    """Rooms of 4 m x 5 m with doors, whose walls touch, and a box in each."""
+    walls = []
+    for column in range(6):
+        for row in range(5):
+            x, y = 4.0 * column, 6.5 * row
+            walls += [[x, y, x + 4.0, y], [x, y, x, y + 5.0], [x + 4.0, y, x + 4.0, y + 5.0]]
+            walls += [[x, y + 5.0, x + 1.5, y + 5.0], [x + 2.5, y + 5.0, x + 4.0, y + 5.0]]
+            walls += [[x + 1.0, y + 1.0, x + 1.6, y + 1.0], [x + 1.6, y + 1.0, x + 1.6, y + 1.4]]
+    return np.array(walls)
+
+
+def test_walls_behind_others_are_left_out_and_nothing_changes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    walls = _rooms()
+    heights = np.tile([0.0, 2.5], (len(walls), 1))
+    heights[5::7], heights[6::7] = (0.0, 0.8), (0.0, 0.8)
+    near = WallsNear(walls, heights, len(walls))
+    seen, every = near.near(9.3, 8.2, 10.0, 0.6), near.near(9.3, 8.2, 10.0)
+    assert len(seen.segments) < 0.6 * len(every.segments)
+    assert len(near.near(9.3, 8.2, 10.0, 2.6).segments) == len(every.segments)  # looks over walls
+    monkeypatch.setattr("tests.core.sensing.test_walls_near.WALLS", walls)
+    monkeypatch.setattr("tests.core.sensing.test_walls_near.HEIGHTS", heights)
+    found = _readings()
+    monkeypatch.setattr(module, "_FEW", 10**9)
+    assert found == _readings()
+
+
 def test_level_rays_stop_at_the_walls_of_single_rays() -> None:
     scene = _scene()
     grid = RayGrid(np.linspace(-3.0, 3.0, 181), [0.0])
