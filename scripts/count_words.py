@@ -4,9 +4,9 @@
     python scripts/count_words.py --sentences 100    # random sentences, to be judged
 
 Code blocks are counted apart. Generated is what ``make generate`` and scripts that
-measure write: whole pages, parts between comments, tables of options; on the cards of metrics
-tables of parameters, what the metric declares (symbol, category, units, directions) and the
-picture with its text.
+measure write: whole pages, parts between comments, tables of options and checks; on the cards
+of metrics tables of parameters, what the metric declares (symbol, category, units, directions)
+and the picture with its text.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _BETWEEN = re.compile(
     r"<!-- (?:Table w|W)ritten by make generate.*?-->(.*?)<!-- (?:End|end) of.*?-->", re.DOTALL
 )
 _OPTIONS = re.compile(
-    r"^\| (?:option \| |parameter \| default \| meaning )\|\n(?:\|.*\n)*", re.MULTILINE
+    r"^\| (?:option \| |check \| |parameter \| default \| meaning )\|\n(?:\|.*\n)*", re.MULTILINE
 )
 #: On cards of metrics: rows and cells that are declared, and pictures.
 _DECLARED = re.compile(

@@ -27,6 +27,7 @@ from scripts import (  # noqa: E402
     make_metric_pictures,
     write_author_surface,
     write_commands,
+    write_conformance,
     write_endings,
     write_metric_index,
     write_planner_pages,
@@ -62,6 +63,7 @@ GENERATED: dict[str, Callable[[], Texts]] = {
     "names for plugins": lambda: _page(
         write_author_surface.PAGE, write_author_surface.author_surface_page()
     ),
+    "conformance checks": lambda: _page(write_conformance.PAGE, write_conformance.page()),
     "options of commands": lambda: _page(write_commands.PAGE, write_commands.page()),
     "parameters of planners": write_planner_pages.pages,
     "fields of studies": lambda: _page(write_study_page.PAGE, write_study_page.page()),
