@@ -45,7 +45,11 @@ def place_of(spec: FloorPlanFields) -> Place:
     image = None if spec.image is None else spec.image.file
     words = spec.model_dump_json(exclude={"zones", "portals"})
     stamps = tuple(map(_stamp, (file, image)))
-    return _place_of(words, type(spec), (file, image), stamps, "unit" in spec.model_fields_set)
+    told_unit = "unit" in spec.model_fields_set
+    found = _place_or_problem(words, type(spec), (file, image), stamps, told_unit)
+    if isinstance(found, InputError):
+        raise found.with_traceback(None)
+    return found
 
 
 def _stamp(file: Path | None) -> tuple[int, int]:
@@ -57,16 +61,24 @@ def _stamp(file: Path | None) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=8)
-def _place_of(
+def _place_or_problem(
     words: str,
     model: type[FloorPlanFields],
     files: tuple[Path | None, Path | None],
     stamps: tuple[tuple[int, int], ...],
     told_unit: bool,
-) -> Place:
+) -> Place | InputError:
+    """Return the place, or why there is none: several checks of a document ask for it."""
     del stamps  # part of the cache's key
-    file, image = files
-    spec = model.model_validate_json(words)
+    try:
+        return _place_of(model.model_validate_json(words), *files, told_unit)
+    except InputError as error:
+        return error
+
+
+def _place_of(
+    spec: FloorPlanFields, file: Path | None, image: Path | None, told_unit: bool
+) -> Place:
     name = "wkt" if file is None else file.name
     plan = _read(spec, file, image, name, told_unit)
     small = list[Any]()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -14,11 +16,11 @@ from crowdbot.plugins.planners.shared.near_points_build import NearPoints
 _NOTHING = np.empty((0, 2))
 
 
-def _info(category: str, **more: object) -> SensorInfo:
+def _info(category: str, **more: Any) -> SensorInfo:
     return SensorInfo(
         category=category, frame="", mount=(0.1, 0.0, 0.2, 0.0), rate=8.0, ros_type="",
         **{"shape": (1,), **more},
-    )  # type: ignore[arg-type]  # fmt: skip
+    )  # fmt: skip
 
 
 def _seen(readings: dict[str, Reading]) -> Observation:
