@@ -69,14 +69,14 @@ function probability(p) {
 }
 
 function pairsNote(rows) {
-  if (report.planners.length < 2) return "There is one planner only.";
-  if (!rows.length) return "Comparisons are computed for all runs only: clear the filters of parameters and seeds to see them, and show at least two planners.";
+  if (report.planners.length < 2) return "There is only one planner.";
+  if (!rows.length) return "To see comparisons, clear the filters of parameters and seeds, and show at least two planners.";
   const { tests, alpha, level } = report.stats;
-  return `Mean of the differences over pairs of the same scenario and seed; effect size: the same in standard deviations; in brackets ${level} % intervals. ` +
-    "Undefined, censored and failed runs take part in the probability and the test as far as they are known. " +
-    `p: mean difference, planners exchanged in whole crowd draws, corrected for the ${tests} tests of ${report.stats.family}; there is a verdict where it is at most ${alpha}. ` +
-    "All other scores are detail, and corrected among themselves. Detectable: the mean difference that this number of draws would find in four cases of five. " +
-    "Below it: how many crowd draws would find the difference that was seen, if it is real; where every scenario has a crowd of its own, that many scenarios.";
+  return `Difference: mean over pairs of the same scenario and seed; effect size: the same in standard deviations; in brackets ${level} % intervals. ` +
+    "Undefined, censored and failed runs count as far as they are known. " +
+    `p: chance of a mean difference at least as large between equal planners, corrected for the ${tests} tests of ${report.stats.family}; a verdict needs ${alpha} or less. ` +
+    "All other scores are corrected among themselves. Detectable: the mean difference that this number of draws would find in four cases of five. " +
+    "Below it: how many crowd draws you need to find the difference that was seen; where every scenario has a crowd of its own, that many scenarios.";
 }
 
 /** All scores of one pair: probability that the first is better, with its interval. */

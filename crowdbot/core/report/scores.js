@@ -140,9 +140,9 @@ function silentText(rows) {
 function scoresNote() {
   const { stats } = report;
   const range = selectionName() === null
-    ? "in brackets, in italics, the quartiles of the runs: intervals are computed for all runs and for single values of one parameter, not for this selection"
+    ? "in brackets, in italics, the quartiles of the runs, since this selection has no intervals"
     : `in brackets its ${stats.level} % interval over whole crowd draws`;
-  return `Mean over the runs with a value; where it says so the share of yes, or the rate of all runs together; ${range}. Hatched: runs without a value, which no number beside them counts. Runs in which the planner failed count with the values that they have, and where planners are compared as worse than any other. ${differenceNote()}`;
+  return `Mean of the runs with a value (share: share of yes; rate: rate of all runs together); ${range}. Hatched: runs without a value, which the numbers leave out. In comparisons, runs in which the planner failed are worse than any other. ${differenceNote()}`;
 }
 
 function differenceNote() {

@@ -155,7 +155,7 @@ def _json(found: Sequence[Realism]) -> str:
 def _text(one: Realism) -> str:
     from crowdbot.core.realism.tables import rows
 
-    head = ["", "this crowd", "recorded", "avoid nobody"]
+    head = ["", "this crowd", "recorded", "no avoidance"]
     return (
         f"crowd: {one.line}\nindex {one.index:.2f} (0: ghosts, 1: people), "
         f"score {one.low:.3f} to {one.high:.3f} over draws\n"
