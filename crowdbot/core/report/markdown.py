@@ -102,7 +102,7 @@ def _by_crowd(ranks: CrowdRanks) -> list[str]:
     taus = [(_plain(a), _plain(b), alike(tau)) for (a, b), tau in ranks.taus.items()]
     return [
         "## Crowd by crowd", "", f"By {_plain(ranks.metric)}, the best first.", "",
-        *_table(("crowd", "realism: 0 no avoidance, 1 as recorded people", "order", "pairs"), orders), "",
+        *_table(("crowd", "realism, 0 to 1 as recorded people", "order", "pairs"), orders), "",
         *_table(("crowd", "crowd", "Kendall's tau"), taus), "",
         *(f"- {_plain(v.text)}" for v in ranks.verdicts), "",
     ]  # fmt: skip
