@@ -24,12 +24,13 @@ import numpy as np
 import crowdbot
 from crowdbot.core.registry.build_reference import load_build
 from crowdbot.core.registry.registry import Registry, discover
+from crowdbot.errors import PluginError
 from crowdbot.plugin import NoValidCommand
 
 SPEC = ("challenge-2020", "in-d0500-dispersed-c20-r05")
 PLANNERS = (
     "dwa", "stop_and_go", "rpp", "follow_the_gap", "vfh_plus", "social_force", "orca", "rds",
-    "people_mpc", "crowd_prediction", "mppi", "crowd_model", "oracle",
+    "people_mpc", "crowd_prediction", "mppi", "mpc", "navground", "crowd_model", "oracle",
 )  # fmt: skip
 
 
@@ -77,7 +78,11 @@ def main() -> None:
     registry, first = discover(), 0.0
     print(f"{'planner':18}{'steps':>7}{'median ms':>11}{'p99 ms':>9}{'growth MB':>11}{'ratio':>8}")
     for kind in given.planner or PLANNERS:
-        times, growth = measure(registry, kind, given.steps)
+        try:
+            times, growth = measure(registry, kind, given.steps)
+        except PluginError as error:
+            print(error, flush=True)
+            continue
         median, high = 1e3 * np.median(times), 1e3 * np.percentile(times[1:], 99)
         first = first or median
         print(

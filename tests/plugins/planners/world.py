@@ -25,6 +25,7 @@ from crowdbot.plugin import (
     RobotState,
     Task,
     TiltableMount,
+    Truth,
 )
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.lidar2d_build import Lidar2d
@@ -92,7 +93,11 @@ class World:
         goal: tuple[float, float] = (47.5, 0.0),
         walls: Array = CORRIDOR,
         seed: int = 0,
+        *,
+        told: bool = False,
     ) -> None:
+        """Make the world; a planner is ``told`` the truth if it is to see people as they are."""
+        self.told = told
         self.people = np.array(people, dtype=np.float64).reshape(-1, 4)
         self.present = np.ones(len(self.people), dtype=np.bool_)
         self.scene = Scene(walls, [0.0, 2.5], np.full(len(self.people), PERSON), 1.7)
@@ -135,6 +140,18 @@ class World:
             goal_zone=GOAL_ZONE,
             readings=readings,
             log=lambda name, value: self.outcome.logged.setdefault(name, []).append(value),
+            truth=self._truth() if self.told else None,
+        )
+
+    def _truth(self) -> Truth:
+        v, w = self.twist
+        return Truth(
+            pose=self.pose,
+            velocity=(v * math.cos(self.pose.yaw), v * math.sin(self.pose.yaw), w),
+            people=self.people[:, :2].copy(),
+            people_velocity=self.people[:, 2:].copy(),
+            people_radius=np.full(len(self.people), PERSON),
+            people_id=np.arange(len(self.people)),
         )
 
     def _advance(self, command: Command) -> None:

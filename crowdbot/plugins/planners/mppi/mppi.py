@@ -27,6 +27,9 @@ class MppiSpec(RungSpec):
     samples: Annotated[int, Ge(10), Le(20_000)] = Field(default=2000, description="Rollouts.")
     steps: Annotated[int, Ge(5), Le(200)] = Field(default=56, description="Steps of a rollout.")
     step_time: PositiveDuration = Field(default=0.05, description="Length of a step, s.")
+    noise_time: PositiveDuration = Field(
+        default=0.4, description="Time between draws of noise, which is linear between them, s."
+    )
     speed_noise: PositiveSpeed = Field(
         default=0.2, description="Standard deviation of v and vy, m/s."
     )

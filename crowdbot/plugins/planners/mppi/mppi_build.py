@@ -15,16 +15,22 @@ from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.mppi import rollouts_build as rollouts
 from crowdbot.plugins.planners.mppi.mppi import MppiSpec
+from crowdbot.plugins.planners.shared.braking_build import (
+    AroundRobot,
+    MotionState,
+    can_brake,
+)
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.driven_path_build import driven
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
+from crowdbot.plugins.planners.shared.starts_build import STARTS, starts
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerSurroundings, people_near
 from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED, _BESIDE = 0.1, 0.12
-#: At most this many people are predicted, the nearest.
-_PEOPLE = 30
+#: Time for which a command is held before the robot must be able to brake, s; clearance then, m.
+_HELD, _TOUCH = 0.1, 0.04
 
 
 class Mppi:
@@ -38,7 +44,7 @@ class Mppi:
         self._robot = covering_discs(spec.robot_radius, None)
         self._way = Way(1.0)
         self._p: Array = np.zeros(rollouts.PARAMETERS)
-        self._samples = rollouts.drawn(2, spec.steps, 0)
+        self._samples = self._drawn(2, 0)
         self._next = 0.0
 
     def reset(
@@ -51,13 +57,17 @@ class Mppi:
         self._robot = covering_discs(spec.robot_radius, task.robot)
         self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = _parameters(spec, limits)
-        self._samples = rollouts.drawn(2, spec.steps, 0)
+        self._samples = self._drawn(2, 0)
         around = rollouts.Around(
             np.ones((1, 5)), self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
         )
         rollouts.improve(around, self._p, (0.0,) * 6, self._samples)
         rollouts.shift(self._samples.plan)
-        self._samples = rollouts.drawn(spec.samples, spec.steps, seed)
+        can_brake(
+            AroundRobot(np.ones((1, 5)), np.ones((1, 2)), self._robot), (0.0,) * 6,
+            (0.0, 0.0, 0.0), (limits.a_max, limits.alpha_max), (_HELD, _TOUCH),
+        )  # fmt: skip
+        self._samples = self._drawn(spec.samples, seed)
 
     def step(self, obs: Observation) -> Command:
         """Return the first control of the improved plan; zero at the goal."""
@@ -76,14 +86,39 @@ class Mppi:
         self._p[rollouts.TOP] = top
         aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
         self._field.fill(scene.points, pose.x, pose.y)
-        people = people_near(scene, limits.v_max, spec.steps * spec.step_time, _PEOPLE)
+        people = people_near(scene, limits.v_max, spec.steps * spec.step_time, rollouts.MOST_PEOPLE)
         around = rollouts.Around(people, self._field.values, self._field.corner, self._robot, aim)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
+        self._start(state, aim, top)
         cost = rollouts.improve(around, self._p, state, self._samples)
         obs.log("mppi/cost", min(cost, 100.0))
         obs.draw("plan", driven(self._samples.plan[::2], 2.0 * spec.step_time))
-        v, w, vy = self._samples.plan[0].tolist()
-        return Command(v, w, vy)
+        return self._braking(AroundRobot(people, scene.points, self._robot), state)
+
+    def _drawn(self, samples: int, seed: int) -> rollouts.Samples:
+        spec = self._spec
+        knots = 1 + max(1, round((spec.steps - 1) * spec.step_time / spec.noise_time))
+        return rollouts.drawn(samples, spec.steps, knots, STARTS, seed)
+
+    def _start(self, state: MotionState, aim: tuple[float, float], top: float) -> None:
+        """Write the simple plans that are rolled out beside the noisy ones."""
+        assert self._limits is not None
+        shape = self._spec.steps, 3 if self._limits.vy_max > 0.0 else 2
+        plans = starts(state, aim, self._limits, shape, self._spec.step_time, top)
+        self._samples.simple[:, :, : shape[1]] = plans
+
+    def _braking(self, world: AroundRobot, state: MotionState) -> Command:
+        """Return the first control of the plan, slower where the robot could not stop in time.
+
+        The mean of rollouts that pass on both sides may pass on neither.
+        """
+        assert self._limits is not None
+        v, w, vy = self._samples.plan[1].tolist()  # the first is over when the robot has it
+        slew = self._limits.a_max, self._limits.alpha_max
+        for share in (1.0, 0.5, 0.0):
+            if can_brake(world, state, (share * v, w, share * vy), slew, (_HELD, _TOUCH)):
+                return Command(share * v, w, share * vy)
+        return Command(0.0, 0.0)
 
     def _shift(self, t: float) -> None:
         """Move the plan on to a time, s."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import math
 from typing import Any
 
@@ -16,8 +17,19 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 from crowdbot.testing.drive import COURSES, Driven, sensors_for
 from tests.plugins.planners.world import LIMITS, PERSON, RADIUS, World
 
-KINDS = ["people_mpc", "crowd_prediction", "crowd_model", "mppi", "orca", "social_force"]
+#: Kinds that need a library which is an extra, and where it is.
+EXTRAS = {"mpc": "casadi", "navground": "navground"}
+KINDS: list[Any] = ["people_mpc", "crowd_prediction", "crowd_model", "mppi", "orca", "social_force"]
 KINDS += ["vfh_plus", "follow_the_gap", "rpp"]
+KINDS += [
+    pytest.param(
+        kind,
+        marks=pytest.mark.skipif(
+            importlib.util.find_spec(needs) is None, reason=f"the library {needs} is not installed"
+        ),
+    )
+    for kind, needs in EXTRAS.items()
+]
 SEEING = {"tracks": "tracker", "localisation": "corrected"}
 FAST: dict[str, dict[str, Any]] = {"mppi": {"samples": 300}, "crowd_model": SEEING}
 
@@ -143,20 +155,16 @@ def test_the_robot_radius_of_this_world_is_what_the_planners_assume() -> None:
     assert planner._robot.tolist() == [[0.0, 0.0, RADIUS]]
 
 
-def test_mppi_stops_before_a_wall() -> None:
-    walls = np.array([[5.0, -5.0, 5.0, 5.0], [0.0, -5.0, 0.0, 5.0]])
-    world = World(goal=(9.0, 0.0), walls=walls)
-    out = world.run(made("mppi"), time_limit=8.0, stop_at=8.0)
-    assert out.least_wall_gap > 0.0
-
-
 def test_mppi_draws_its_noise_from_the_seed() -> None:
-    def first(seed: int) -> Command:
+    def sixth(seed: int) -> Command:
         world = World([[5.0, 0.3, -0.5, 0.0]], goal=(9.0, 0.0))
         planner = made("mppi")
         planner.reset(world.task, LIMITS, {n: s.info() for n, s in world.sensors.items()}, seed)
-        command: Command = planner.step(world._observe())
+        for _ in range(6):  # the first plans are the simple ones, whatever the noise
+            command: Command = planner.step(world._observe())
+            for _ in range(8):
+                world._advance(command)
         return command
 
-    assert first(3) == first(3)
-    assert first(3) != first(4)
+    assert sixth(3) == sixth(3)
+    assert sixth(3) != sixth(4)

@@ -1,0 +1,1 @@
+"""Behaviours of the library navground, to compare ours with."""

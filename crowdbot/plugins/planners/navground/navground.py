@@ -1,0 +1,40 @@
+"""navground: behaviours that others wrote, as planners, to check ours against."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration, PositiveLength
+from crowdbot.plugins.planners.shared.rungs import RungSpec
+
+
+class NavgroundSpec(RungSpec):
+    """Needs ``crowdbot[navground]``; defaults are those of our `orca` where it has them."""
+
+    kind: Literal["navground"] = "navground"
+    behavior: Literal["ORCA", "HL", "HRVO", "SocialForce", "Dummy"] = Field(
+        default="ORCA", description="Name of the library's behaviour; `Dummy` drives straight on."
+    )
+    view: PositiveLength = Field(
+        default=5.0, description="People and points farther than this are not shown to it, m."
+    )
+    safety_margin: NonNegativeLength = Field(
+        default=0.05, description="Added to the robot's radius, m."
+    )
+    time_horizon: PositiveDuration = Field(
+        default=2.0, description="Of ORCA: time for which nothing is touched, s."
+    )
+    settings: dict[Annotated[str, Field(max_length=32)], bool | int | float] = Field(
+        default={},
+        description="Other properties of the behaviour by their names there, such as `eta` of HL.",
+    )
+
+
+NAVGROUND = Component(
+    spec=NavgroundSpec,
+    build="crowdbot.plugins.planners.navground.navground_build:build",
+    examples=({"behavior": "HL"},),
+    summary="ORCA, HL, HRVO of the library navground, to check ours (crowdbot[navground])",
+)
