@@ -1,4 +1,4 @@
-"""MPC: a nonlinear program over velocities, people predicted, solved anew in each step."""
+"""MPC: a nonlinear program over velocities, people predicted, solved again in each step."""
 
 from __future__ import annotations
 

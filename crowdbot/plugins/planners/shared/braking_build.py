@@ -14,7 +14,7 @@ from crowdbot.plugin import Array, kernel
 _FINE = 0.1
 #: What is already too near may be passed but not approached, m.
 _SLACK = 1e-3
-#: Of a robot: x, y, yaw, v, w, vy; m, rad, m/s, rad/s, m/s.
+#: State of a robot: x, y, yaw, v, w, vy; m, rad, m/s, rad/s, m/s.
 MotionState = tuple[float, float, float, float, float, float]
 
 
