@@ -15,6 +15,7 @@ from contextlib import suppress
 from typing import Any
 
 from crowdbot.core.live.admission import Admission
+from crowdbot.core.live.foxglove_log import bound_log
 from crowdbot.core.support.loop_thread import LoopThread
 from crowdbot.errors import InputError
 
@@ -44,6 +45,7 @@ class FoxgloveGate:
         """
         self._admission, self._clients = admission, 0
         where = inner_address()
+        bound_log()
         try:
             self.server = start(where)
         except RuntimeError as error:

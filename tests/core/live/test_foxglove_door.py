@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import socket
 import struct
 from collections.abc import Iterator
@@ -112,6 +113,22 @@ def test_what_a_planner_draws_is_a_marker_of_lines() -> None:
         marker = ros.from_cdr(frame[13:], "visualization_msgs/msg/Marker")
         assert (marker.ns, marker.type) == ("tracks", marker.LINE_LIST)
         assert [(p.x, p.y) for p in marker.points] == [(1.0, 2.0), (1.5, 2.0)]
+
+
+def test_what_clients_send_does_not_reach_the_terminal_without_end(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    logger = logging.getLogger("foxglove.websocket.connected_client")
+    monkeypatch.setattr(logger, "filters", [])
+    with _both() as (_, _, socket):
+        for number in range(60):
+            socket.send(json.dumps({"op": f"\x1b[31m{number}"}))
+        until(lambda: len(caplog.records) >= 20)
+        socket.send(json.dumps({"op": "one more"}))
+    texts = [r.getMessage() for r in caplog.records if r.name == logger.name]
+    assert len(texts) == 20
+    assert not any("\x1b" in text for text in texts)
+    assert texts[-1].endswith("are not shown")
 
 
 @pytest.mark.parametrize("encoding", ["json", "cdr"])
