@@ -1,4 +1,4 @@
-"""What Foxglove's server reports about its clients, bounded and without control characters."""
+"""The log of Foxglove's server about its clients, bounded and without control characters."""
 
 from __future__ import annotations
 
