@@ -15,6 +15,7 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 
+from crowdbot.core.robots.convex_piece import is_piece
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
 from crowdbot.core.robots.sdf_frames import written_out
 from crowdbot.core.robots.sdf_nested import without_nested
@@ -271,7 +272,7 @@ def _checked(described: Description) -> Description:
         described.link(joint.parent)
         described.link(joint.child)
     for name, link in described.links.items():
-        if any(shape.tag == "mesh" for shape in collisions(link)):
+        if any(shape.tag == "mesh" and not is_piece(shape) for shape in collisions(link)):
             raise PluginError(
                 f"link '{name}' collides as a mesh; use box, cylinder, sphere or capsule, or "
                 "read the file with read_published"

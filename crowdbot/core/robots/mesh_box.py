@@ -28,15 +28,21 @@ def mesh_box(file: Path, scale: str = "1 1 1") -> tuple[Vector, Vector] | None:
     Raises:
         PluginError: ``scale`` does not consist of numbers.
     """
-    read = {".stl": _stl, ".obj": _obj}.get(file.suffix.lower())
     factors = numbers(scale, "the scale of a mesh")
-    points = np.zeros((0, 3)) if read is None else read(input_bytes(file, LARGEST_TABLE))
-    if not len(points) or len(factors) != 3 or not np.all(np.isfinite(points)):
+    points = mesh_points(file)
+    if points is None or len(factors) != 3:
         return None
     ends = np.stack([points.min(axis=0), points.max(axis=0)]) * factors
     low, high = ends.min(axis=0), ends.max(axis=0)
     sides, centre = np.maximum(high - low, _THINNEST).tolist(), (0.5 * (low + high)).tolist()
     return (sides[0], sides[1], sides[2]), (centre[0], centre[1], centre[2])
+
+
+def mesh_points(file: Path) -> Array | None:
+    """Return the corners (N, 3) of an STL or OBJ file, m; None if there are none."""
+    read = {".stl": _stl, ".obj": _obj}.get(file.suffix.lower())
+    points = np.zeros((0, 3)) if read is None else read(input_bytes(file, LARGEST_TABLE))
+    return points if len(points) and np.all(np.isfinite(points)) else None
 
 
 def _stl(data: bytes) -> Array:

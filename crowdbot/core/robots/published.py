@@ -26,9 +26,10 @@ from crowdbot.core.robots.description import (
 )
 from crowdbot.core.robots.inertia import check_inertia, rolling
 from crowdbot.core.robots.joint import child_of, parent_of
-from crowdbot.core.robots.mesh_box import mesh_box
+from crowdbot.core.robots.mesh_pieces import MeshShape
+from crowdbot.core.robots.mesh_shapes import MeshNotes, simplify_mesh
 from crowdbot.core.robots.sdf_to_urdf import from_sdf
-from crowdbot.core.robots.xml import matrix, name_of, pose_of
+from crowdbot.core.robots.xml import name_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, PluginError, did_you_mean, nearest
 
@@ -57,6 +58,7 @@ def read_published(
     shell: str,
     base: str = "base_link",
     packages: Mapping[str, Path] | None = None,
+    meshes: MeshShape = "boxes",
 ) -> Description:
     """Convert a file that was not written for simulated contacts to a robot's description.
 
@@ -69,7 +71,9 @@ def read_published(
         shell: ``<collision>`` elements for contact with walls, in the base's frame.
         base: the link that sensors are mounted on.
         packages: folders for ``package://NAME/…``. A collision mesh found there (STL or OBJ), or
-            beside the description, becomes its bounding box; others are left out.
+            beside the description, is simplified; others are left out.
+        meshes: what collision meshes become: bounding ``boxes``, convex ``hulls``, or convex
+            ``pieces``, which needs the extra ``meshes`` and is hulls without it.
 
     Returns:
         the description; its `Description.notes` list the simplifications.
@@ -89,7 +93,7 @@ def read_published(
     work.keep_one_tree()
     work.drive_with_two()
     work.hold_joints()
-    work.replace_meshes(lambda name: _find(name, folder, packages or {}))
+    work.replace_meshes(lambda name: _find(name, folder, packages or {}), meshes)
     work.shape_wheels()
     work.weigh()
     work.drop_the_rest()
@@ -214,26 +218,27 @@ class _Work:
             limit.attrib.pop(end, None)
         limit.set("effort", f"{effort:.12g}")
 
-    def replace_meshes(self, find: Callable[[str], Path | None]) -> None:
-        """Replace collision meshes by their bounding boxes, or remove them."""
-        boxed, lost = list[str](), list[str]()
+    def replace_meshes(self, find: Callable[[str], Path | None], shape: MeshShape) -> None:
+        """Replace collision meshes by convex shapes, or remove them."""
+        done = MeshNotes()
+        turned = {child_of(self.joints[name]) for name in self.wheels}
         for link, collision, mesh in _meshes(self.robot):
-            geometry = collision.find("geometry")
-            assert geometry is not None
-            file = find(mesh.get("filename", ""))
-            box = None if file is None else mesh_box(file, mesh.get("scale", "1 1 1"))
-            if box is None:
-                link.remove(collision)
-                lost.append(mesh.get("filename", ""))
+            if shape != "boxes" and name_of(link) in turned:
+                link.remove(collision)  # a wheel gets a sphere
                 continue
-            size, centre = box
-            geometry.remove(mesh)
-            Xml.SubElement(geometry, "box", size=" ".join(f"{x:.9g}" for x in size))
-            _shift(collision, centre)
-            boxed.append(name_of(link))
-        self.note(boxed, "collision mesh becomes the box around it",
+            file = find(mesh.get("filename", ""))
+            if file is None or not simplify_mesh(link, collision, mesh, file, shape, done):
+                link.remove(collision)
+                done.lost.append(mesh.get("filename", ""))
+        self.note(done.boxed, "collision mesh becomes the box around it",
                   "{} collision meshes become the boxes around them")  # fmt: skip
-        self.note(lost, "collision mesh is not there and left out",
+        self.note(done.hulls, "collision mesh becomes its convex hull",
+                  "{} collision meshes become their convex hulls")  # fmt: skip
+        self.note(done.cut, "collision mesh becomes convex pieces",
+                  "{} collision meshes become convex pieces")  # fmt: skip
+        self.note(done.uncut, "collision mesh becomes its convex hull instead of pieces",
+                  "{} collision meshes become their convex hulls instead of pieces")  # fmt: skip
+        self.note(done.lost, "collision mesh is not there and left out",
                   "{} collision meshes are not there and left out")  # fmt: skip
 
     def shape_wheels(self) -> None:
@@ -314,17 +319,6 @@ def _meshes(robot: Xml.Element) -> Iterator[tuple[Xml.Element, Xml.Element, Xml.
             mesh = collision.find("geometry/mesh")
             if mesh is not None:
                 yield link, collision, mesh
-
-
-def _shift(collision: Xml.Element, by: tuple[float, float, float]) -> None:
-    """Move a shape within its own frame from the origin to ``by``."""
-    pose = pose_of(collision)
-    place = matrix(pose) @ (*by, 1.0)
-    origin = collision.find("origin")
-    if origin is None:
-        origin = Xml.SubElement(collision, "origin")
-    origin.set("xyz", " ".join(f"{x:.9g}" for x in place[:3].tolist()))
-    origin.set("rpy", " ".join(f"{x:.12g}" for x in pose[3:]))
 
 
 def _find(name: str, folder: Path | None, packages: Mapping[str, Path]) -> Path | None:

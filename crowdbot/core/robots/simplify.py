@@ -12,17 +12,32 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from copy import deepcopy
+from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
+from crowdbot.core.robots.convex_piece import corners_of, is_piece
 from crowdbot.core.robots.description import Description, Format
-from crowdbot.core.robots.xml import name_of
+from crowdbot.core.robots.xml import matrix, name_of, pose_of
+from crowdbot.core.types.arrays import Array
 
 _DRAKE = "{http://drake.mit.edu}"
 Xml.register_namespace("drake", "http://drake.mit.edu")  # otherwise it would become ns0
 
 
-def simplified(described: Description, driven: Collection[str]) -> str:
-    """Return the text for Drake's parser, in the format of the description.
+class LinkPiece(NamedTuple):
+    """A convex piece of a link, which Drake's parser does not read.
+
+    Attributes:
+        corners: (N, 3) points whose hull it is, in the link's frame, m.
+    """
+
+    link: str
+    name: str
+    corners: Array
+
+
+def simplified(described: Description, driven: Collection[str]) -> tuple[str, list[LinkPiece]]:
+    """Return the text for Drake's parser, in the format of the description, and convex pieces.
 
     Args:
         driven: names of the joints of the driven wheels.
@@ -35,15 +50,27 @@ def simplified(described: Description, driven: Collection[str]) -> str:
             _hold(joint)
     wheels = {joint.child for joint in described.joints.values() if joint.free}
     gripping = {described.joint(name).child for name in driven}
+    pieces = list[LinkPiece]()
     for link in model.findall("link"):
         for visual in link.findall("visual"):
             link.remove(visual)
         for collision in link.findall("collision"):
+            shape = collision.find("geometry/mesh")
+            if shape is not None and is_piece(shape):
+                pieces.append(_piece(link, collision, shape))
+                link.remove(collision)
+                continue
             if name_of(link) in wheels:
                 _round(collision)
             if name_of(link) not in gripping:
                 _let_slide(collision, described.format)
-    return Xml.tostring(_whole(model, described), encoding="unicode")
+    return Xml.tostring(_whole(model, described), encoding="unicode"), pieces
+
+
+def _piece(link: Xml.Element, collision: Xml.Element, shape: Xml.Element) -> LinkPiece:
+    at = matrix(pose_of(collision))
+    placed = corners_of(shape) @ at[:3, :3].T + at[:3, 3]
+    return LinkPiece(name_of(link), name_of(collision), placed)
 
 
 def _whole(model: Xml.Element, described: Description) -> Xml.Element:

@@ -34,6 +34,8 @@ from crowdbot.errors import PluginError
 
 _WALL = CoulombFriction(0.3, 0.3)
 _WALL_THICKNESS = 0.2  # m
+#: Of convex pieces of a robot, as of its other shapes that are no driven wheels.
+_SLIDES = CoulombFriction(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +123,12 @@ def _parse(
     plant: MultibodyPlant, described: Description, driven: tuple[str, ...]
 ) -> ModelInstanceIndex:
     try:
-        text = simplified(described, driven)
+        text, pieces = simplified(described, driven)
         (model,) = Parser(plant).AddModelsFromString(text, described.format)
+        for piece in pieces:
+            body = plant.GetBodyByName(piece.link, model)
+            hull = Convex(points=piece.corners.T, label=piece.name)
+            plant.RegisterCollisionGeometry(body, RigidTransform(), hull, piece.name, _SLIDES)
     except (RuntimeError, ValueError) as error:
         raise PluginError(f"the robot's description cannot be read by Drake: {error}") from error
     return model

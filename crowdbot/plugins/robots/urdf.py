@@ -62,6 +62,12 @@ class UrdfFields(RobotSpec):
     clearance: NonNegativeLength = Field(
         default=0.03, description="Lower edge of the outline above the floor, m."
     )
+    meshes: Literal["boxes", "hulls", "pieces"] = Field(
+        default="boxes",
+        exclude_if=lambda value: value == "boxes",
+        description="What collision meshes beside the file become: boxes around them, convex "
+        "hulls, or convex pieces, for which the extra `meshes` is needed; without it they are hulls.",
+    )
     casters: dict[str, Caster] = Field(default={}, description="Named casters.")
     max_speed: PositiveSpeed = Field(description="Largest |v|, m/s.")
     max_yaw_rate: PositiveAngularSpeed = Field(description="Largest |w|, rad/s.")

@@ -61,7 +61,9 @@ def build_holonomic(spec: HolonomicUrdfSpec) -> RobotModel:
 
 
 def _read(spec: UrdfFields, wheels: Mapping[str, PublishedWheel], shell: str) -> Description:
-    return read_published(spec.file.file, wheels=wheels, shell=shell, base=spec.base)
+    return read_published(
+        spec.file.file, wheels=wheels, shell=shell, base=spec.base, meshes=spec.meshes
+    )
 
 
 def _model(
