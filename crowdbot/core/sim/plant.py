@@ -34,7 +34,7 @@ from crowdbot.errors import PluginError
 
 _WALL = CoulombFriction(0.3, 0.3)
 _WALL_THICKNESS = 0.2  # m
-#: Of convex pieces of a robot, as of its other shapes that are no driven wheels.
+#: Friction of a robot's convex pieces, which slide as all its shapes except driven wheels do.
 _SLIDES = CoulombFriction(0.0, 0.0)
 
 

@@ -66,7 +66,7 @@ class UrdfFields(RobotSpec):
         default="boxes",
         exclude_if=lambda value: value == "boxes",
         description="What collision meshes beside the file become: boxes around them, convex "
-        "hulls, or convex pieces, for which the extra `meshes` is needed; without it they are hulls.",
+        "hulls, or convex pieces, for which the extra `meshes` is needed; else they are hulls.",
     )
     casters: dict[str, Caster] = Field(default={}, description="Named casters.")
     max_speed: PositiveSpeed = Field(description="Largest |v|, m/s.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import util
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
@@ -24,7 +25,8 @@ _L = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.3), (0.3, 0.3), (0.3, 1.0), (0.0, 1.0)]
 _URDF = """\
 <robot name="crane">
   <link name="base_link">
-    <inertial><mass value="10"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <inertial><mass value="10"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
     <collision><origin xyz="0 0 0.2"/><geometry><mesh filename="arm.obj" scale="0.5 0.5 0.5"/>
     </geometry></collision>
   </link>
@@ -52,8 +54,8 @@ def _described(folder: Path, shape: pieces.MeshShape) -> Description:
 
 
 def _hidden(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
-    real = pieces.find_spec
-    monkeypatch.setattr(pieces, "find_spec", lambda name: None if name in names else real(name))
+    real = util.find_spec
+    monkeypatch.setattr(util, "find_spec", lambda name: None if name in names else real(name))
 
 
 def test_a_hull_is_in_the_text_and_needs_no_file(tmp_path: Path) -> None:

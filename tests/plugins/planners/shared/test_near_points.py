@@ -47,7 +47,7 @@ def test_a_camera_shows_what_hangs_at_the_robot_s_height_and_not_the_floor() -> 
     near = NearPoints(
         {"camera": _info("camera", shape=(30, 40), camera=camera, range_min=0.3, range_max=8.0)}
     )
-    floor = np.full((30, 40), np.inf, np.float32)
+    floor = np.full((30, 40), np.inf)
     rows = np.arange(30)
     down = (rows - 14.5) / 35.0
     floor[down > 0] = (0.2 / down[down > 0])[:, None]
@@ -57,7 +57,7 @@ def test_a_camera_shows_what_hangs_at_the_robot_s_height_and_not_the_floor() -> 
     points = near(_seen({"camera": Reading(0.0, gate)}), _NOTHING)
     assert len(points) == 40
     np.testing.assert_allclose(points[:, 0], 1.1)
-    lintel = np.where(down < -0.35, np.float32(1.0), np.float32(np.inf))[:, None] * np.ones(40)
+    lintel = np.where(down < -0.35, 1.0, np.inf)[:, None] * np.ones(40)
     assert len(near(_seen({"camera": Reading(0.0, lintel)}), _NOTHING)) == 0
 
 
