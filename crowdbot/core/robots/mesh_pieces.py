@@ -3,8 +3,8 @@
 Source of the decomposition: Wei, Liu, Ling, Su, "Approximate convex decomposition for 3D meshes
 with collision-aware concavity and tree search", ACM Transactions on Graphics 41(4), 2022; the
 authors' library coacd does it. The same mesh gives the same pieces: the seed is fixed, and pieces
-are sorted and rounded. They are kept in the user's cache by the content of the mesh, since cutting it takes
-seconds.
+are sorted and rounded. They are kept in the user's cache by the content of the mesh, since cutting
+it takes seconds.
 """
 
 from __future__ import annotations
