@@ -11,7 +11,7 @@ import pytest
 from crowdbot.core.campaign.sweep import search as sweeping
 from crowdbot.core.campaign.sweep.axes import ParameterAxis, Trial, parse_axes, run_trials
 from crowdbot.core.campaign.sweep.page import as_json, render, sensitivities, verdict
-from crowdbot.core.campaign.sweep.search import Sweep, SweepRequest, Tried, known_metric
+from crowdbot.core.campaign.sweep.search import Sweep, SweepRequest, Tried, known_metric, search
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.errors import InputError, UnknownNameError, UsageError
@@ -134,3 +134,16 @@ def test_scores_need_a_direction() -> None:
     assert known_metric(registry, "push_work") == ("rate", "lower")
     with pytest.raises(UnknownNameError):
         known_metric(registry, "safe_eficiency")
+
+
+def test_a_wrong_parameter_ends_it_before_anything_runs(tmp_path: Path) -> None:
+    unknown, negative = (parse_axes([f"{text}=-1..1"]) for text in ("marginn", "margin"))
+    with pytest.raises(InputError, match="no parameter 'marginn'; did you mean 'margin'"):
+        search(request(tmp_path / "new", axes=unknown), discover(allow=()), fail)
+    with pytest.raises(InputError, match="margin: Input should be greater"):
+        search(request(tmp_path / "new", axes=negative), discover(allow=()), fail)
+    assert not (tmp_path / "new").exists()
+
+
+def fail(plan: object, title: str) -> Any:
+    pytest.fail(f"{title}: {plan}")

@@ -12,6 +12,7 @@ from crowdbot.core.campaign.plan import Plan, make_plan
 from crowdbot.core.campaign.request import CampaignRequest
 from crowdbot.core.campaign.run import State
 from crowdbot.core.campaign.sweep.axes import How, ParameterAxis, Trial, run_trials
+from crowdbot.core.planning.given_planner import choose_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.results.results import Results
 from crowdbot.core.scenarios.library import open_document, suite_names
@@ -111,6 +112,7 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
         InputError: the folder holds another sweep.
         CrowdbotError: suite, planner or a parameter is wrong.
     """
+    _check_parameters(request, registry)
     _claim(request)
     rounds = {
         name: _Round(request, registry, execute, name, request.seed + i)
@@ -144,6 +146,18 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
         usual = rounds[_CHECK].again(usual, "check of the defaults")
     _write(request, checked)
     return Sweep(request=request, tried=tuple(checked), usual=usual)
+
+
+def _check_parameters(request: SweepRequest, registry: Registry) -> None:
+    """Check the values of each axis by itself, before anything runs.
+
+    Raises:
+        CrowdbotError: the planner has no such parameter, or it cannot have such a value.
+    """
+    for axis in request.axes:
+        for value in axis.values or (axis.at(0.0), axis.at(1.0)):
+            settings = [*request.settings, f"{axis.name}={value}"]
+            choose_planner(request.planner, registry, settings)
 
 
 def words(trial: Trial) -> str:
