@@ -22,8 +22,9 @@ def build_environment(registry: Registry, spec: EnvironmentSpec) -> EnvironmentP
         PluginError: it cannot be built, or its tables do not fit each other.
     """
     parts = registry.build(spec, checked_parts)
-    friction = spec.floor.friction
-    return parts if friction == 1.0 else replace(parts, floor_friction=friction)
+    if spec.floor.friction == 1.0 and spec.light is None:
+        return parts
+    return replace(parts, floor_friction=spec.floor.friction, light=spec.light)
 
 
 def checked_parts(parts: object) -> EnvironmentParts:

@@ -18,6 +18,7 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.spec.component_specs import SceneLight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,12 +63,21 @@ def solids_of(
     whom = parts.stops_robot.astype(int) + 2 * parts.stops_crowd
     walls = np.column_stack([parts.walls, parts.wall_heights, whom])[lines & (whom > 0)]
     solids = zip(parts.solids, parts.solid_heights.tolist(), strict=True)
+    light = {} if parts.light is None else {"light": _light(parts.light)}
     return {
+        **light,
         "walls": _short(walls),
         "pillars": _short(np.column_stack([parts.pillars, parts.pillar_heights])),
         "blocks": [[_short(outline), bottom, top] for outline, (bottom, top) in solids],
         "robots": [_robot(model, sensors) for model, sensors in robots.values()],
         "people": None if people is None else _people(people),
+    }
+
+
+def _light(light: SceneLight) -> dict[str, Any]:
+    return {
+        "towards": [round(x, 4) for x in light.towards_sun],
+        **light.model_dump(include={"sun", "ambient", "colour", "sky"}),
     }
 
 

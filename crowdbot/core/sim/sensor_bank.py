@@ -35,6 +35,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel, RobotState
 from crowdbot.core.types.sensor import Reading, SensorInfo
+from crowdbot.dsl.spec.component_specs import SceneLight
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,7 +297,7 @@ def add_sensors(
         seed=seed,
         robot=built.name,
         writer=writer,
-        renderers=_renderers(built.infos, scene, others.models),
+        renderers=_renderers(built.infos, scene, others.models, built.parts.light),
     )
     builder.AddNamedSystem("sensors", bank)
     builder.Connect(robot.port, bank.GetInputPort(ports.ROBOT_STATE))
@@ -322,8 +323,9 @@ def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[RobotMo
 
 
 def _renderers(
-    infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[RobotModel]
-) -> dict[str, Graphics]:
+    infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[RobotModel],
+    light: SceneLight | None,
+) -> dict[str, Graphics]:  # fmt: skip
     """Return renderers of cameras with colour, for which VTK is loaded."""
     cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
     if not cameras:
@@ -331,7 +333,7 @@ def _renderers(
     from crowdbot.core.sim.cameras.rendering import Renderer
 
     return {
-        n: Renderer(scene, i.camera, i.mount, i.tilt, others)
+        n: Renderer(scene, i.camera, i.mount, i.tilt, others, light)
         for n, i in cameras.items()
         if i.camera
     }

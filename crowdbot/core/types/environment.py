@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.spec.component_specs import SceneLight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +33,7 @@ class EnvironmentParts:
             leave on one side return on the other, m; else None.
         left_out: outlines (K, 2) of what is too small to be kept, m: drawn, and nothing else.
         floor_friction: coefficient of a tyre on the floor; core takes it from the spec.
+        light: of the scene; None: the usual one. Core takes it from the spec.
     """
 
     walls: Array
@@ -48,6 +50,7 @@ class EnvironmentParts:
     periodic_boundary: tuple[float, float, float, float] | None = None
     left_out: tuple[Array, ...] = ()
     floor_friction: float = 1.0
+    light: SceneLight | None = None
 
     def __post_init__(self) -> None:
         if not len(self.solids_stop_crowd):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from annotated_types import MinLen
 from pydantic import BeforeValidator, Field, model_validator
 
+from crowdbot.dsl.spec.quantities import Angle
 from crowdbot.dsl.spec.reading_errors import ReadingError
 from crowdbot.dsl.spec.spec import ComponentSpec, Rectangle, Spec
 
@@ -50,6 +52,35 @@ class FloorContact(Spec):
     )
 
 
+class SceneLight(Spec):
+    """Light of a scene, in colour images and in the view in three dimensions only."""
+
+    elevation: Angle = Field(
+        default=math.radians(54.2), ge=0.0, le=math.pi / 2, description="Of the sun, rad."
+    )
+    azimuth: Angle = Field(
+        default=math.radians(-123.7), description="Direction in which the sun is, from x, rad."
+    )
+    sun: float = Field(default=1.0, ge=0.0, le=3.0, description="Strength of the sun; 1: usual.")
+    ambient: float = Field(
+        default=1.0, ge=0.0, le=3.0, description="Strength of the light from all sides; 1: usual."
+    )
+    colour: str = Field(
+        default="#ffffff", pattern=r"^#[0-9a-fA-F]{6}$", description="Of the sunlight, `#rrggbb`."
+    )
+    sky: str = Field(
+        default="#bfd9f2", pattern=r"^#[0-9a-fA-F]{6}$", description="Of the sky, `#rrggbb`."
+    )
+
+    @property
+    def towards_sun(self) -> tuple[float, float, float]:
+        """Return the unit vector to the sun, world frame."""
+        flat = math.cos(self.elevation)
+        return (
+            flat * math.cos(self.azimuth), flat * math.sin(self.azimuth), math.sin(self.elevation),
+        )  # fmt: skip
+
+
 class EnvironmentSpec(ComponentSpec):
     """Abstract environment.
 
@@ -66,6 +97,11 @@ class EnvironmentSpec(ComponentSpec):
         default=FloorContact(),
         exclude_if=lambda floor: floor == FloorContact(),
         description="How wheels grip the floor; outside the hash while it is as usual.",
+    )
+    light: SceneLight | None = Field(
+        default=None,
+        exclude_if=lambda light: light is None,
+        description="Light of the scene; unset: that of a bright day, and outside the hash.",
     )
 
     def place(self) -> Place | None:

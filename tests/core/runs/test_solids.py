@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 
 import numpy as np
+import pytest
+from pydantic import ValidationError
 
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.registry.registry import discover
@@ -13,6 +15,7 @@ from crowdbot.core.runs.solids import SolidPeople, solid_people, solids_of
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.types.sensor import Pinhole, SensorInfo
+from crowdbot.dsl.spec.component_specs import SceneLight
 from tests.paths import DATA
 
 
@@ -48,3 +51,18 @@ def test_people_who_differ_are_told_one_by_one() -> None:
     found = solids_of(parts, {}, people)
     assert found["people"] == {"height": [1.7, 1.2], "look": ["", "child"]}
     assert solids_of(parts, {}, None)["people"] is None
+
+
+def test_light_is_told_where_a_scenario_has_it_and_changes_no_hash_where_not() -> None:
+    registry = discover()
+    scenario = pick(open_spec(str(DATA / "short_way.yaml"), registry), None)
+    assert "light" not in scenario.environment.model_dump(mode="json")
+    assert "light" not in solids_of(build_environment(registry, scenario.environment), {}, None)
+    dusk = SceneLight(elevation=0.0, azimuth=np.pi / 2, sun=0.5, colour="#ff8800")
+    lit = scenario.environment.model_copy(update={"light": dusk})
+    assert lit.model_dump(mode="json")["light"]["sun"] == 0.5
+    light = solids_of(build_environment(registry, lit), {}, None)["light"]
+    assert light["towards"] == [0.0, 1.0, 0.0]
+    assert (light["sun"], light["ambient"], light["colour"]) == (0.5, 1.0, "#ff8800")
+    with pytest.raises(ValidationError, match="pattern"):
+        SceneLight(sky="blue")

@@ -19,6 +19,7 @@ from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.cameras.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.sim.cameras.rendering import Renderer, check_egl
+from crowdbot.dsl.spec.component_specs import SceneLight
 from crowdbot.errors import MissingLibraryError
 from crowdbot.plugin import Pose, RobotModel, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
@@ -237,3 +238,17 @@ def test_a_run_that_cannot_draw_ends_before_it_starts(
         check_egl.cache_clear()
     assert "colour images need EGL" in capsys.readouterr().err
     assert not (tmp_path / "runs").exists()
+
+
+def test_light_changes_how_bright_the_picture_is_and_nothing_else() -> None:
+    scene = _scene(pillars=[[4.5, 2.2, 0.3]])
+    info = build(SPEC, context()).info()
+    assert info.camera is not None
+    lights = None, SceneLight(), SceneLight(sun=0.1, ambient=0.2, sky="#101018")
+    pictures = [
+        Renderer(scene, info.camera, info.mount, info.tilt, (), light)(scene, POSE).astype(float)
+        for light in lights
+    ]
+    assert np.abs(pictures[0] - pictures[1]).mean() < 2.0  # the usual light, written out
+    assert pictures[2].mean() < 0.4 * pictures[0].mean()
+    assert np.allclose(pictures[2][0, 0], [16, 16, 24], atol=3)

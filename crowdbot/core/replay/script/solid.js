@@ -15,6 +15,8 @@ function makeSolid(canvas, run, bounds) {
   const sky = new THREE.HemisphereLight(0xffffff, 0x9a958a, 3.1);
   const sun = new THREE.DirectionalLight(0xffffff, 1.8);
   sun.position.set(3, 10, 5);
+  const { light } = run.solids;
+  if (light) lightUp(light, sun, sky);
   scene.add(sky, sun);
   const rig = new THREE.Group();
   const camera = new THREE.PerspectiveCamera(50, 1, 0.05, 300);
@@ -34,10 +36,20 @@ function makeSolid(canvas, run, bounds) {
   return solid;
 }
 
+/** Sets direction, strength and colour of a scenario's light; z is up in the world, y in the scene. */
+function lightUp(light, sun, sky) {
+  const [x, y, z] = light.towards;
+  sun.position.set(10 * x, 10 * z, -10 * y);
+  sun.intensity *= light.sun;
+  sun.color.set(light.colour);
+  sky.intensity *= light.ambient;
+}
+
 /** Takes over the colours of the style sheet. */
-function paintSolid({ scene, parts }) {
+function paintSolid({ scene, parts, run }) {
   const colour = (name) => new THREE.Color(colours[name]);
-  const sky = colour("floor").lerp(colour("accent"), 0.18);
+  const { light } = run.solids;
+  const sky = light ? new THREE.Color(light.sky) : colour("floor").lerp(colour("accent"), 0.18);
   scene.background = sky;
   scene.fog = new THREE.Fog(sky, 25, 90);
   parts.floor.material.color = colour("grid-strong");

@@ -50,6 +50,7 @@ from crowdbot.core.sim.cameras.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import Pinhole
+from crowdbot.dsl.spec.component_specs import SceneLight
 from crowdbot.dsl.spec.spec import Mount
 from crowdbot.errors import MissingLibraryError
 
@@ -78,6 +79,7 @@ class Renderer:
         mount: tuple[float, float, float, float],
         tilt: tuple[float, float] = (0.0, 0.0),
         robots: Sequence[RobotModel] = (),
+        light: SceneLight | None = None,
     ) -> None:
         """Build the scene for VTK.
 
@@ -87,6 +89,7 @@ class Renderer:
             mount: x, y, z, yaw from base_link, m and rad.
             tilt: roll and pitch of the mount, rad.
             robots: appearance of the other robots in the scene.
+            light: of the scene; None: a bright day.
 
         Raises:
             MissingLibraryError: this machine cannot draw.
@@ -96,7 +99,7 @@ class Renderer:
         self._mount = Mount(x=x, y=y, z=z, yaw=yaw)
         self._tilt = tilt
         self._graph = SceneGraph()
-        self._graph.AddRenderer(_NAME, MakeRenderEngineVtk(_parameters()))
+        self._graph.AddRenderer(_NAME, MakeRenderEngineVtk(_parameters(light)))
         self._source = self._graph.RegisterSource("crowdbot")
         self._scenery(scene)
         self._people = self._crowd(scene)
@@ -231,7 +234,9 @@ def _mesh(text: str) -> Mesh:
     return Mesh(InMemoryMesh(mesh_file=MemoryFile(text.encode(), ".obj", "person")))
 
 
-def _parameters() -> RenderEngineVtkParams:
+def _parameters(light: SceneLight | None = None) -> RenderEngineVtkParams:
+    if light is not None:
+        return _lit(light)
     sun = LightParameter(
         type="directional", frame="world", direction=[0.4, 0.6, -1.0], intensity=0.8
     )
@@ -243,6 +248,24 @@ def _parameters() -> RenderEngineVtkParams:
         type="directional", frame="world", direction=[-0.5, -0.7, -0.3], intensity=0.35
     )
     return RenderEngineVtkParams(lights=[sun, lamp, sky], default_clear_color=_SKY, backend="EGL")
+
+
+def _lit(light: SceneLight) -> RenderEngineVtkParams:
+    """Return the same lights, with strengths, colour and direction of a scene's light."""
+    sun = LightParameter(
+        type="directional", frame="world", direction=[-x for x in light.towards_sun],
+        intensity=0.8 * light.sun, color=Rgba(*_rgb(light.colour), 1.0),
+    )  # fmt: skip
+    lamp = LightParameter(
+        type="directional", frame="camera", direction=[0.0, 0.3, 1.0], intensity=0.5 * light.ambient
+    )
+    sky = LightParameter(
+        type="directional", frame="world", direction=[-0.5, -0.7, -0.3],
+        intensity=0.35 * light.ambient,
+    )  # fmt: skip
+    return RenderEngineVtkParams(
+        lights=[sun, lamp, sky], default_clear_color=np.array(_rgb(light.sky)), backend="EGL"
+    )
 
 
 def _render_camera(camera: Pinhole) -> ColorRenderCamera:
