@@ -30,7 +30,7 @@ def print_by_planner(lines: Sequence[dict[str, Any]]) -> None:
     for part in _parts(lines, planners, console.width):
         console.print(_table(lines, part))
     if any(_without(line) for line in lines):
-        say("in brackets: 95 %; +2: runs without a value; crowdbot results --details counts them")
+        say("in brackets: 95 %; +N: N runs without a value; crowdbot results --details counts them")
 
 
 def _parts(lines: Sequence[dict[str, Any]], planners: list[str], width: int) -> Iterator[list[str]]:

@@ -64,5 +64,6 @@ def lines_of(crowds: Iterable[tuple[str, str]]) -> list[str]:
 
 def _line(name: str, row: Mapping[str, Any]) -> str:
     return (
-        f"{name}, realism {row['score']:.2f} (real {row['ceiling']:.2f}, ghosts {row['floor']:.2f})"
+        f"{name}, realism {row['score']:.2f} "
+        f"(recorded people {row['ceiling']:.2f}, no avoidance {row['floor']:.2f})"
     )

@@ -70,7 +70,7 @@ class Realism:
         """Return one line for the head of a report."""
         return (
             f"{self.name}, realism {self.score:.2f} "
-            f"(real {self.ceiling:.2f}, ghosts {self.floor:.2f})"
+            f"(recorded people {self.ceiling:.2f}, no avoidance {self.floor:.2f})"
         )
 
     def as_json(self) -> dict[str, Any]:

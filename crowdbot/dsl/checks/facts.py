@@ -77,7 +77,7 @@ class Facts:
             if not (x0 - gap <= x <= x1 + gap and y0 - gap <= y <= y1 + gap):
                 at = f"({x:g}, {y:g})"
                 text = f"{what.replace('{at}', at)} lies outside the environment's zones"
-                hint = f"they reach from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+                hint = f"they reach from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}); add a zone around it"
                 yield Diagnostic("E132", text, self.mark(*path), hint)
                 return
 

@@ -86,7 +86,7 @@ def test_what_cannot_have_other_crowds_is_refused() -> None:
 def test_lines_of_a_report() -> None:
     (line,) = lines_of([("calibrated", ""), ("calibrated", "")])
     assert line.startswith("calibrated, realism 0.8")
-    assert "ghosts 0.5" in line
+    assert "no avoidance 0.5" in line
     assert lines_of([("", "0" * 16), ("", "1" * 16)]) == [
         "2 crowds whose realism was not measured; measure it with crowdbot realism SUITE"
     ]

@@ -157,7 +157,7 @@ def _text(one: Realism) -> str:
 
     head = ["", "this crowd", "recorded", "no avoidance"]
     return (
-        f"crowd: {one.line}\nindex {one.index:.2f} (0: ghosts, 1: people), "
+        f"crowd: {one.line}\nindex {one.index:.2f} (0: no avoidance, 1: recorded people), "
         f"score {one.low:.3f} to {one.high:.3f} over draws\n"
         + (f"covers {one.coverage}\n" if one.coverage else "")
         + table([head, *rows(one)])
