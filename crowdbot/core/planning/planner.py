@@ -42,6 +42,9 @@ class Truth:
         people_velocity: (N, 2), m/s.
         people_radius: (N,) radius of each person's disc, m.
         people_id: (N,) a person's number, constant in a run.
+        people_notice: (N,) time to contact from which a person responds to a robot that moves, s:
+            infinite for people who notice as soon as it is within sight, 0 for those who never do
+            and for robots; empty if it is not known.
     """
 
     pose: Pose
@@ -50,6 +53,7 @@ class Truth:
     people_velocity: Array
     people_radius: Array
     people_id: NDArray[np.int64]
+    people_notice: Array = field(default_factory=lambda: np.zeros(0))
 
     def copy(self) -> Truth:
         """Return a copy with its own read-only arrays."""

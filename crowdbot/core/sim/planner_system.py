@@ -20,6 +20,7 @@ from pydrake.systems.framework import (
 )
 
 from crowdbot.core.crowd import state as crowd_state
+from crowdbot.core.crowd.response.notice import notice_time
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import (
@@ -52,12 +53,14 @@ class People:
     """All people who may be met, with number and radius, including those not present yet.
 
     Attributes:
+        notice: (N,) time to contact from which they respond to a robot that moves, s.
         robots: (R,) how far the other robots reach, m; they stand among the people,
             numbered -2, -3, ….
     """
 
     id: NDArray[np.int64]
     radius: Array
+    notice: Array = field(default_factory=lambda: np.zeros(0))
     robots: Array = field(default_factory=lambda: np.zeros(0))
 
     def truth(
@@ -76,13 +79,14 @@ class People:
             _, people = crowd_state.view(crowd)
             there = people[:, crowd_state.WAITING] == crowd_state.PRESENT
             rows = people[there, crowd_state.X : crowd_state.VY + 1]
-        radius, ids = self.radius[there], self.id[there]
+        radius, ids, notice = self.radius[there], self.id[there], self.notice[there]
         here = [k for k, other in enumerate(others) if other is not None]
         if here:
             met = [(o.x, o.y, o.vx, o.vy) for o in others if o is not None]
             rows = np.concatenate([rows, np.array(met)])
             radius = np.concatenate([radius, self.robots[here]])
             ids = np.concatenate([ids, -2 - np.array(here, np.int64)])
+            notice = np.concatenate([notice, np.zeros(len(here))])
         return Truth(
             pose=Pose(robot.x, robot.y, robot.yaw),
             velocity=(robot.vx, robot.vy, robot.w),
@@ -90,6 +94,7 @@ class People:
             people_velocity=rows[:, 2:],
             people_radius=radius,
             people_id=ids,
+            people_notice=notice,
         )
 
 
@@ -294,5 +299,6 @@ def add_planner(
 def _people(crowd: CrowdSystem | None, others: Sequence[RobotModel]) -> People:
     reach = np.array([footprint_of_model(model).reach for model in others])
     if crowd is None:
-        return People(np.zeros(0, np.int64), np.zeros(0), reach)
-    return People(crowd.engine.agents.id, crowd.engine.agents.radius, reach)
+        return People(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), reach)
+    agents = crowd.engine.agents
+    return People(agents.id, agents.radius, notice_time(agents, crowd.engine.world.response), reach)

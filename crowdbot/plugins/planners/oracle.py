@@ -1,62 +1,55 @@
-"""Oracle: predicts the true people's motion under each possible command."""
+"""Oracle: plans with the truth, among people who walk and give way as those of the crowd do."""
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
-from annotated_types import Ge, Gt, Le
 from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
     NonNegativeLength,
+    NonNegativeSpeed,
     PlannerRole,
-    PlannerSpec,
     PositiveDuration,
-    PositiveLength,
 )
+from crowdbot.plugins.planners.crowd_prediction.crowd_prediction import CrowdPredictionSpec
+from crowdbot.plugins.planners.people_mpc.people_mpc import Weight
 
-Weight = Annotated[float, Ge(0)]
 
+class OracleSpec(CrowdPredictionSpec):
+    """Plans as `people_mpc`; knows where people are, how wide, and who notices the robot when.
 
-class OracleSpec(PlannerSpec):
-    """Knows the position and velocity of all people; uses its lidar for walls."""
+    People are predicted by the crowd engine as if the robot was not there. In each plan those who
+    notice it then give way.
+    """
 
     role: ClassVar[PlannerRole] = "ceiling"
     privileged: ClassVar[bool] = True
-    needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
-    kind: Literal["oracle"] = "oracle"
-    robot_radius: PositiveLength | None = Field(
-        default=None, description="Radius of the robot, m; unset: the robot's own outline."
-    )
-    speed: Annotated[float, Gt(0), Le(1)] = Field(
-        default=1.0, description="Cruising speed as a fraction of the robot's largest."
-    )
-    window: PositiveDuration = Field(
-        default=0.5, description="Candidates are the velocities reachable in this time, s."
-    )
-    speeds: Annotated[int, Ge(2), Le(32)] = Field(default=6, description="Candidate speeds.")
-    yaw_rates: Annotated[int, Ge(3), Le(64)] = Field(default=17, description="Candidate yaw rates.")
-    horizon: PositiveDuration = Field(default=2.5, description="Length of a rollout, s.")
-    turn_time: PositiveDuration = Field(
-        default=1.0, description="Time on the arc; the rest of a rollout turns to the goal, s."
+    kind: Literal["oracle"] = "oracle"  # type: ignore[assignment]
+    tracks: Literal["truth"] = Field(default="truth", description="People: the truth.")
+    localisation: Literal["truth"] = Field(
+        default="truth", description="The robot's pose: the truth."
     )
     margin: NonNegativeLength = Field(
-        default=0.05, description="Clearance below which a rollout counts as a hit, m."
+        default=0.02, description="Clearance below which a plan counts as a hit, m."
     )
-    comfort: PositiveLength = Field(
-        default=0.6, description="Clearance above which more is no better, m."
+    margin_growth: NonNegativeSpeed = Field(
+        default=0.0, description="Clearance to people lost to doubt, m/s."
     )
-    progress: Weight = Field(default=1.0, description="Weight of way made to the goal.")
-    heading: Weight = Field(default=0.4, description="Weight of the heading after the arc.")
-    clearance: Weight = Field(default=0.2, description="Weight of the closest approach.")
-    impact: Weight = Field(default=1.0, description="Weight of an early and fast predicted hit.")
-    smoothness: Weight = Field(default=0.05, description="Weight of a change of command.")
+    hurry: Weight = Field(
+        default=1.0,
+        description="Weight of the time in which the robot would reach a person who stood still "
+        "within the headway.",
+    )
+    headway: PositiveDuration = Field(
+        default=0.5, description="That time to a person who stands still, s."
+    )
 
 
 ORACLE = Component(
     spec=OracleSpec,
     build="crowdbot.plugins.planners.oracle_build:build",
-    summary="rolls the true people forward under each command, privileged",
+    summary="plans with the truth among people who give way in each plan, privileged",
 )

@@ -5,19 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from crowdbot.core.registry.build_reference import load_build
-from crowdbot.plugin import Array, Observation, Pose, Truth
-from crowdbot.plugins.planners import oracle_rollout_build as rollout
+from crowdbot.plugin import Observation, Pose, Truth
 from crowdbot.plugins.planners.oracle import ORACLE, OracleSpec
 from crowdbot.plugins.planners.oracle_build import build
+from crowdbot.plugins.planners.people_mpc.giving_way_build import give_way
 from tests.plugins.planners.world import PERSON, RADIUS, World, crowd
 
 
 class KnownWorld(World):
-    """The same, for planners that are told the truth."""
+    """The same, for planners that are told the truth: from which time to contact people notice."""
+
+    notice = 0.0
 
     def _observe(self) -> Observation:
         v, w = self.twist
@@ -29,6 +29,7 @@ class KnownWorld(World):
             people_velocity=self.people[:, 2:].copy(),
             people_radius=np.full(len(self.people), PERSON),
             people_id=np.arange(len(self.people)),
+            people_notice=np.full(len(self.people), self.notice),
         )
         return replace(super()._observe(), truth=truth)
 
@@ -94,43 +95,44 @@ def test_it_turns_to_the_goal_before_it_drives() -> None:
     assert min(p.x for p in out.path) > 9.5
 
 
-@settings(max_examples=60)
-@given(st.integers(0, 2**32 - 1))
-def test_a_hit_is_where_discs_meet(seed: int) -> None:
-    """A rollout straight on against a plain loop in numpy: the first step in which discs touch."""
-    rng = np.random.default_rng(seed)
-    people = np.column_stack([
-        rng.uniform(-3, 3, (4, 2)), rng.uniform(-1.5, 1.5, (4, 2)), np.full(4, PERSON),
-    ])  # fmt: skip
-    p = rollout_parameters()
-    mean, hit, speed, _, aside = rollout.roll(
-        people,
-        np.empty((0, 2)),
-        p,
-        np.empty((0, 2)),
-        (0.0, 0.0, 0.0, 0.5, 0.0),
-        (50.0, 0.0),
-        0.5,
-        0.0,
-    )
-    times = rollout.STEP * np.arange(0, round(p[rollout.HORIZON] / rollout.STEP) + 1)
-    place = np.column_stack([0.5 * times, np.zeros(len(times))])
-    at = people[None, :, :2] + times[:, None, None] * people[None, :, 2:4]
-    gap = np.hypot(*(at - place[:, None]).transpose(2, 0, 1)).min(axis=1) - PERSON - RADIUS
-    near = np.flatnonzero(gap[1:] < min(p[rollout.MARGIN], gap[0] - 1e-3))
-    if gap[0] - 1e-3 >= p[rollout.MARGIN]:  # what is too near already may come apart first
-        expected = times[1:][near[0]] if len(near) else p[rollout.HORIZON]
-        assert hit == pytest.approx(expected)
-        made = 0.5 * np.minimum(times[1:], hit)
-        assert mean == pytest.approx(50.0 - made.mean())
-    assert speed == pytest.approx(0.5)
-    assert aside == 0.0
+def test_it_keeps_its_way_where_a_person_gives_way() -> None:
+    """People of this world avoid nobody: one who says so is met, one who does not is passed."""
+    aside = {}
+    for notice in (0.0, math.inf):
+        world = KnownWorld([[9.0, 0.05, -1.0, 0.0]], start=Pose(2.5, 0.0, 0.0))
+        world.notice = notice
+        out = world.run(build(OracleSpec()), time_limit=2.5)
+        aside[notice] = max(abs(p.y) for p in out.path)
+    assert aside[math.inf] < 0.05
+    assert aside[0.0] > 0.15
 
 
-def rollout_parameters() -> Array:
-    """Of the challenge's robot."""
-    p = np.zeros(rollout.PARAMETERS)
-    p[rollout.A_MAX], p[rollout.ALPHA_MAX], p[rollout.V_MAX], p[rollout.W_MAX] = 1.0, 2.0, 0.65, 3.1
-    p[rollout.HORIZON], p[rollout.TURN_TIME], p[rollout.RADIUS] = 4.0, 1.0, RADIUS
-    p[rollout.MARGIN], p[rollout.COMFORT] = 0.1, 0.6
-    return p
+@pytest.mark.parametrize("notice", [0.0, 0.4, math.inf])
+def test_people_give_way_who_notice(notice: float) -> None:
+    """A person walks into a robot head-on: who notices in time passes it, others walk on."""
+    dt, steps = 0.16, 40
+    people = np.array([[4.0, 0.05, -1.0, 0.0, PERSON]])
+    first = people.copy()
+    times = dt * np.arange(1, steps + 1)
+    predicted = np.column_stack([4.0 - times, np.full(steps, 0.05)])[:, np.newaxis]
+    least = math.inf
+    for n in range(steps):
+        x = 0.5 * dt * (n + 1)
+        robot = (x, 0.0, 0.5, 0.0, RADIUS)
+        give_way(people, first, np.array([notice]), predicted, n, robot, dt)
+        least = min(least, math.dist(people[0, :2], (x, 0.0)) - PERSON - RADIUS)
+    if notice == 0.0:
+        assert people[0, :2].tolist() == predicted[-1, 0].tolist()
+        assert least < -0.3
+    else:
+        assert (least > 0.0) == (notice == math.inf)
+        assert people[0, 1] > 0.1  # on the shorter side
+        assert people[0, 2] == pytest.approx(-1.0, abs=0.05)  # on its own way again
+
+
+def test_people_who_do_not_meet_the_robot_do_as_predicted() -> None:
+    people = np.array([[4.0, 2.0, -1.0, 0.0, PERSON], [-1.0, 0.0, -1.0, 0.0, PERSON]])
+    predicted = (people[:, :2] + 0.16 * people[:, 2:4])[np.newaxis]
+    first = people.copy()
+    give_way(people, first, np.full(2, math.inf), predicted, 0, (0.0, 0.0, 0.5, 0.0, RADIUS), 0.16)
+    assert people[:, :2] == pytest.approx(predicted[0])

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.contact.robot_contact import (
     RobotRecord,
     corners_of,
     extent_of,
     overlap,
 )
-from crowdbot.core.crowd.response.parameters import DecisionResponse
+from crowdbot.core.crowd.response.parameters import DecisionResponse, Human
 from crowdbot.core.crowd.response.standing import FAR, stands
 from crowdbot.core.crowd.state import (
     PRESENT,
@@ -104,3 +107,12 @@ def _sees(
     share = stands(robot, 0.0, response.seen_standing, response.seen_moving)
     time = response.late_time + share * (response.late_time_standing - response.late_time)
     return gap < max(float(response.late_gap), float(time * closing))
+
+
+def notice_time(agents: Agents, response: Human) -> Array:
+    """Return (N,) the time to contact from which people respond to a robot that moves, s.
+
+    Infinite for those who notice it as soon as it is within sight, 0 for those who never do.
+    """
+    late = np.where(agents.late, max(0.0, response.late_time - response.reaction_time), math.inf)
+    return np.where(agents.ignores_robot, 0.0, late)

@@ -35,7 +35,9 @@ SensorInfo = namedtuple(
     "category frame mount tilt rate shape ros_type angles range_min range_max camera privileged",
 )
 Reading = namedtuple("Reading", "stamp values colour")
-Truth = namedtuple("Truth", "pose velocity people people_velocity people_radius people_id")
+Truth = namedtuple(
+    "Truth", "pose velocity people people_velocity people_radius people_id people_notice"
+)
 Observation = namedtuple("Observation", "t pose twist vy goal goal_zone readings log truth draw")
 #: A planner may raise this if it has no valid command; the robot is stopped.
 NoValidCommand = type("NoValidCommand", (Exception,), {})

@@ -9,8 +9,8 @@ import numpy as np
 from crowdbot.plugin import Array, Indices, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction import CrowdPredictionSpec
 from crowdbot.plugins.planners.crowd_prediction.forecast_build import CrowdForecast
-from crowdbot.plugins.planners.people_mpc import plans_build as plans
 from crowdbot.plugins.planners.people_mpc.people_mpc_build import PeopleMpc
+from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP
 from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
 
@@ -26,7 +26,7 @@ class CrowdPrediction(PeopleMpc):
     def __init__(self, spec: CrowdPredictionSpec) -> None:
         super().__init__(spec)
         self._own = spec
-        self._radius = disc_radius(spec.robot_radius, None)
+        self._radius: float | None = disc_radius(spec.robot_radius, None)
         self._forecast = CrowdForecast(spec.crowd, spec.settle_time, spec.memory)
 
     def reset(
@@ -45,7 +45,7 @@ class CrowdPrediction(PeopleMpc):
         numbers = scene.tracks[rows, 0].astype(np.int64)
         people = np.ascontiguousarray(scene.people[rows])
         found = self._forecast.predict(
-            obs.t, numbers, people, path, self._radius, plans.STEP
+            obs.t, numbers, people, path, self._radius, STEP
         )  # fmt: skip
         obs.log(f"{self.name}/trust", self._forecast.trust)
         obs.draw(

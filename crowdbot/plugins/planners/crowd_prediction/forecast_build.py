@@ -26,6 +26,7 @@ _FAR = 20.0
 _STEPS = 2
 #: Age at which a prediction is compared with the present, s.
 _CHECKED = 1.0
+_NO_ROBOT = np.zeros((0, 8))
 #: Mean square error that both predictions have before there is any, m^2.
 _DOUBT = 0.02
 
@@ -75,7 +76,13 @@ class CrowdForecast:
         self._checked.clear()
 
     def predict(
-        self, t: float, numbers: Indices, people: Array, path: Array, radius: float, step: float
+        self,
+        t: float,
+        numbers: Indices,
+        people: Array,
+        path: Array,
+        radius: float | None,
+        step: float,
     ) -> Array:
         """Return where people will be after each step, (T, N, 2), m.
 
@@ -84,7 +91,7 @@ class CrowdForecast:
             numbers: (N,) numbers of the people, the same for the same person.
             people: (N, 5) x, y, vx, vy, radius; m, m/s.
             path: (T + 1, 2) places of the robot now and after each step, m.
-            radius: the robot's, m.
+            radius: the robot's, m; None: people do not see it.
             step: length of a step, s.
         """
         self._check(t, numbers, people)
@@ -119,7 +126,9 @@ class CrowdForecast:
         self._wanted, self._t = found, t
         return np.array(list(found.values())).reshape(-1, 2)
 
-    def _roll(self, people: Array, wanted: Array, path: Array, radius: float, step: float) -> Array:
+    def _roll(
+        self, people: Array, wanted: Array, path: Array, radius: float | None, step: float
+    ) -> Array:
         """Return where people will be who decide as the crowd does, (T, N, 2), m."""
         assert self._crowd is not None
         speed = np.hypot(wanted[:, 0], wanted[:, 1])
@@ -136,7 +145,9 @@ class CrowdForecast:
         moves = np.diff(path, axis=0) / step
         dt = _STEPS * step
         for k in range(0, len(path) - 1, _STEPS):
-            robot = np.array([[*path[k], *moves[k], radius, radius, 0.0, 0.0]])
+            robot = _NO_ROBOT
+            if radius is not None:
+                robot = np.array([[*path[k], *moves[k], radius, radius, 0.0, 0.0]])
             pull = self._crowd.accelerations(position, velocity, goal, present, robot)
             after = velocity + dt * pull
             for n in range(k, min(k + _STEPS, len(out))):

@@ -11,6 +11,7 @@ from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_as
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.people_mpc import plans_build as plans
 from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
+from crowdbot.plugins.planners.people_mpc.plan_world_build import PlanWorld
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
@@ -27,6 +28,8 @@ _ARRIVED = 0.1
 MOST_PEOPLE = 40
 #: The prediction that people keep their velocity.
 KEPT = np.zeros((0, 0, 2))
+#: People do not respond.
+IGNORE = np.zeros(0)
 #: Free space beside the robot on the way past what stands, m.
 _BESIDE = 0.12
 
@@ -60,11 +63,18 @@ class PeopleMpc:
         self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(spec.robot_radius, task.robot)
         self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
-        self._p = _parameters(spec, limits)
+        self._p = self.parameters(limits)
         self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, 1.0
         self._firsts((0.0, 0.0, 0.0), 1.0, 0.0)
-        world = plans.PlanWorld(
-            np.ones((1, 5)), KEPT, self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
+        world = PlanWorld(
+            np.ones((1, 5)),
+            KEPT,
+            self._field.values,
+            (0.0, 0.0),
+            self._robot,
+            (9.0, 0.0),
+            IGNORE,
+            np.ones((1, 5)),
         )
         state = (0.0,) * 6
         plans.best_plan(world, self._p, state, np.zeros((1, 3)), self._last, 0.0)
@@ -91,9 +101,11 @@ class PeopleMpc:
         self._field.fill(scene.points, pose.x, pose.y)
         rows = rows_near(scene, self._p[plans.V_MAX], self._spec.horizon, MOST_PEOPLE)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
-        world = plans.PlanWorld(
-            np.ascontiguousarray(scene.people[rows]), self.predicted(obs, scene, rows, aim),
-            self._field.values, self._field.corner, self._robot, aim,
+        people = np.ascontiguousarray(scene.people[rows])
+        world = PlanWorld(
+            people, self.predicted(obs, scene, rows, aim),
+            self._field.values, self._field.corner, self._robot, aim, self.yields(obs, rows),
+            np.empty_like(people),
         )  # fmt: skip
         at, aside, pace, cost = plans.best_plan(
             world, self._p, state, firsts, self._last, self._aside
@@ -121,6 +133,30 @@ class PeopleMpc:
         del obs, scene, rows, aim
         return KEPT
 
+    def parameters(self, limits: RobotLimits) -> Array:
+        """Return the parameters of plans."""
+        spec, p = self._spec, np.zeros(plans.PARAMETERS)
+        p[plans.A_MAX], p[plans.ALPHA_MAX] = limits.a_max, limits.alpha_max
+        p[plans.V_MAX], p[plans.W_MAX] = spec.speed * limits.v_max, limits.w_max
+        p[plans.HORIZON], p[plans.TURN_TIME] = spec.horizon, spec.turn_time
+        p[plans.MARGIN], p[plans.COMFORT] = spec.margin, spec.comfort
+        p[plans.GROWTH], p[plans.PROGRESS] = spec.margin_growth, spec.progress
+        p[plans.CLEARANCE], p[plans.IMPACT] = spec.clearance, spec.impact
+        p[plans.SMOOTHNESS], p[plans.HEADING] = spec.smoothness, spec.heading
+        p[plans.SIDEWAYS] = 1.0 if limits.vy_max > 0.0 else 0.0
+        p[plans.ASIDE_COST], p[plans.SWERVE] = 0.5 * spec.smoothness, spec.swerve
+        return p
+
+    def yields(self, obs: Observation, rows: Indices) -> Array:
+        """Return from which time to contact people give way, (N,) s; here: nothing is known.
+
+        Args:
+            obs: for the truth.
+            rows: (N,) the people of the scene who count.
+        """
+        del obs, rows
+        return IGNORE
+
     def path(self, scene: PlannerScene, aim: tuple[float, float]) -> Array:
         """Return the places (T, 2) of the chosen plan after each step, m."""
         state = (scene.pose.x, scene.pose.y, scene.pose.yaw, *scene.twist)
@@ -141,20 +177,6 @@ class PeopleMpc:
         high = max(min(v + dv, top), low)
         found = candidates(low, high, spec.speeds, left, right, spec.yaw_rates, wish)
         return np.column_stack([found, np.zeros(len(found))])
-
-
-def _parameters(spec: PeopleMpcSpec, limits: RobotLimits) -> Array:
-    p = np.zeros(plans.PARAMETERS)
-    p[plans.A_MAX], p[plans.ALPHA_MAX] = limits.a_max, limits.alpha_max
-    p[plans.V_MAX], p[plans.W_MAX] = spec.speed * limits.v_max, limits.w_max
-    p[plans.HORIZON], p[plans.TURN_TIME] = spec.horizon, spec.turn_time
-    p[plans.MARGIN], p[plans.COMFORT] = spec.margin, spec.comfort
-    p[plans.GROWTH], p[plans.PROGRESS] = spec.margin_growth, spec.progress
-    p[plans.CLEARANCE], p[plans.IMPACT] = spec.clearance, spec.impact
-    p[plans.SMOOTHNESS], p[plans.HEADING] = spec.smoothness, spec.heading
-    p[plans.SIDEWAYS] = 1.0 if limits.vy_max > 0.0 else 0.0
-    p[plans.ASIDE_COST], p[plans.SWERVE] = 0.5 * spec.smoothness, spec.swerve
-    return p
 
 
 def build(spec: PeopleMpcSpec) -> PeopleMpc:

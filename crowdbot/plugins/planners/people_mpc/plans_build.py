@@ -8,10 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.plugin import Array, array_kernel, kernel
-from crowdbot.plugins.planners.shared.distance_field_build import distance_at
+from crowdbot.plugins.planners.people_mpc.giving_way_build import give_way
+from crowdbot.plugins.planners.people_mpc.plan_world_build import (
+    STEP,
+    PlanWorld,
+    at_first,
+    extent_of,
+    gaps,
+)
 
-#: Time step of a rollout, s.
-STEP = 0.16
 #: Directions of the second stretch beside the goal's, rad, and its speeds as shares.
 ASIDE = (0.0, 0.35, -0.35, 0.8, -0.8, 1.4, -1.4)
 PACES = (1.0, 0.5)
@@ -26,28 +31,8 @@ V, W, VY = range(3)
 #: Indices into the parameter vector.
 A_MAX, ALPHA_MAX, V_MAX, W_MAX, HORIZON, TURN_TIME, MARGIN, COMFORT, GROWTH = range(9)
 PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, SIDEWAYS, ASIDE_COST, HEADING, SWERVE = range(9, 17)
-PARAMETERS = 17
-
-
-class PlanWorld(NamedTuple):
-    """The surroundings that plans are tested against.
-
-    Attributes:
-        people: (N, 5) x, y, vx, vy, radius; m, m/s.
-        predicted: (T, N, 2) where they will be after each `STEP`, m; empty: they keep their
-            velocity.
-        field: distances to what stands, `DistanceField.values`.
-        corner: of the field, m.
-        robot: (K, 3) discs that hold the robot, in its frame, m.
-        goal: m.
-    """
-
-    people: Array
-    predicted: Array
-    field: Array
-    corner: tuple[float, float]
-    robot: Array
-    goal: tuple[float, float]
+HURRY, HEADWAY = range(17, 19)
+PARAMETERS = 19
 
 
 class PlanOutcome(NamedTuple):
@@ -59,6 +44,8 @@ class PlanOutcome(NamedTuple):
         speed: speed at the hit, m/s.
         close: 0 (farther than comfort) to 1 (touching).
         aside: angle between heading, or motion sideways, and the goal after the first stretch, rad.
+        hurried: share of the horizon in which the robot would reach a person who stood still within
+            the headway; sooner counts more; 0 if that costs nothing.
     """
 
     mean: float
@@ -66,32 +53,7 @@ class PlanOutcome(NamedTuple):
     speed: float
     close: float
     aside: float
-
-
-@kernel
-def gaps(world: PlanWorld, x: float, y: float, yaw: float, t: float) -> tuple[float, float]:
-    """Return the gap from the robot to the nearest person in ``t`` seconds, and to walls, m."""
-    person, wall = math.inf, math.inf
-    c, s = math.cos(yaw), math.sin(yaw)
-    step = min(round(t / STEP), world.predicted.shape[0]) - 1
-    known = step >= 0
-    for k in range(world.robot.shape[0]):
-        px = x + c * world.robot[k, 0] - s * world.robot[k, 1]
-        py = y + s * world.robot[k, 0] + c * world.robot[k, 1]
-        r = world.robot[k, 2]
-        wall = min(wall, distance_at(world.field, world.corner, px, py) - r)
-        for i in range(world.people.shape[0]):
-            if known:
-                dx, dy = world.predicted[step, i, 0] - px, world.predicted[step, i, 1] - py
-            else:
-                dx = world.people[i, 0] + t * world.people[i, 2] - px
-                dy = world.people[i, 1] + t * world.people[i, 3] - py
-            most = person + r + world.people[i, 4]
-            square = dx * dx + dy * dy
-            if most > 0.0 and square > most * most:
-                continue  # most cases
-            person = min(person, math.sqrt(square) - r - world.people[i, 4])
-    return person, wall
+    hurried: float
 
 
 @kernel
@@ -123,9 +85,13 @@ def roll(
         budget: cost of progress and clearance beyond which the plan is of no interest.
     """
     x, y, yaw, v, w, vy = state
+    responds = world.yields.shape[0] > 0
+    now, extent = world, 0.0
+    if responds:
+        now, extent = at_first(world), extent_of(world.robot)
     person, wall = gaps(world, x, y, yaw, 0.0)
     need = min(p[MARGIN], min(person, wall) - _SLACK)
-    close, t, total, beside = 0.0, 0.0, 0.0, 0.0
+    close, t, total, beside, hurried = 0.0, 0.0, 0.0, 0.0, 0.0
     gx, gy = world.goal[0] - x, world.goal[1] - y
     start, scale = math.sqrt(gx * gx + gy * gy), 2.0 / (p[V_MAX] * p[HORIZON])
     while t < p[HORIZON] - 0.5 * STEP:
@@ -161,14 +127,26 @@ def roll(
         y += ahead * s + left * c
         yaw += (w + w_next) / 2.0 * STEP
         v, vy, w = v + dv, vy + dvy, w_next
-        person, wall = gaps(world, x, y, yaw, t)
+        going = (ahead * c - left * s) / STEP, (ahead * s + left * c) / STEP
+        if responds:
+            n = min(round(t / STEP), world.predicted.shape[0]) - 1
+            give_way(
+                now.people, world.people, world.yields, world.predicted, n,
+                (x, y, going[0], going[1], extent), STEP,
+            )  # fmt: skip
+        since = 0.0 if responds else t
+        person, wall = gaps(now, x, y, yaw, since)
+        if p[HURRY] > 0.0 and person < p[HEADWAY] * p[V_MAX]:
+            soon, _ = gaps(now, x + p[HEADWAY] * going[0], y + p[HEADWAY] * going[1], yaw, since)
+            if soon < 0.0:
+                hurried += STEP / p[HORIZON] * (1.0 - 0.6 * t / p[HORIZON])
         gap = min(person, wall)
         gx, gy = world.goal[0] - x, world.goal[1] - y
         away = math.sqrt(gx * gx + gy * gy)
         if gap < need:
             speed = math.sqrt(v * v + vy * vy)
             mean = (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON]
-            return PlanOutcome(mean, t, speed, 1.0, beside)
+            return PlanOutcome(mean, t, speed, 1.0, beside, hurried)
         total += away * STEP
         need = min(p[MARGIN], max(need, gap))
         doubted = min(person - p[GROWTH] * t, wall + 0.5 * p[COMFORT])
@@ -177,9 +155,9 @@ def roll(
         least = total + max(0.0, left * (away - 0.5 * p[V_MAX] * left))
         made = (start - least / p[HORIZON]) * scale
         if p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * close > budget:
-            return PlanOutcome(math.inf, t, 0.0, close, beside)
+            return PlanOutcome(math.inf, t, 0.0, close, beside, hurried)
     speed = math.sqrt(v * v + vy * vy)
-    return PlanOutcome(total / p[HORIZON], p[HORIZON], speed, min(1.0, close), beside)
+    return PlanOutcome(total / p[HORIZON], p[HORIZON], speed, min(1.0, close), beside, hurried)
 
 
 @kernel
@@ -239,6 +217,7 @@ def best_plan(
                 blow = (1.0 - end.hit / p[HORIZON]) * (_STANDING + end.speed / p[V_MAX])
                 cost = turn + p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * end.close
                 cost += p[IMPACT] * blow + p[HEADING] * end.aside / math.pi
+                cost += p[HURRY] * end.hurried
                 if cost < best:
                     best, at, at_aside, at_pace = cost, k, a, n
     return at, at_aside, at_pace, best
