@@ -199,6 +199,7 @@ def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:
                 references=compared,
                 metrics=setup.expansion.metrics,
                 step_budget=claimed.record.step_budget,
+                replace_draws=claimed.record.replace_draws,
             ),
             progress=setup.progress,
             stop=setup.stop,

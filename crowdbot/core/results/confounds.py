@@ -25,10 +25,19 @@ KINDS: Mapping[str, tuple[Literal["error", "warning"], str]] = {
     "agents": ("warning", "people read from a lock in some runs, sampled in others"),
     "unpinned": ("warning", "code of no installed version, which others cannot get by name"),
     "processor": ("warning", "different processors, which round differently"),
+    "excused": (
+        "warning",
+        "draws replaced in which the robot was struck from behind without fault and toppled",
+    ),
+    "excused_often": ("error", "more than a tenth of a planner's draws were replaced"),
     "unpaired": ("warning", "scenarios and seeds that not all planners have run"),
 }
 
 _SHOWN = 3
+#: Largest share of a planner's runs whose draws may be replaced; one always may.
+MOST_EXCUSED = 0.1
+#: Findings about one value, which no other one differs from.
+_ALONE = ("unpinned", "excused", "excused_often")
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 #: Prefix of a condition's name -> its confound.
 _CONDITIONS = {
@@ -84,7 +93,7 @@ def confounds(results: Results, accept: Iterable[str] = ()) -> tuple[Finding, ..
     accepted = {name.strip() for text in accept for name in text.split(",")}
     for name in sorted(accepted - set(KINDS)):
         raise UnknownNameError("confound", name, KINDS)
-    found = [f for f in _merged(_all(results.runs)) if len(f.values) > 1 or f.kind == "unpinned"]
+    found = [f for f in _merged(_all(results.runs)) if len(f.values) > 1 or f.kind in _ALONE]
     found = [replace(f, accepted=f.kind in accepted) for f in found]
     order = list(KINDS)
     return tuple(sorted(found, key=lambda f: (order.index(f.kind), f.subject)))
@@ -127,8 +136,25 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
     loose = [r for r in runs if not r.pinned]
     for planner, group in _grouped(loose, lambda r: r.planner):
         yield _finding("unpinned", planner, group, lambda r: r.source)
+    for planner, group in _grouped(runs, lambda r: r.planner):
+        yield from _excused(planner, group)
     # Floors and ceilings run in a sample; results about them give the number of pairs.
     yield from _unpaired([r for r in runs if r.role not in ("floor", "ceiling")])
+
+
+def _excused(planner: str, runs: Sequence[RunRow]) -> Iterator[Finding]:
+    """Yield that draws were replaced, and if these are more than may be."""
+    replaced = [r for r in runs if r.replaced_draws]
+    if not replaced:
+        return
+    yield _finding("excused", planner, runs, _draws)
+    if len(replaced) > max(1.0, MOST_EXCUSED * len(runs)):
+        yield _finding("excused_often", planner, runs, _draws)
+
+
+def _draws(run: RunRow) -> str:
+    count = run.replaced_draws
+    return f"{count} replaced" if count else "its own draw"
 
 
 def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:

@@ -24,7 +24,10 @@ from crowdbot.core.types.score import Score
 
 #: Columns with texts that runs share, by their number in the table ``texts``.
 _SHARED = ("axes", "conditions", "provenance", "more", "labels", "states")
-_MORE = ("changes", "source", "by_person", "role", "agents", "crowd", "suite_metrics", "axis_words")
+_MORE = (
+    "changes", "source", "by_person", "role", "agents", "crowd", "suite_metrics", "axis_words",
+    "replaced_draws",
+)  # fmt: skip
 _PLAIN = tuple(RUN_COLUMNS)
 _SELECTED = (*_PLAIN, "moment", *_SHARED, "record", "scores")
 _BYTES = 3 * 8 + 2  # of a score: value, bounds, state

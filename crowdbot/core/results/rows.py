@@ -128,6 +128,11 @@ class RunRow:
         return self.record.by_person
 
     @property
+    def replaced_draws(self) -> int:
+        """Number of draws that were replaced before the one that counts; see `ExcusedPart`."""
+        return len(self.record.excused)
+
+    @property
     def role(self) -> str:
         """Role of the planner: floor, baseline, ceiling or candidate."""
         return self.record.role

@@ -201,6 +201,8 @@ def _budget(request: Request) -> dict[str, Any]:
         found["step_budget"] = request.options.step_budget
     if not request.choice.in_process and request.choice.memory != MEMORY:
         found["planner_memory"] = request.choice.memory
+    if request.options.replace_draws and request.scenario.crowd is not None:
+        found["replace_draws"] = request.options.replace_draws
     if not request.scenario.robots:
         found["duration"] = request.options.duration or PEOPLE_ALONE
     return found

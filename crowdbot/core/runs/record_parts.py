@@ -148,6 +148,24 @@ class LatencyPart(RecordPart):
     p95: Seconds
 
 
+class ExcusedPart(RecordPart):
+    """A draw in which the robot was struck from behind without fault and toppled; not counted.
+
+    Attributes:
+        draw: its number; 0 is the scenario's own.
+        person: number of the person.
+        struck_time, toppled_time: s.
+        realisation, trajectory: hashes of its people, and of what happened.
+    """
+
+    draw: Count
+    person: int
+    struck_time: Seconds
+    toppled_time: Seconds
+    realisation: Hash
+    trajectory: Hash
+
+
 class LivePart(RecordPart):
     """Data that only live runs have; times in s.
 

@@ -16,6 +16,7 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import (
     CostPart,
     Count,
+    ExcusedPart,
     Hash,
     HashesPart,
     Identity,
@@ -41,6 +42,7 @@ class RunIdentity(RecordPart):
         step_budget: s, where one was given.
         planner_memory: bytes or None, where it is not the usual.
         duration: s, in a run of people alone.
+        replace_draws: how many draws might be replaced, if any.
     """
 
     scenario: Identity[str]
@@ -49,6 +51,7 @@ class RunIdentity(RecordPart):
     step_budget: Identity[int | float | None] = None
     planner_memory: Identity[int | None] = None
     duration: Identity[int | float] = 0.0
+    replace_draws: Identity[Count] = 0
     seed: Identity[Count]
     hashes: Identity[IdentityHashes]
     versions: Identity[dict[str, str]]
@@ -123,6 +126,7 @@ class RunRecord(_Record, RunIdentity):
     allowed_plugins: list[str] | None = None
     recorded: Literal["all", "used", "none"] = "all"
     robots: dict[str, RobotPart] = Field(default_factory=dict)
+    excused: list[ExcusedPart] = Field(default_factory=list)
     references: dict[str, str]
     reference_hashes: dict[str, Hash] = Field(default_factory=dict)
     density: float | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
@@ -20,6 +21,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.replay import write_replay
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.excused import excuse_of, with_draw
 from crowdbot.core.runs.identity import (
     Prepared,
     prepare,
@@ -36,6 +38,7 @@ from crowdbot.core.runs.read_and_score import (
     references_by_robot,
     score_robots,
 )
+from crowdbot.core.runs.record_parts import ExcusedPart
 from crowdbot.core.runs.replayed import images_of_replay, shown_run
 from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.runs.run_options import USUAL, RunOptions
@@ -196,19 +199,36 @@ def make_run(
             return Run(request.directory, record, reused=True, _keep=keep)
     replaced = recorded_otherwise(request, identity)
     with gc_frozen():
-        paths = make_references(request, references)
-        record = _record_run(request, prepared, builts, identity, paths)
+        record = _counted_run(request, prepared, builts, identity)
     return Run(request.directory, record, replaced=replaced, _keep=keep)
 
 
 # --------------------------------------------------------------------------- the run
+def _counted_run(
+    request: Request, prepared: Prepared, builts: Mapping[str, BuiltRun], identity: RunIdentity
+) -> RunRecord:
+    """Make the run; again with the next draw while it is excused and draws may be replaced."""
+    excused: list[ExcusedPart] = []
+    while True:
+        paths = make_references(request, references_of(request, prepared))
+        found = _record_run(request, prepared, builts, identity, paths, excused)
+        if isinstance(found, RunRecord):
+            return found
+        excused.append(found)
+        scenario = with_draw(request.scenario, len(excused))
+        compared = request.options.references
+        prepared = prepare(scenario, request.registry, references=compared)
+        builts = preflight(replace(request, scenario=scenario))
+
+
 def _record_run(
     request: Request,
     prepared: Prepared,
     builts: Mapping[str, BuiltRun],
     identity: RunIdentity,
     references: Mapping[str, Path],
-) -> RunRecord:
+    excused: Sequence[ExcusedPart],
+) -> RunRecord | ExcusedPart:
     final = request.directory
     parts = _parts(request, builts)
     with partial(final) as folder:
@@ -220,6 +240,11 @@ def _record_run(
         names = tuple(builts) or ("",)
         seen = read_robots(folder / files.RECORDING, names, REPLAY_RATE, images)
         runs = {name: one.run for name, one in seen.items()}
+        if len(excused) < request.options.replace_draws:
+            excuse = excuse_of(outcome, runs, prepared.run.realisation, len(excused))
+            if excuse is not None and excuse.realisation not in {e.realisation for e in excused}:
+                shutil.rmtree(folder)
+                return excuse
         scores = score_robots(
             request.registry,
             runs,
@@ -230,6 +255,8 @@ def _record_run(
         record = make_record(
             request, identity, people, references, outcome, runs, scores, parts=parts
         )
+        if excused:
+            record = record.model_copy(update={"excused": list(excused)})
         shown = [] if images is None else images.images()
         write_scenario(folder, request.scenario, request.registry)
         label = request.choice.label
@@ -275,7 +302,7 @@ def _finish(folder: Path, record: RunRecord, written: Written | None) -> RunReco
 
 def _setup(request: Request, prepared: Prepared, folder: Path, identity: RunIdentity) -> RunSetup:
     return RunSetup(
-        scenario=request.scenario,
+        scenario=prepared.run.scenario,
         agents=prepared.run.people.agents,
         registry=request.registry,
         choice=request.choice,

@@ -73,6 +73,15 @@ def campaign(
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Repeat runs whose planner failed.")
     ] = False,
+    replace_draws: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=3,
+            help="Make a run again with the next draw, at most so often, if its robot was struck "
+            "from behind without fault and toppled.",
+        ),
+    ] = 0,
     force: Annotated[
         bool, typer.Option("--force", help="Run everything again, calibration runs too.")
     ] = False,
@@ -98,6 +107,7 @@ def campaign(
         record=record.value,
         replay=replay,
         retry_failed=retry_failed,
+        replace_draws=replace_draws,
         force=force,
         place=planner_place(in_process, planner_memory, lenient=True),
     )

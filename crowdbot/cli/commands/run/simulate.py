@@ -61,6 +61,15 @@ def simulate(
         float | None,
         typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),
     ] = None,
+    replace_draws: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=3,
+            help="Make a run again with the next draw, at most so often, if its robot was struck "
+            "from behind without fault and toppled.",
+        ),
+    ] = 0,
     duration: Annotated[
         float | None,
         typer.Option(metavar="SECONDS", help="Of people alone, without a robot; default 60."),
@@ -115,6 +124,7 @@ def simulate(
                     force=force,
                     metrics=expansion.metrics,
                     step_budget=step_budget,
+                    replace_draws=replace_draws,
                     duration=duration,
                     place=planner_place(in_process, planner_memory),
                 ),
