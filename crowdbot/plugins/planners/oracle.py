@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
+from annotated_types import Ge, Le
 from pydantic import Field
 
 from crowdbot.plugin import (
@@ -12,6 +13,7 @@ from crowdbot.plugin import (
     NonNegativeSpeed,
     PlannerRole,
     PositiveDuration,
+    PositiveLength,
 )
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction import CrowdPredictionSpec
 from crowdbot.plugins.planners.people_mpc.people_mpc import Weight
@@ -31,6 +33,11 @@ class OracleSpec(CrowdPredictionSpec):
     tracks: Literal["truth"] = Field(default="truth", description="People: the truth.")
     localisation: Literal["truth"] = Field(
         default="truth", description="The robot's pose: the truth."
+    )
+    speeds: Annotated[int, Ge(2), Le(16)] = Field(default=6, description="First speeds.")
+    yaw_rates: Annotated[int, Ge(3), Le(32)] = Field(default=15, description="First yaw rates.")
+    comfort: PositiveLength = Field(
+        default=0.3, description="Clearance above which more is no better, m."
     )
     margin: NonNegativeLength = Field(
         default=0.02, description="Clearance below which a plan counts as a hit, m."
