@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import signal
@@ -160,8 +161,9 @@ def test_a_drive_by_keyboard_that_is_killed_begins_again(tmp_path: Path) -> None
     (kept,) = (json.loads(p.read_text()) for p in sorted(steps.glob("*-trial-*.json")))
     assert kept["driver"] == "person"
     (record,) = (tmp_path / "study-data" / "runs").glob("**/run.json")
-    live = json.loads(record.read_text())["live"]
-    assert live["steps"] == 48
+    run = json.loads(record.read_text())
+    # All steps are there: of 3 s, or until it arrived, which depends on when the key was pressed.
+    assert run["live"]["steps"] == math.ceil(run["sim_time"] * 16.0) > 16
     with Recording(record.parent / "run.mcap") as recording:
         robot = recording.robot(None).run.robot
     assert robot is not None
