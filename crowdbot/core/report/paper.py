@@ -30,6 +30,8 @@ _SPECIAL = {
     "·": r"\(\cdot\)", "°": r"\textdegree{}", "↑": r"\(\uparrow\)", "↓": r"\(\downarrow\)",
     "<": r"\textless{}", ">": r"\textgreater{}",
 }  # fmt: skip
+#: Opens a box that shrinks a table to the width of the text, if it is wider.
+_AS_WIDE_AS_FITS = r"\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%"
 #: Settings of Matplotlib: the size of body text in two columns, and letters that stay letters.
 STYLE: Any = {
     "font.size": 8.0, "font.family": "serif", "axes.linewidth": 0.6, "lines.linewidth": 0.9,
@@ -163,8 +165,9 @@ def _table(
     lines = [f"{' & '.join(map(escaped, row))} \\tabularnewline" for row in (head, *rows)]
     return "\n".join([
         "\\begin{table}", "\\centering", f"\\caption{{{escaped(said)}}}",
-        f"\\label{{tab:{label}}}", f"\\begin{{tabular}}{{{columns}}}", "\\toprule", lines[0],
-        "\\midrule", *lines[1:], "\\bottomrule", "\\end{tabular}", "\\end{table}",
+        f"\\label{{tab:{label}}}", "\\medskip", _AS_WIDE_AS_FITS,
+        f"\\begin{{tabular}}{{{columns}}}", "\\toprule", lines[0],
+        "\\midrule", *lines[1:], "\\bottomrule", "\\end{tabular}}", "\\end{table}",
     ])  # fmt: skip
 
 

@@ -32,6 +32,13 @@ def test_tables_have_a_row_for_each_planner_and_columns_that_fit() -> None:
     assert "\\includegraphics[width=\\linewidth]{report.pdf}" in text
 
 
+def test_wide_tables_shrink_to_the_text() -> None:
+    text = tex(two_planners(), "report.pdf")
+    boxes = re.findall(r"\\resizebox\{\\ifdim\\width>\\linewidth.*?\\end\{tabular\}\}", text, re.S)
+    assert len(boxes) == text.count("\\begin{tabular}") == 2
+    assert all(box.count("{") == box.count("}") for box in boxes)
+
+
 def test_captions_state_runs_draws_and_intervals() -> None:
     captions = re.findall(r"\\caption\{(.*)\}", tex(two_planners(), "report.pdf"))
     assert len(captions) == 3
