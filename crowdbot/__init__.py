@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from crowdbot.core.trajectories.questionnaires import Questionnaires
     from crowdbot.core.trajectories.trajectories import Trajectories
     from crowdbot.core.types.motion import Command, Pose
+    from crowdbot.core.types.person_task import PersonEstimate, PersonTask
     from crowdbot.core.types.robot import RobotLimits
     from crowdbot.core.types.score import Score
     from crowdbot.core.types.sensor import Reading, SensorInfo
@@ -43,6 +44,7 @@ _HOMES = {
     "crowdbot.core.trajectories.commands": "Commands",
     "crowdbot.core.trajectories.questionnaires": "Questionnaires",
     "crowdbot.core.types.motion": "Command Pose",
+    "crowdbot.core.types.person_task": "PersonEstimate PersonTask",
     "crowdbot.core.types.robot": "RobotLimits",
     "crowdbot.core.types.score": "Score",
     "crowdbot.core.types.sensor": "Reading SensorInfo",
@@ -57,6 +59,8 @@ __all__ = [
     "LidarPoints",
     "NoValidCommand",
     "Observation",
+    "PersonEstimate",
+    "PersonTask",
     "Planner",
     "Pose",
     "Questionnaires",

@@ -90,7 +90,8 @@ _TOGETHER: Mapping[str, str] = {
 #: Heading -> beginnings of the modules, below crowdbot.core, from which its names come.
 _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Build functions": ("crowdbot.plugin.build_functions",),
-    "Planners": ("planning", "types.motion", "types.task", "sensing.points", "realism.imagined"),
+    "Planners": ("planning", "types.motion", "types.task", "types.person", "sensing.points",
+                 "realism.imagined"),
     "Sensors and noise": ("sensing", "types.sensor"),
     "Robots": ("robots", "types.robot", "geometry"),
     "Environments": ("types.environment", "environments"),

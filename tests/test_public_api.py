@@ -21,6 +21,8 @@ NAMES = [
     "LidarPoints",
     "NoValidCommand",
     "Observation",
+    "PersonEstimate",
+    "PersonTask",
     "Planner",
     "Pose",
     "Questionnaires",

@@ -124,6 +124,7 @@ if TYPE_CHECKING:
     from crowdbot.core.types.arrays import Array, Indices, Mask
     from crowdbot.core.types.environment import EnvironmentParts
     from crowdbot.core.types.motion import Command, Pose
+    from crowdbot.core.types.person_task import PersonEstimate, PersonTask
     from crowdbot.core.types.robot import (
         DifferentialDrive,
         HolonomicDrive,
@@ -291,6 +292,8 @@ __all__ = [
     "Observation",
     "ObservationSpec",
     "PeopleTracker",
+    "PersonEstimate",
+    "PersonTask",
     "Pillar",
     "Pinhole",
     "Place",

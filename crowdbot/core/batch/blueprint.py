@@ -92,6 +92,12 @@ def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) ->
     """
     if not scenario.robots:
         raise InputError(f"{scenario.id} has no robot, and an environment drives robots")
+    for name, robot in scenario.robots.items():
+        if robot.task.person is not None:
+            raise InputError(
+                f"{scenario.id}: the goal of robot '{name}' is a person, which environments of "
+                "many worlds do not have; crowdbot.Session steps such a run"
+            )
     parts = build_environment(registry, scenario.environment)
     models, tasks, tables, seen = [], [], [], []
     for k, robot in enumerate(scenario.robots.values()):

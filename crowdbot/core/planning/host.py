@@ -170,4 +170,5 @@ def _protected(obs: Observation) -> Observation:
         log=obs.log,
         draw=obs.draw,
         truth=obs.truth and obs.truth.copy(),
+        person=obs.person,
     )

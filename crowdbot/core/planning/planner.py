@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
+from crowdbot.core.types.person_task import PersonEstimate
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Reading, SensorInfo
 from crowdbot.core.types.task import Task
@@ -76,6 +77,8 @@ class Observation:
         readings: latest reading of each requested sensor.
         log: ``log(name, value)`` records a named signal of the run, a number.
         truth: ground truth for a privileged planner, else None.
+        person: what the robot knows of its person, if its task is about one
+            (``task.person``); ``goal`` is then where the robot's place beside the person is now.
         draw: ``draw(name, rows)`` records what the planner thinks, as numbers in the robot's base
             frame, m: rows (K, 2) of a path or of points; ``tracks`` has rows (K, 5) of people:
             number, x, y, vx, vy. The replay shows it.
@@ -91,6 +94,7 @@ class Observation:
     log: Callable[[str, float], None] = _ignore
     truth: Truth | None = None
     draw: Callable[[str, ArrayLike], None] = _ignore
+    person: PersonEstimate | None = None
 
 
 def named_drawing(name: str, rows: ArrayLike) -> tuple[str, NDArray[np.float32]]:

@@ -51,10 +51,35 @@ def realise(scenario: Scenario, parts: EnvironmentParts | None = None) -> Realis
     if crowd is None:
         return Realisation.nobody()
     streams = Streams(crowd.seed.root, crowd.seed.key)
+    return _table(_people(scenario, crowd, parts, streams), streams)
+
+
+def from_source(scenario: Scenario, parts: EnvironmentParts | None, source: str) -> list[int]:
+    """Return the ids of people of one spawn or stream, in order.
+
+    Args:
+        scenario, parts: as for `realise`.
+        source: such as ``spawn hall`` or ``stream north``.
+
+    Raises:
+        InputError: as `realise`.
+    """
+    crowd = scenario.crowd
+    if crowd is None:
+        return []
+    streams = Streams(crowd.seed.root, crowd.seed.key)
+    rows = _people(scenario, crowd, parts, streams)
+    return sorted(row["id"] for row in rows if row.get("source") == source)
+
+
+def _people(
+    scenario: Scenario, crowd: Crowd, parts: EnvironmentParts | None, streams: Streams
+) -> list[Row]:
+    """Return complete rows, without the key of goals; of drawn people with their source."""
     ground = Ground(parts, crowd)
     occupancy = Occupancy([robot.task.start[:2] for robot in scenario.robots.values()], ground)
     if crowd.names_nobody and crowd.policy.record is not None:
-        return _table(_recorded(crowd, crowd.policy.record, streams), streams)
+        return list(_recorded(crowd, crowd.policy.record, streams))
     explicit = [_agent_row(a, scenario, crowd, streams) for a in crowd.agents]
     for row in explicit:
         start = row["x"], row["y"]
@@ -64,16 +89,21 @@ def realise(scenario: Scenario, parts: EnvironmentParts | None = None) -> Realis
         [] if crowd.flow is None else _flow_rows(crowd.flow, scenario, crowd, streams, occupancy)
     )
     group = max((agent.group for agent in crowd.agents), default=-1) + 1
-    samplers: list[StreamSampler | SpawnSampler] = [
-        *(StreamSampler(n, s, scenario, crowd, streams) for n, s in sorted(crowd.streams.items())),
-        *(SpawnSampler(n, s, scenario, crowd, streams) for n, s in sorted(crowd.spawns.items())),
-    ]
-    for sampler in samplers:
+    samplers: dict[str, StreamSampler | SpawnSampler] = {
+        **{
+            f"stream {n}": StreamSampler(n, s, scenario, crowd, streams)
+            for n, s in sorted(crowd.streams.items())
+        },
+        **{
+            f"spawn {n}": SpawnSampler(n, s, scenario, crowd, streams)
+            for n, s in sorted(crowd.spawns.items())
+        },
+    }
+    for source, sampler in samplers.items():
         rows = sampler.rows(occupancy, group)
         group = max([group, *(max(row["group"], row.get("queue", -1)) + 1 for row in rows)])
-        drawn += rows
-    numbered = [*explicit, *_numbered(drawn, {agent.id for agent in crowd.agents})]
-    return _table(numbered, streams)
+        drawn += [row | {"source": source} for row in rows]
+    return [*explicit, *_numbered(drawn, {agent.id for agent in crowd.agents})]
 
 
 def _table(rows: Iterable[Row], streams: Streams) -> Realisation:

@@ -11,6 +11,11 @@ DEFINITIONS = {
         "float64 range_min\nfloat64 range_max"
     ),
     "SensorTilts": "string[] sensor\nfloat64[] roll\nfloat64[] pitch",
+    "PersonTask": (
+        "string task\nint64[] person\nfloat64[] facing\nfloat64 distance\nfloat64 tolerance\n"
+        "float64 angle\nfloat64 hold\nbool in_a_row\nstring knows\nstring side\n"
+        "float64 radius"
+    ),
     "RobotInfo": (
         "float64 radius\nfloat64 mass\ncrowdbot_msgs/Table goal\nfloat64 goal_radius\n"
         "float64 base_height\ncrowdbot_msgs/Table limits\ncrowdbot_msgs/Table footprint"

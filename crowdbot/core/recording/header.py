@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import Pinhole, SensorInfo
 from crowdbot.errors import InputError
@@ -61,6 +62,7 @@ class RecordingHeader:
         robot, agents: None if the run has none.
         walls: (S, 4) segments x0, y0, x1, y1, m.
         goal_zone: (K, 2) polygon, m.
+        person: the person that the robot's task is about; it is written apart from the header.
         namespace: prefix of topics and frames of one robot of several. It is not written, since the
             header's topic contains it.
     """
@@ -72,6 +74,7 @@ class RecordingHeader:
     sensors: Mapping[str, SensorInfo] = field(default_factory=dict)
     walls: Array | None = None
     goal_zone: Array | None = None
+    person: TaskPerson | None = None
     namespace: str = ""
 
     def to_message(self) -> Any:

@@ -275,7 +275,7 @@ class Recording:
             if topic.endswith(known):
                 prefix = topic.removesuffix(known)
                 part = self._by_prefix.setdefault(prefix, RobotRecords(self.path, self._max_rate))
-                if known in (Topic.HEADER, Topic.TILTS):
+                if known in (Topic.HEADER, Topic.TILTS, Topic.PERSON_TASK):
                     return partial(self._take_header, part, known)
                 take = partial(part.add, known)
                 return partial(self._take_sample, take) if known == Topic.STATE else take

@@ -15,6 +15,7 @@ class Topic(StrEnum):
 
     HEADER = "/crowdbot/header"
     TILTS = "/crowdbot/tilts"
+    PERSON_TASK = "/crowdbot/person_task"
     CANDIDATES = "/crowdbot/candidates"
     PERSON_GOALS = "/crowdbot/person_goals"
     STATE = "/crowdbot/state"

@@ -28,6 +28,7 @@ from crowdbot.core.recording.joints import WheelMessages
 from crowdbot.core.recording.motion.candidates import Choosers
 from crowdbot.core.recording.motion.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.namespace import NamespacedFile, in_namespace
+from crowdbot.core.recording.person_task import person_task_message
 from crowdbot.core.recording.reading.images import REPLAY_IMAGE_RATE, REPLAY_IMAGE_WIDTH
 from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning, whole_centimetres
 from crowdbot.core.recording.ros_topics import ToolTopics
@@ -133,6 +134,9 @@ class RecordingWriter:
         tilts = tilts_message(header.sensors)
         if tilts is not None:
             self._file.put(Topic.TILTS, 0, tilts, latched=True)
+        if header.person is not None:
+            message = person_task_message(header.person)
+            self._file.put(Topic.PERSON_TASK, 0, message, latched=True)
         for group in known:
             self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
         self._wheels = (

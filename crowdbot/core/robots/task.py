@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.build import build_model
@@ -18,10 +20,20 @@ from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
 from crowdbot.dsl.scenario.scenario import Robot, Scenario
 
+#: Corners of a zone at the robot's start, m.
+_HERE = np.array([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+
 
 def robot_task(robot: Robot, parts: EnvironmentParts) -> Task:
-    """Return the robot's task with its goal zone as a polygon."""
-    zone = parts.zones[robot.task.goal.zone]
+    """Return the robot's task with its goal zone as a polygon.
+
+    A goal that is a person has a place only when the people are known
+    (`crowdbot.core.assistance.guide.task_with_person`); until then it is the robot's start.
+    """
+    if robot.task.zone is None:
+        zone = np.add(_HERE, robot.task.start[:2])
+    else:
+        zone = parts.zones[robot.task.zone]
     centre = zone.mean(axis=0)
     return Task(
         start=Pose(*robot.task.start),

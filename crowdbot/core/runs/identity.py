@@ -146,12 +146,15 @@ def prepare(
     compared = references and bool(scenario.robots)
     if not compared or scenario.crowd is None:  # without people a run is its own reference
         return Prepared(run=run, alone=None, crowd=None)
+    about_people = any(robot.task.person for robot in scenario.robots.values())
     alone = scenario.references.get(ROBOT_ALONE) or scenario.model_copy(update={"crowd": None})
     crowd = scenario.references.get(CROWD_ALONE) or scenario.model_copy(update={"robots": {}})
     same = (crowd.crowd, crowd.environment) == (scenario.crowd, scenario.environment)
     people = run.people if same else populate(crowd, registry)  # equal, also near the robot
     return Prepared(
-        run=run, alone=trial(alone, populate(alone, registry)), crowd=trial(crowd, people)
+        run=run,
+        alone=None if about_people else trial(alone, populate(alone, registry)),
+        crowd=trial(crowd, people),
     )
 
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from crowdbot.core.assistance.guide import lidars_of
+from crowdbot.core.assistance.target import Target
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice, select_sensors
 from crowdbot.core.recording.writer import EXACT
@@ -35,6 +37,7 @@ class BuiltRun:
         sensors: simulated sensors, by name. Their readings are independent of each other.
         infos: their descriptions, with their names as frames, except odometry.
         visible: names of the planner's sensors, in the robot's order.
+        target: the person that the task is about, once the people are known; usually None.
     """
 
     scenario: Scenario
@@ -46,6 +49,7 @@ class BuiltRun:
     sensors: Mapping[str, Sensor | SensorWithMemory]
     infos: Mapping[str, SensorInfo]
     visible: tuple[str, ...]
+    target: Target | None = None
 
 
 def build_runs(
@@ -107,8 +111,10 @@ def build_run(
     infos = {n: _with_frame(n, sensor.info()) for n, sensor in sensors.items()}
     check_frames(model, infos)
     visible = select_sensors(choice.needs, infos, choice.name, privileged=choice.privileged)
+    follows = robot.task.person is not None and robot.task.person.knows == "tracked"
+    needed = {*visible, *(lidars_of(infos) if follows else ())}
     chosen = [
-        n for n, info in infos.items() if record == "all" or n in visible or info.category in EXACT
+        n for n, info in infos.items() if record == "all" or n in needed or info.category in EXACT
     ]
     return BuiltRun(
         scenario=scenario,

@@ -19,6 +19,7 @@ from pydrake.systems.framework import (
     State,
 )
 
+from crowdbot.core.assistance.led import LedPeople
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.sim import ports
@@ -27,6 +28,7 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
+from crowdbot.core.sim.person_targets import led_in
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK
@@ -54,6 +56,7 @@ class CrowdSystem(LeafSystem):
         endings: Sequence[RobotEnding],
         margin: float,
         tick: float = TICK,
+        led: Sequence[LedPeople] = (),
     ) -> None:
         """Take people and robots.
 
@@ -62,10 +65,11 @@ class CrowdSystem(LeafSystem):
             endings: which robots have left.
             margin: how much larger than its body people take a robot for, m.
             tick: s.
+            led: people who follow robots.
         """
         super().__init__()
         self.engine, self._pushes, self._endings = engine, tuple(pushes), tuple(endings)
-        self._tick, count = tick, len(models)
+        self._tick, count, self._led = tick, len(models), tuple(led)
         self._rows, self._outlines = rows_of(models, margin), outlines_of(models)
         body = engine.world.stiffness
         self._stiffnesses = np.array([in_series(body, model.skin_stiffness) for model in models])
@@ -97,6 +101,9 @@ class CrowdSystem(LeafSystem):
         crowd = values.get_mutable_value(self._crowd)
         before = crowd[self._news].tolist()
         self._take_out(crowd)
+        if self._led and int(crowd[s.TICK]) % self.engine.ticks_per_decision == 0:
+            for people in self._led:
+                people.set_goals(crowd, *self._rows[people.robot][:2].tolist())
         self._advance(crowd)
         news = crowd[self._news].tolist()
         if news == before:  # at most ticks: nothing touches a robot and nothing ends
@@ -154,7 +161,8 @@ def add_crowd(
         return None
     spec, models = builts[0].scenario.crowd, [built.model for built in builts]
     margin = spec.robot_response.margin if spec else 0.0
-    crowd = CrowdSystem(engine, models, [r.push for r in robots], endings, margin, tick)
+    pushes = [robot.push for robot in robots]
+    crowd = CrowdSystem(engine, models, pushes, endings, margin, tick, led_in(builts))
     builder.AddNamedSystem("crowd", crowd)
     for k, robot in enumerate(robots):
         builder.Connect(robot.port, crowd.GetInputPort(ports.of_robot(ports.ROBOT_STATE, k)))

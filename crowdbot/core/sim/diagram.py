@@ -163,7 +163,7 @@ def _add_sensors_and_planner(
     # Planner, slew limits, control mode.
     planner = add_planner(
         builder, robot.built, base, crowd, bank, robot.host, robot.log, others,
-        privileged=robot.privileged,
+        privileged=robot.privileged, seed=seed,
     )  # fmt: skip
 
     # What ends the robot, and the run with the last one, and takes its samples.

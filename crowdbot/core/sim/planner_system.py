@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,8 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from crowdbot.core.assistance.finder import PersonSight
+from crowdbot.core.assistance.guide import PersonGuide, lidars_of
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.crowd.response.notice import notice_time
 from crowdbot.core.geometry.footprint import footprint_of_model
@@ -38,6 +41,7 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.other_robots import OtherRobots
+from crowdbot.core.sim.person_targets import guide_of, relative_people
 from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
@@ -98,6 +102,14 @@ class People:
         )
 
 
+class Guided(NamedTuple):
+    """A guide, the people it is about as a function of robot and crowd state, and its lidars."""
+
+    guide: PersonGuide
+    relative: Callable[[Array, Array], Array]
+    lidars: tuple[str, ...]
+
+
 class PlannerSystem(LeafSystem):
     """Input: readings; robot and crowd for a privileged planner. Outputs: command, desired state.
 
@@ -120,6 +132,7 @@ class PlannerSystem(LeafSystem):
         on_signal: Callable[[float, str, float], None],
         on_drawing: Callable[[float, str, NDArray[np.float32]], None],
         people: People | None = None,
+        guided: Guided | None = None,
         crowd_size: int = 0,
         others: OtherRobots,
     ) -> None:
@@ -127,6 +140,7 @@ class PlannerSystem(LeafSystem):
 
         Args:
             people: who they are, for a planner that may know; None hides the truth.
+            guided: what tells it where its person is, if its task is about one.
             crowd_size: length of their state.
             others: the other robots, and the ending of this one.
         """
@@ -144,9 +158,9 @@ class PlannerSystem(LeafSystem):
         self._port = self.DeclareVectorInputPort(
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
         )
-        self._people = people
+        self._people, self._guided = people, guided
         self._robot = self._crowd = None
-        if people is not None:
+        if people is not None or guided is not None:
             self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
             if crowd_size:
                 self._crowd = self.DeclareVectorInputPort(ports.CROWD_STATE, crowd_size)
@@ -182,7 +196,7 @@ class PlannerSystem(LeafSystem):
 
     def _ask(self, context: Context, t: float) -> Command:
         """The planner's command; one that fails ends its robot, and with the only one the run."""
-        seen = self._observe(self._port.Eval(context), t, self._truth(context))
+        seen = self._seen(context, t)
         try:
             hosted = self._host.step(seen)
         except PlannerError as error:
@@ -199,7 +213,30 @@ class PlannerSystem(LeafSystem):
             return None
         context = self.GetMyContextFromRoot(root)
         t = context.get_discrete_state(self._command).value().item(0) * TICK
-        return self._observe(self._port.Eval(context), t, self._truth(context))
+        return self._seen(context, t)
+
+    def _seen(self, context: Context, t: float) -> Observation:
+        """Return what the planner gets; of a task about a person also where the person is."""
+        bank = self._port.Eval(context)
+        obs = self._observe(bank, t, self._truth(context))
+        if self._guided is None or self._robot is None or self._crowd is None:
+            return obs
+        guide, relative, lidars = self._guided
+        found = guide.update(
+            PersonSight(
+                t=t,
+                pose=obs.pose,
+                twist=obs.twist,
+                vy=obs.vy,
+                readings={
+                    n: self._bank.reading(n, bank)
+                    for n in lidars
+                    if bank[self._bank.slots[n].stamp] >= 0.0
+                },
+                relative=relative(self._robot.Eval(context), self._crowd.Eval(context)),
+            )
+        )
+        return replace(obs, person=found.person, goal=found.goal, goal_zone=found.goal_zone)
 
     def _truth(self, context: Context) -> Truth | None:
         """Return the ground truth, if the planner is privileged."""
@@ -272,8 +309,13 @@ def add_planner(
     others: OtherRobots,
     *,
     privileged: bool,
+    seed: int,
 ) -> PlannerSystem:
-    """Add the planner to a diagram, between the readings and the robot's desired state."""
+    """Add the planner to a diagram, between the readings and the robot's desired state.
+
+    ``seed`` is that of the run.
+    """
+    guided = _guided(built, seed)
     planner = PlannerSystem(
         host, bank, robot, built.model.limits, built.task,
         rate=built.scenario.rates.planner, visible=dict.fromkeys(built.visible),
@@ -281,19 +323,28 @@ def add_planner(
         on_signal=log.writer.signal,
         on_drawing=log.drawing,
         people=_people(crowd, others.models) if privileged else None,
+        guided=guided,
         crowd_size=0 if crowd is None else crowd.state.size(),
         others=others,
     )  # fmt: skip
     builder.AddNamedSystem("planner", planner)
     builder.Connect(bank.GetOutputPort(ports.READINGS), planner.GetInputPort(ports.READINGS))
     builder.Connect(planner.GetOutputPort(ports.DESIRED_STATE), robot.desired)
-    if privileged:
+    if privileged or guided is not None:
         builder.Connect(robot.port, planner.GetInputPort(ports.ROBOT_STATE))
         if crowd is not None:
             builder.Connect(crowd.state, planner.GetInputPort(ports.CROWD_STATE))
+    if privileged:
         for k, state in enumerate(others.states):
             builder.Connect(state, planner.GetInputPort(ports.other_robot(k)[0]))
     return planner
+
+
+def _guided(built: BuiltRun, seed: int) -> Guided | None:
+    guide = guide_of(built, seed)
+    if guide is None or built.target is None:
+        return None
+    return Guided(guide, relative_people(built.target), tuple(lidars_of(built.infos)))
 
 
 def _people(crowd: CrowdSystem | None, others: Sequence[RobotModel]) -> People:

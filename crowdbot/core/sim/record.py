@@ -21,6 +21,7 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.start_pose_check import check_starts
 from crowdbot.core.sim.diagram import Blocks, RunRobot, build_diagram
 from crowdbot.core.sim.loggers.run_logs import run_logs
+from crowdbot.core.sim.person_targets import with_targets
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.runner import run
@@ -43,9 +44,11 @@ def record_robots(
         hosts: ask planners that have been reset, by robot; None builds those that ``setup`` chose.
 
     Raises:
-        InputError: a robot would start in a wall, an obstacle, a person or another robot.
+        InputError: a robot would start in a wall, an obstacle, a person or another robot, or the
+            person of its task is not there.
         PlannerHungError: a planner step never returned; the recording is closed all the same.
     """
+    builts = with_targets(builts, setup.agents)
     first = next(iter(builts.values()))
     engine = build_crowd(first.scenario, setup.agents, first.parts, setup.registry)
     check_starts(builts, engine)

@@ -78,12 +78,13 @@ def _finish(blocks: Blocks, context: Any) -> None:
 
 
 def _progress(stage: str, blocks: Blocks, context: Any, begin: float) -> Progress:
-    """Return the progress: the largest time limit, and distance of a robot that goes on."""
+    """Return the progress: the largest time limit, and the largest distance to a zone."""
     t = float(context.get_time())
     factor = t / max(time.perf_counter() - begin, 1e-9)
     limit = max(robot.given.built.task.time_limit for robot in blocks.robots)
     going_on = [robot for robot in blocks.robots if not robot.given.ending.ended]
-    farthest = max(_distance(robot, context) for robot in going_on or blocks.robots)
+    places = [r for r in going_on or blocks.robots if r.given.built.target is None]
+    farthest = max((_distance(robot, context) for robot in places), default=None)
     return Progress(stage, t, limit, factor, farthest)
 
 

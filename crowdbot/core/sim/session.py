@@ -23,6 +23,7 @@ from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.built_run import BuiltRun, build_runs
+from crowdbot.core.sim.person_targets import with_targets
 from crowdbot.core.sim.run_setup import RunSetup
 from crowdbot.core.sim.run_thread import Exchange, own_stdout, start_run
 from crowdbot.core.sim.session_arguments import CommandLike, checked_commands, checked_recording
@@ -355,7 +356,8 @@ class Session:
             raise InputError("the session has not begun; reset() begins it")
 
     def _build(self) -> dict[str, BuiltRun]:
-        return build_runs(self.scenario, self._registry, self._choice, "used")
+        builts = build_runs(self.scenario, self._registry, self._choice, "used")
+        return with_targets(builts, self._people)
 
     def _describe(self, builts: Mapping[str, BuiltRun]) -> None:
         self.robots: Mapping[str, SessionRobot] = {

@@ -19,6 +19,7 @@ from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.from_recordings import FromRecordings
 from crowdbot.core.trajectories.own_recordings import arrival
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.errors import InputError
 
 _Cached = TypeVar("_Cached")
@@ -124,6 +125,7 @@ class Trajectories(FromRecordings):
             whose radius is ``robot.radius``. None: a disc of ``robot.radius``.
         robot_speed_limit: the robot's top speed, m/s; None: unknown.
         signals: name -> (P, 2) time (s) and value.
+        person: the person or group that the robot's task is about; None: the goal is a place.
         commands: of the robot's driver and its planner, where both were recorded.
     """
 
@@ -139,6 +141,7 @@ class Trajectories(FromRecordings):
     robot_speed_limit: float | None = None
     signals: Mapping[str, Array] = field(default_factory=dict)
     commands: Commands | None = None
+    person: TaskPerson | None = None
     _cache: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def cached(self, key: Hashable, compute: Callable[[], _Cached]) -> _Cached:

@@ -64,7 +64,7 @@ def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
         yaw=yaw,
         radius=body.reach,
         outline=tuple(map(tuple, body.outline(x, y, yaw).tolist())),
-        goal=robot.task.goal.zone,
+        goal=robot.task.zone or "",
         sensors=tuple(_sectors(robot, x, y, yaw, model.base_height)),
     )
 

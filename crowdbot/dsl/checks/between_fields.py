@@ -9,6 +9,7 @@ from crowdbot.dsl.checks.agents import check_agents
 from crowdbot.dsl.checks.crowd import check_crowd
 from crowdbot.dsl.checks.facts import Facts
 from crowdbot.dsl.checks.paths import check_paths, check_place
+from crowdbot.dsl.checks.person_goals import check_person_goals
 from crowdbot.dsl.checks.pydantic_errors import locate, missing_field
 from crowdbot.dsl.checks.robots import check_robots, check_tasks
 from crowdbot.dsl.checks.spawns import check_spawns
@@ -80,4 +81,5 @@ _CHECKS: tuple[tuple[Check, tuple[str, ...]], ...] = (
     (check_robots, _ROBOTS),
     (_of_crowd(check_paths), _PEOPLE),
     (check_tasks, _ROBOTS),
+    (check_person_goals, (*_PEOPLE, "robots")),
 )

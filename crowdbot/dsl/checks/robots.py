@@ -49,16 +49,23 @@ def check_tasks(facts: Facts) -> Iterator[Diagnostic]:
     zones = facts.scenario.environment.zones
     for name, robot in facts.scenario.robots.items():
         task, path = robot.task, ("robots", name, "task")
-        start, zone = task.start[:2], zones.get(task.goal.zone)
-        if zone is None:
-            yield facts.unknown("zone", task.goal.zone, zones, *path, "goal", "zone")
-        elif zone.contains(*start):
-            text = (
-                f"robot '{name}' starts in its goal: {_at(start)} lies in zone '{task.goal.zone}'"
-            )
-            hint = "it would arrive after 0 s; move the start, or choose another zone"
-            yield Diagnostic("E145", text, facts.mark(*path, "start"), hint)
+        start = task.start[:2]
+        if task.zone is not None:
+            yield from _check_zone(facts, name, start, task.zone, zones.get(task.zone))
         yield from facts.outside(f"the start {{at}} of robot '{name}'", [start], *path, "start")
+
+
+def _check_zone(
+    facts: Facts, name: str, start: Point, goal: str, zone: Rectangle | None
+) -> Iterator[Diagnostic]:
+    """Check that the zone of a goal exists, and that the robot does not start in it."""
+    path = ("robots", name, "task")
+    if zone is None:
+        yield facts.unknown("zone", goal, facts.scenario.environment.zones, *path, "goal", "zone")
+    elif zone.contains(*start):
+        text = f"robot '{name}' starts in its goal: {_at(start)} lies in zone '{goal}'"
+        hint = "it would arrive after 0 s; move the start, or choose another zone"
+        yield Diagnostic("E145", text, facts.mark(*path, "start"), hint)
 
 
 def check_robots(facts: Facts) -> Iterator[Diagnostic]:
@@ -84,12 +91,12 @@ def _check_robot(facts: Facts, place: Place, name: str, robot: Robot) -> Iterato
         hint = f"there is {missing:.3g} m too little room"
         yield Diagnostic("E143", text, facts.mark(*path, "start"), hint)
         return
-    zone = facts.scenario.environment.zones.get(robot.task.goal.zone)
+    zone = facts.scenario.environment.zones.get(robot.task.zone or "")
     if zone is None:
-        return  # already an error
+        return  # already an error, or the goal is a person
     goal, radius = Area.of(zone), robot.model.half_width
     if not _leads(facts, place, radius, start, goal):
-        text = f"no way leads robot '{name}' from {_at(start)} to zone '{robot.task.goal.zone}'"
+        text = f"no way leads robot '{name}' from {_at(start)} to zone '{robot.task.zone}'"
         hint = f"around {_at(goal.centre)}, for a body that is {2.0 * radius:g} m wide"
         yield Diagnostic("E143", text, facts.mark(*path, "goal", "zone"), hint)
 

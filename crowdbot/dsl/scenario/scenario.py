@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge, Le
 from pydantic import (
+    BeforeValidator,
     Field,
     PrivateAttr,
     SerializeAsAny,
@@ -23,6 +24,14 @@ from pydantic import (
 from crowdbot.dsl.scenario.group_forces import GroupForces
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.scenario.people_kinds import PeopleKind
+from crowdbot.dsl.scenario.person_goals import (
+    AccompanyGoal,
+    ApproachGoal,
+    FollowGoal,
+    LeadGoal,
+    PersonGoal,
+    TaskGoal,
+)
 from crowdbot.dsl.scenario.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.scenario.routing import RoutingChoice
 from crowdbot.dsl.scenario.spawning import Agents, RouteEnd, Spawn
@@ -183,10 +192,29 @@ class Crowd(Spec):
         return self.flow is None and not (self.streams or self.spawns or self.agents)
 
 
-class Goal(Spec):
+class Goal(TaskGoal):
     """The zone that the robot's centre has to reach."""
 
+    kind: Literal["zone"] = Field(
+        default="zone",
+        exclude_if=lambda kind: kind == "zone",
+        description="A place; other kinds of goals are people.",
+    )
     zone: str = Field(description="Name of the goal zone.")
+
+
+def _zone_unless_said(value: Any) -> Any:
+    """Return a goal whose default kind is written out."""
+    return {"kind": TaskGoal.usual, **value} if isinstance(value, dict) else value
+
+
+#: A zone, or a person with what to do.
+GoalChoice = Annotated[
+    Annotated[
+        Goal | ApproachGoal | FollowGoal | AccompanyGoal | LeadGoal, Field(discriminator="kind")
+    ],
+    BeforeValidator(_zone_unless_said),
+]
 
 
 class TaskSpec(Spec):
@@ -195,7 +223,7 @@ class TaskSpec(Spec):
     start: tuple[Length, Length, Angle] = Field(
         strict=False, description="x, y (m) and heading (rad) at t = 0, world frame."
     )
-    goal: Goal
+    goal: GoalChoice = Field(description="A zone to reach, or a person to be with.")
     time_limit: PositiveDuration = Field(default=180.0, description="The run ends here, s.")
     when_ended: Literal["stay", "leave"] = Field(
         default="stay",
@@ -203,6 +231,16 @@ class TaskSpec(Spec):
         description="Of one robot among several that has arrived, failed or run out of time: it "
         "stays where it is, as an obstacle, or leaves.",
     )
+
+    @property
+    def zone(self) -> str | None:
+        """Return the name of the zone in which the task ends; None if a person alone decides."""
+        return self.goal.zone if isinstance(self.goal, Goal | LeadGoal) else None
+
+    @property
+    def person(self) -> PersonGoal | None:
+        """Return the goal if it is a person."""
+        return self.goal if isinstance(self.goal, PersonGoal) else None
 
 
 class Robot(Spec):
@@ -340,6 +378,7 @@ __all__ = [
     "CrowdSeed",
     "Flow",
     "Goal",
+    "GoalChoice",
     "NamedPolicy",
     "Rates",
     "Robot",

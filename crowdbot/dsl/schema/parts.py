@@ -99,7 +99,12 @@ class Parts:
             any_kind = {"anyOf": [{"$ref": _REF + n} for n in names]}
             cases.append({"if": {"not": {"required": ["kind"]}}, "then": any_kind})
         kind_field = {"description": "Which component this is.", "oneOf": words}
-        required = {} if self._layered else {"required": ["kind"]}
+        silent = [n for n in names if "kind" in self._raw[n].get("left_out", ())]
+        if self._canonical:  # at most one: the kind that is meant where none is written
+            none = {"not": {"required": ["kind"]}}
+            cases += [{"if": none, "then": {"$ref": _REF + name}} for name in silent]
+        free = self._layered or (self._canonical and silent)
+        required = {} if free else {"required": ["kind"]}
         return {"type": "object", "properties": {"kind": kind_field}, **required, "allOf": cases}
 
     # ------------------------------------------------------------ making definitions

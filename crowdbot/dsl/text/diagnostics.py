@@ -53,6 +53,8 @@ CODES = {
     "E143": "nowhere to stand, or no way to a goal",
     "E144": "floor plan that cannot be read",
     "E145": "start in the goal",
+    "E146": "goal person who is not there",
+    "E147": "goal person who does not fit the task",
     "E201": "missing include",
     "E202": "include cycle",
     "E203": "include outside the root folder",

@@ -57,6 +57,8 @@ BEYOND = {
     "E143": "where ways lead",
     "E144": "another file, or its text",
     "E145": "a place inside another",
+    "E146": "a number that another part has",
+    "E147": "a rule between parts",
     "E214": "a hash",
     "E215": "a hash",
     "E103": "fields may come from another file, so that none is required",

@@ -18,6 +18,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_model
 from crowdbot.core.scenarios.lock import population
 from crowdbot.dsl.scenario.scenario import Robot, Scenario
+from crowdbot.errors import InputError
 
 _MESHES: Mapping[str, str] = {
     "pepper": "Pepper", "smart_wheelchair": "Wheelchair", "qolo": "Qolo", "cuybot": "CuyBot",
@@ -124,7 +125,11 @@ def _robot(
     x, y, heading = robot.task.start
     place(element, "Position", x, y)
     turn(element, heading)
-    zone = scenario.environment.zones[robot.task.goal.zone]
+    if robot.task.zone is None:
+        raise InputError(
+            f"{scenario.id}: the goal of robot '{name}' is a person, which a trial cannot say"
+        )
+    zone = scenario.environment.zones[robot.task.zone]
     law = add(
         add(element, "controlLaw"), "LawGoals", speedCurrent="0", speedDefault="1.33",
         accelerationMax="0.8", angularSpeed="36000", reachedDist="0.5", isLooping="false",

@@ -26,7 +26,11 @@ _METHODS = ("reset", "step")
 
 Command = namedtuple("Command", "v w vy", defaults=(0.0,))
 Pose = namedtuple("Pose", "x y yaw")
-Task = namedtuple("Task", "start goal goal_zone time_limit robot")
+Task = namedtuple("Task", "start goal goal_zone time_limit robot person")
+PersonTask = namedtuple(
+    "PersonTask", "kind distance tolerance angle hold in_a_row knows radius side"
+)
+PersonEstimate = namedtuple("PersonEstimate", "x y heading vx vy age")
 RobotBody = namedtuple("RobotBody", "drive radius footprint front back half_width")
 RobotLimits = namedtuple("RobotLimits", "v_min v_max w_max a_max alpha_max command_timeout vy_max")
 Pinhole = namedtuple("Pinhole", "width height focal colour")
@@ -38,7 +42,9 @@ Reading = namedtuple("Reading", "stamp values colour")
 Truth = namedtuple(
     "Truth", "pose velocity people people_velocity people_radius people_id people_notice"
 )
-Observation = namedtuple("Observation", "t pose twist vy goal goal_zone readings log truth draw")
+Observation = namedtuple(
+    "Observation", "t pose twist vy goal goal_zone readings log truth draw person"
+)
 #: A planner may raise this if it has no valid command; the robot is stopped.
 NoValidCommand = type("NoValidCommand", (Exception,), {})
 

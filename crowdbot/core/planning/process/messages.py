@@ -25,6 +25,7 @@ def reset_message(
     task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
 ) -> dict[str, Any]:
     """Return ``reset``, without the size of the memory."""
+    person = {} if task.person is None else {"person": asdict(task.person)}
     return {
         "type": "reset",
         "task": {
@@ -33,6 +34,7 @@ def reset_message(
             "goal_zone": _array(task.goal_zone),
             "time_limit": float(task.time_limit),
             "robot": None if task.robot is None else _body(task.robot),
+            **person,
         },
         "limits": {name: float(value) for name, value in asdict(limits).items()},
         "sensors": {name: _sensor(info) for name, info in sensors.items()},
@@ -68,6 +70,8 @@ class ObservationWriter:
             "goal_zone": self._zone_map,
             "readings": {n: _reading(n, r, self._memory) for n, r in obs.readings.items()},
         }
+        if obs.person is not None:
+            message["person"] = {n: float(x) for n, x in asdict(obs.person).items()}
         if obs.truth is not None:
             message["truth"] = _truth(obs.truth)
         return message

@@ -37,6 +37,7 @@ from crowdbot.core.planning.python_file import (
 )
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.person_task import PersonEstimate, PersonTask
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import Pinhole, Reading, SensorInfo
 from crowdbot.core.types.task import Task
@@ -46,6 +47,7 @@ from crowdbot.old_names import collected_old_names
 _TYPES = SimpleNamespace(
     Task=Task, Pose=Pose, RobotBody=RobotBody, RobotLimits=RobotLimits, SensorInfo=SensorInfo,
     Pinhole=Pinhole, Reading=Reading, Observation=Observation, Truth=Truth,
+    PersonTask=PersonTask, PersonEstimate=PersonEstimate,
 )  # fmt: skip
 
 

@@ -134,7 +134,11 @@ class Decoder:
             goal_zone=self.array(sent["goal_zone"]),
             time_limit=sent["time_limit"],
             robot=self._body(sent.get("robot")),
+            person=self._made("PersonTask", sent.get("person")),
         )
+
+    def _made(self, name: str, sent: dict[str, Any] | None) -> Any:
+        return None if sent is None else getattr(self._types, name)(**sent)
 
     def _body(self, sent: dict[str, Any] | None) -> Any:
         if sent is None:
@@ -178,6 +182,7 @@ class Decoder:
             log=log,
             truth=self._truth(sent.get("truth")),
             draw=draw,
+            person=self._made("PersonEstimate", sent.get("person")),
         )
 
     def _reading(self, sent: dict[str, Any]) -> Any:

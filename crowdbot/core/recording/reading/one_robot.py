@@ -14,6 +14,7 @@ import numpy as np
 from crowdbot.core.recording.container.records import Record, decode
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader, check_format, with_tilts
 from crowdbot.core.recording.motion.states import States, StatesReader, series
+from crowdbot.core.recording.person_task import person_task_of
 from crowdbot.core.recording.reading.driver_commands import DriverCommands
 from crowdbot.core.recording.reading.scan_collector import ScanCollector
 from crowdbot.core.recording.reading.scans import ReplayScan
@@ -46,6 +47,7 @@ class RobotRecords:
     TOPICS: ClassVar[Mapping[str, str]] = {
         Topic.HEADER: "crowdbot_msgs/msg/RunHeader",
         Topic.TILTS: "crowdbot_msgs/msg/SensorTilts",
+        Topic.PERSON_TASK: "crowdbot_msgs/msg/PersonTask",
         Topic.CANDIDATES: "crowdbot_msgs/msg/VelocityCandidates",
         Topic.PERSON_GOALS: "crowdbot_msgs/msg/PersonGoals",
         Topic.STATE: "crowdbot_msgs/msg/RunStates",
@@ -114,6 +116,8 @@ class RobotRecords:
             header = RecordingHeader.from_message(self._messages(Topic.HEADER)[0])
             for tilts in self._messages(Topic.TILTS):
                 header = replace(header, sensors=with_tilts(header.sensors, tilts))
+            for task in self._messages(Topic.PERSON_TASK):
+                header = replace(header, person=person_task_of(task))
             self._header = header
         return self._header
 
@@ -197,7 +201,8 @@ class RobotRecords:
         except (InputError, ValueError) as error:
             raise InputError(f"{self._path}: damaged: {error}") from error
         end = self._records[Topic.STATE][-1].ns
-        return replace(run, commands=self._driver.commands(header, end))
+        commands = self._driver.commands(header, end)
+        return replace(run, commands=commands, person=header.person)
 
     # ------------------------------------------------------------------------ decoding
     def _messages(self, topic: str) -> list[Any]:

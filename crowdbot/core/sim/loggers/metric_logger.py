@@ -17,6 +17,7 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from crowdbot.core.assistance.watch import PersonWatch
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, TOPPLED
@@ -27,6 +28,7 @@ from crowdbot.core.sim.contacts.wall_contact import WallContacts, wall_force
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.other_robots import OtherRobots
+from crowdbot.core.sim.person_targets import watch_of
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
@@ -60,6 +62,7 @@ class MetricLogger(LeafSystem):
         *,
         felt: bool,
         others: OtherRobots,
+        person: PersonWatch | None = None,
     ) -> None:
         """Monitor one robot.
 
@@ -68,9 +71,10 @@ class MetricLogger(LeafSystem):
             rate: of the log, Hz.
             felt: True if the robot's base is one that forces act on.
             others: the other robots, and the ending of this one.
+            person: decides about a task whose goal is a person; None: the goal is a zone.
         """
         super().__init__()
-        self._log, self._task, self.walls = log, task, walls
+        self._log, self._task, self.walls, self._person = log, task, walls, person
         self._ticks_per_sample = ticks(rate)
         self._last_tick = -1
         self._before: Array | None = None  # the robot's state one tick ago
@@ -111,8 +115,11 @@ class MetricLogger(LeafSystem):
             arrived = self._look(t, RobotState(*now.tolist()), before)
         if sampled:
             self._log.sample(t, RobotState(*now.tolist()), crowd)
+            if self._person is not None and crowd is not None:
+                arrived = self._is_done(self._person, t, RobotState(*now.tolist()), crowd)
         if arrived:
-            return self._end(context, t, ARRIVED, "centre inside the goal zone")
+            zone = "centre inside the goal zone"
+            return self._end(context, t, ARRIVED, zone if self._person is None else "task done")
         if ending.failure:
             return self._end(context, t, PLANNER_FAILED, ending.failure)
         if ending.toppled_time is not None:
@@ -165,6 +172,9 @@ class MetricLogger(LeafSystem):
         free = self.walls.watch(t, robot, speed)
         if self._forces is None:
             self.walls.feel(None)
+        if self._person is not None:
+            self._clearance.reset(robot.x, robot.y, free)
+            return False
         zone = self._task.goal_zone
         distance = distance_to(zone, robot.x, robot.y)
         self._clearance.reset(robot.x, robot.y, min(free, distance - _ROUNDING))
@@ -173,6 +183,13 @@ class MetricLogger(LeafSystem):
             return False
         fraction = entry_fraction(zone, was.x, was.y, robot.x, robot.y) if t > 0.0 else 1.0
         self._ending.goal_time = t - (1.0 - fraction) * TICK
+        return True
+
+    def _is_done(self, person: PersonWatch, t: float, robot: RobotState, crowd: Array) -> bool:
+        """Return True if the robot's task about a person is done."""
+        if self._ending.toppled_time is not None or not person.is_done(t, robot, crowd):
+            return False
+        self._ending.goal_time = t
         return True
 
 
@@ -193,6 +210,7 @@ def add_metric_logger(
         built.scenario.rates.log,
         felt=robot.rig is not None,
         others=others,
+        person=watch_of(built),
     )
     builder.AddNamedSystem("metric_logger", logger)
     builder.Connect(robot.port, logger.GetInputPort(ports.ROBOT_STATE))

@@ -16,6 +16,7 @@ from crowdbot.core.sim.loggers.watched_run import WatchedRun
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.run_outcome import last_arrival, run_status, status_of
 from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, choosers, ids
+from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive
 
 
@@ -127,21 +128,24 @@ def _close_shared(writer: RecordingWriter, endings: Mapping[str, RobotEnding]) -
 
 def header_of(setup: RunSetup, built: BuiltRun) -> RecordingHeader:
     """The constants of a robot's run, without people."""
-    model, task = built.model, built.task
+    model, task, target = built.model, built.task, built.target
     return RecordingHeader(
         scenario=built.scenario.id,
         hashes=setup.hashes,
         robot=RobotHeader(
             radius=model.footprint_radius,
             mass=model.mass,
-            goal=task.goal,
+            goal=task.goal if target is None else None,
             base_height=model.base_height,
             limits=model.limits,
             footprint=model.footprint,
         ),
         sensors=built.infos,
         walls=built.parts.walls[built.parts.wall_heights[:, 0] < model.height],
-        goal_zone=task.goal_zone,
+        goal_zone=task.goal_zone if built.robot.task.zone is not None else None,
+        person=None
+        if target is None
+        else TaskPerson(task=target.task(), id=target.id, facing=target.heading),
     )
 
 

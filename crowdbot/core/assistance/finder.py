@@ -1,0 +1,163 @@
+"""Finders: what a robot knows of its person, as tracked by its lidars or as told by a device."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from crowdbot.core.assistance.target import Target
+from crowdbot.core.sensing.points import LidarPoints
+from crowdbot.core.sensing.tracking.people_tracker import PeopleTracker, Tracks
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.sensor import Reading, SensorInfo
+
+#: Period in which a device tells the pose of its wearer, s, and the error of its velocity, m/s.
+TOLD_EVERY, _SPEED_ERROR = 0.25, 0.1
+#: A track is taken for the person this far from where the person should be, m; and more by this
+#: part of the way that the person may have gone since, up to a limit.
+_GATE, _PART, _FARTHEST = 0.6, 0.5, 2.5
+#: A person who was last seen this fast is expected to walk on for this long, m/s and s.
+_WALKS, _WALKS_ON = 0.2, 2.0
+#: People face where they walk when faster than this, m/s.
+_TURNS = 0.3
+
+
+@dataclass(slots=True)
+class KnownPerson:
+    """What is known of one person, in the frame of odometry.
+
+    Attributes:
+        track: number of its track; -1: none.
+        seen: when it was last seen, s.
+    """
+
+    x: float
+    y: float
+    heading: float
+    vx: float = 0.0
+    vy: float = 0.0
+    track: int = -1
+    seen: float = 0.0
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Return where it should be at a time: it walks on for a while."""
+        ahead = min(max(0.0, t - self.seen), _WALKS_ON)
+        if math.hypot(self.vx, self.vy) < _WALKS:
+            ahead = 0.0
+        return self.x + self.vx * ahead, self.y + self.vy * ahead
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PersonSight:
+    """What finders may use in one step.
+
+    Attributes:
+        t: s.
+        pose, twist, vy: by odometry, as in `Observation`.
+        readings: of all lidars.
+        relative: (M, 5) x, y, facing, vx, vy of the people in the robot's base frame, NaN where
+            they are not there: what a device measures, before its errors.
+    """
+
+    t: float
+    pose: Pose
+    twist: tuple[float, float]
+    vy: float
+    readings: Mapping[str, Reading]
+    relative: Array
+
+
+@dataclass
+class PersonFinder:
+    """Knows the people of a target by a pose at the start; subclasses learn more.
+
+    Args:
+        target: who it is.
+        rng: errors of poses.
+    """
+
+    target: Target
+    rng: np.random.Generator
+    members: list[KnownPerson] = field(init=False)
+
+    def __post_init__(self) -> None:
+        t = self.target
+        self.members = [
+            KnownPerson(x, y, h)
+            for x, y, h in self._with_errors(np.column_stack([t.x, t.y, t.heading])).tolist()
+        ]
+
+    def update(self, sight: PersonSight) -> None:
+        """Learn from one step."""
+
+    def _with_errors(self, poses: Array) -> Array:
+        """Return poses (M, 3) as the robot gets them."""
+        goal = self.target.goal
+        deviation = [goal.position_error, goal.position_error, goal.heading_error]
+        noisy: Array = poses + self.rng.normal(size=poses.shape) * deviation
+        return noisy
+
+
+class ToldFinder(PersonFinder):
+    """Gets the pose of each person from a device, relative to the robot, at a low rate."""
+
+    def update(self, sight: PersonSight) -> None:
+        """Take what the device tells, if it is due."""
+        if (sight.t / TOLD_EVERY) % 1.0 != 0.0:
+            return
+        poses = self._with_errors(sight.relative[:, :3])
+        speeds = sight.relative[:, 3:] + _SPEED_ERROR * self.rng.normal(size=(len(poses), 2))
+        c, s = math.cos(sight.pose.yaw), math.sin(sight.pose.yaw)
+        told = zip(self.members, poses.tolist(), speeds.tolist(), strict=True)
+        for member, (x, y, heading), (vx, vy) in told:
+            if math.isnan(x):
+                continue
+            member.x, member.y = sight.pose.x + c * x - s * y, sight.pose.y + s * x + c * y
+            member.heading = math.remainder(heading + sight.pose.yaw, 2.0 * math.pi)
+            member.vx, member.vy, member.seen = c * vx - s * vy, s * vx + c * vy, sight.t
+
+
+class TrackingFinder(PersonFinder):
+    """Follows each person with the robot's lidars, from the pose at the start."""
+
+    def __init__(
+        self, target: Target, rng: np.random.Generator, lidars: Mapping[str, SensorInfo]
+    ) -> None:
+        super().__init__(target, rng)
+        self._points, self._tracker = LidarPoints(lidars), PeopleTracker()
+
+    def update(self, sight: PersonSight) -> None:
+        """Look for each person where the last track of it was, or should be by now."""
+        points = self._points(sight.readings, sight.t, sight.twist, sight.vy)
+        tracks = self._tracker.update(sight.t, sight.pose, points)
+        rows = {int(number): row for row, number in enumerate(tracks.id)}
+        taken = {m.track for m in self.members if m.track in rows}
+        for member in self.members:
+            if member.track not in rows:
+                member.track = _nearest(member, sight.t, tracks, taken)
+                taken.add(member.track)
+            if member.track in rows:
+                _follow(member, sight.t, tracks, rows[member.track])
+
+
+def _nearest(member: KnownPerson, t: float, tracks: Tracks, taken: set[int]) -> int:
+    """Return the number of the track that is taken for a person; -1: none is near enough."""
+    x, y = member.at(t)
+    walks = math.hypot(member.vx, member.vy) >= _WALKS
+    gone = _PART * math.hypot(member.vx, member.vy) * (t - member.seen) if walks else 0.0
+    gate = min(_FARTHEST, _GATE + gone)
+    away = np.hypot(tracks.position[:, 0] - x, tracks.position[:, 1] - y)
+    free = ~np.isin(tracks.id, list(taken)) & (away <= gate)
+    return int(tracks.id[np.argmin(np.where(free, away, np.inf))]) if free.any() else -1
+
+
+def _follow(member: KnownPerson, t: float, tracks: Tracks, row: int) -> None:
+    """Take over what a track says."""
+    (member.x, member.y), (vx, vy) = tracks.position[row].tolist(), tracks.velocity[row].tolist()
+    member.vx, member.vy, member.seen = vx, vy, t - float(tracks.unseen[row])
+    if math.hypot(vx, vy) > _TURNS:
+        member.heading = math.atan2(vy, vx)

@@ -1,0 +1,154 @@
+"""PersonGuide: tells a planner where its person is, and so where to go."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from crowdbot.core.assistance.finder import PersonFinder, PersonSight, ToldFinder, TrackingFinder
+from crowdbot.core.assistance.target import Target
+from crowdbot.core.geometry.stance import SOCIAL, place_beside, together
+from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.motion import Pose
+from crowdbot.core.types.person_task import PersonEstimate, PersonTask
+from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.task import Task
+from crowdbot.errors import InputError
+
+#: Largest distance of the corners of a moving goal zone from the goal, m.
+_ZONE = 0.3
+_CORNERS = np.arange(8) * (0.25 * math.pi)
+
+
+class Guidance(NamedTuple):
+    """What a planner gets of a task whose goal is a person: frames and units of `Observation`."""
+
+    person: PersonEstimate
+    goal: tuple[float, float]
+    goal_zone: Array
+
+
+class PersonGuide:
+    """Where the person is, by what the robot may know, and where the robot's place is.
+
+    Args:
+        task: of the robot, from `task_with_person`.
+        target: who it is.
+        lidars: of the robot, for one who tracks.
+        seed: of the errors.
+    """
+
+    def __init__(
+        self, task: Task, target: Target, lidars: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        self._task, self._target = task, target
+        rng = np.random.default_rng(seed)
+        tracked = target.goal.knows == "tracked"
+        self._finder: PersonFinder = (
+            TrackingFinder(target, rng, lidars) if tracked else ToldFinder(target, rng)
+        )
+        self._last: tuple[float, Guidance] | None = None
+
+    def update(self, sight: PersonSight) -> Guidance:
+        """Return what the planner gets in a step; the same again for the same time."""
+        if self._last is None or self._last[0] != sight.t:
+            self._finder.update(sight)
+            self._last = sight.t, self._guidance(sight)
+        return self._last[1]
+
+    def _guidance(self, sight: PersonSight) -> Guidance:
+        person = self._estimate(sight.t)
+        goal = self._goal(person, sight.pose)
+        if self._target.goal.kind == "lead":
+            return Guidance(person, goal, self._task.goal_zone)
+        return Guidance(person, goal, zone_around(goal, self._target.goal.tolerance))
+
+    def _estimate(self, t: float) -> PersonEstimate:
+        members = self._finder.members
+        at = np.array([member.at(t) for member in members])
+        facing = np.array([[member.heading for member in members]])
+        whole = together(at[np.newaxis, :, 0], at[np.newaxis, :, 1], facing, self._target.radius)
+        count = len(members)
+        return PersonEstimate(
+            x=float(whole.x[0]),
+            y=float(whole.y[0]),
+            heading=float(whole.heading[0]),
+            vx=sum(member.vx for member in members) / count,
+            vy=sum(member.vy for member in members) / count,
+            age=max(0.0, t - min(member.seen for member in members)),
+        )
+
+    def _goal(self, person: PersonEstimate, robot: Pose) -> tuple[float, float]:
+        task = self._task.person
+        assert task is not None
+        assert self._task.robot is not None
+        if task.kind == "lead":  # wait for one who falls behind
+            away = math.hypot(person.x - robot.x, person.y - robot.y)
+            reach = task.radius + self._task.robot.back
+            near = away - reach <= min(task.distance + task.tolerance, SOCIAL)
+            return self._task.goal if near else (robot.x, robot.y)
+        place = place_beside(task, self._task.robot, person.x, person.y, person.heading, robot)
+        return place.x, place.y
+
+
+def task_with_person(task: Task, target: Target) -> Task:
+    """Return the task of a robot with what a planner may know of its person at the start.
+
+    Args:
+        task: with the robot's body, and of ``lead`` with the goal zone.
+        target: who it is.
+    """
+    person: PersonTask = target.task()
+    if person.kind == "lead":
+        return _replaced(task, person, task.goal, task.goal_zone)
+    assert task.robot is not None
+    x, y, heading, _ = (float(part[0]) for part in target.at_start)
+    place = place_beside(person, task.robot, x, y, heading, task.start)
+    goal = (place.x, place.y)
+    return _replaced(task, person, goal, zone_around(goal, person.tolerance))
+
+
+def _replaced(task: Task, person: PersonTask, goal: tuple[float, float], zone: Array) -> Task:
+    return Task(
+        start=task.start,
+        goal=goal,
+        goal_zone=zone,
+        time_limit=task.time_limit,
+        robot=task.robot,
+        person=person,
+    )
+
+
+def zone_around(goal: tuple[float, float], tolerance: float) -> Array:
+    """Return a polygon (8, 2) around a goal, m."""
+    radius = min(_ZONE, tolerance)
+    return np.column_stack(
+        [goal[0] + radius * np.cos(_CORNERS), goal[1] + radius * np.sin(_CORNERS)]
+    )
+
+
+def check_sees(
+    scenario: str, robot: str, target: Target, sensors: Mapping[str, SensorInfo]
+) -> None:
+    """Refuse a robot that would have to track its person without a lidar.
+
+    Raises:
+        InputError: it has none.
+    """
+    if target.goal.knows == "tracked" and not lidars_of(sensors):
+        raise InputError(
+            f"{scenario}: robot '{robot}' has to track {target.goal.person}, and has no lidar; "
+            "give it one, or write 'knows: told' in its goal"
+        )
+
+
+def lidars_of(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorInfo]:
+    """Return the planar lidars, in whose points people are found."""
+    return {
+        name: info
+        for name, info in sensors.items()
+        if info.category == "lidar" and info.angles is not None and info.angles.ndim == 1
+    }

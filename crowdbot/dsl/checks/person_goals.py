@@ -1,0 +1,94 @@
+"""Checks of goals that are people: who it is, and that the task fits the person."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from crowdbot.dsl.checks.facts import Facts, Path
+from crowdbot.dsl.scenario.person_goals import LeadGoal, PersonGoal
+from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.spawning import Agent
+from crowdbot.dsl.text.diagnostics import Diagnostic
+
+
+def check_person_goals(facts: Facts) -> Iterator[Diagnostic]:
+    """Check the goal of each robot whose goal is a person."""
+    led = dict[str, str]()
+    for name, robot in facts.scenario.robots.items():
+        goal, path = robot.task.person, ("robots", name, "task", "goal")
+        if goal is None:
+            continue
+        if facts.scenario.crowd is None:
+            text = f"the goal of robot '{name}' is {goal.person}, and there are no people"
+            yield Diagnostic("E146", text, facts.mark(*path, "person"), "write a crowd")
+            continue
+        yield from _check_who(facts, goal, path)
+        if isinstance(goal, LeadGoal):
+            yield from _check_lead(facts, goal, path)
+            other = led.setdefault(str(goal.person), name)
+            if other != name:
+                text = f"robots '{other}' and '{name}' both lead {goal.person}"
+                yield Diagnostic("E147", text, facts.mark(*path, "person"))
+
+
+def _check_who(facts: Facts, goal: PersonGoal, path: Path) -> Iterator[Diagnostic]:
+    """Check that the person exists, is there at the start, and does not jump."""
+    who, crowd = goal.person, facts.crowd
+    (field,) = who.written
+    where = (*path, "person", field)
+    for what, known in (("spawn", crowd.spawns), ("stream", crowd.streams)):
+        if field == what and getattr(who, what) not in known:
+            yield facts.unknown(what, getattr(who, what), known, *where)
+            return
+    found = agents_of(crowd, goal)
+    if field in ("agent", "group") and not found:
+        hint = _listed(crowd, field)
+        text = "no agent belongs to group" if field == "group" else "there is no agent"
+        yield Diagnostic("E146", f"{text} {getattr(who, field)}", facts.mark(*where), hint)
+    late = [agent for agent in found if agent.start_time > 0.0]
+    if late or _enters_later(crowd, goal):
+        text = f"{who} is not there at the start, and the robot could not be shown to it"
+        yield Diagnostic("E146", text, facts.mark(*where), "a goal has start_time 0")
+    if any(agent.portals for agent in found) or _jumps(crowd, goal):
+        text = f"{who} goes through portals, and would jump away from the robot"
+        yield Diagnostic("E147", text, facts.mark(*where), "write goals instead of portals")
+
+
+def agents_of(crowd: Crowd, goal: PersonGoal) -> list[Agent]:
+    """Return the explicit agents that a goal names, if any."""
+    who = goal.person
+    if who.agent is not None:
+        return [agent for agent in crowd.agents if agent.id == who.agent]
+    return [a for a in crowd.agents if who.group is not None and a.group == who.group]
+
+
+def _listed(crowd: Crowd, field: str) -> str:
+    numbers = {a.id for a in crowd.agents} if field == "agent" else {a.group for a in crowd.agents}
+    known = sorted(numbers - {-1})
+    some = ", ".join(map(str, known[:8])) + (", …" if len(known) > 8 else "")
+    return f"known: {some}" if known else f"no explicit agent has a number of a {field}"
+
+
+def _enters_later(crowd: Crowd, goal: PersonGoal) -> bool:
+    who = goal.person
+    if who.spawn is not None:
+        time = crowd.spawns[who.spawn].start_time
+        return time.value - time.spread > 0.0
+    return who.stream is not None and crowd.streams[who.stream].entering is not None
+
+
+def _jumps(crowd: Crowd, goal: PersonGoal) -> bool:
+    who = goal.person
+    return who.spawn is not None and crowd.spawns[who.spawn].portals is not None
+
+
+def _check_lead(facts: Facts, goal: LeadGoal, path: Path) -> Iterator[Diagnostic]:
+    """Check that the person has no other way."""
+    who = goal.person
+    found = agents_of(facts.crowd, goal)
+    walks = any(a.goals and any(point != (a.x, a.y) for point in a.goals) for a in found)
+    spawn = None if who.spawn is None else facts.crowd.spawns.get(who.spawn)
+    if walks or who.stream is not None or (spawn is not None and not spawn.standing):
+        text = f"{who} has a way of its own, and would not follow the robot"
+        hint = "one who is led stands: goals is the start itself, or standing: true"
+        yield Diagnostic("E147", text, facts.mark(*path, "person"), hint)
