@@ -28,7 +28,7 @@ _TURNS = 0.3
 
 @dataclass(slots=True)
 class KnownPerson:
-    """What is known of one person, in the frame of odometry.
+    """Knowledge of one person, in the frame of odometry.
 
     Attributes:
         track: number of its track; -1: none.
@@ -53,7 +53,7 @@ class KnownPerson:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PersonSight:
-    """What finders may use in one step.
+    """Data that finders may use in one step.
 
     Attributes:
         t: s.

@@ -24,7 +24,7 @@ _CORNERS = np.arange(8) * (0.25 * math.pi)
 
 
 class Guidance(NamedTuple):
-    """What a planner gets of a task whose goal is a person: frames and units of `Observation`."""
+    """A planner's data on a task whose goal is a person: frames and units of `Observation`."""
 
     person: PersonEstimate
     goal: tuple[float, float]
@@ -32,7 +32,7 @@ class Guidance(NamedTuple):
 
 
 class PersonGuide:
-    """Where the person is, by what the robot may know, and where the robot's place is.
+    """Estimates the person's pose from what the robot may know, and the robot's place.
 
     Args:
         task: of the robot, from `task_with_person`.

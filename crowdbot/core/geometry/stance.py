@@ -1,4 +1,4 @@
-"""Where the robot's place is beside a person, and how much a robot is off it.
+"""The robot's place beside a person, and how much a robot is off it.
 
 Functions take numbers or arrays over time alike. Angles are in rad, frames are one at rest.
 """
@@ -38,7 +38,7 @@ class PersonCircle(NamedTuple):
 
 
 class Off(NamedTuple):
-    """How a robot stands to a person: numbers, or arrays (N,).
+    """A robot's stance to a person: numbers, or arrays (N,).
 
     Attributes:
         gap: between the surfaces, m; negative inside.

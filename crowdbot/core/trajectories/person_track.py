@@ -1,4 +1,4 @@
-"""Where the person of a robot's task is over a run, and how the robot stands to it."""
+"""The person of a robot's task over a run, from the tracks of people."""
 
 from __future__ import annotations
 

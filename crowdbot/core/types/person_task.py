@@ -47,7 +47,7 @@ class PersonTask:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PersonEstimate:
-    """What the robot knows of the person, or of the group's centre, in the frame of odometry.
+    """The robot's knowledge of the person, or of the group's centre, in the frame of odometry.
 
     Attributes:
         x, y: m.

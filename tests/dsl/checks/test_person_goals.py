@@ -41,7 +41,7 @@ scenario:
       jumpers: {area: {centre: [13 m, 2 m], size: [2 m, 2 m]}, count: 2, portals: [a, b]}
     streams:
       north: {kind: through, origin: floor, destination: exit, count: 2}
-      in_turn: {kind: through, origin: floor, destination: exit, arrivals: {every: 2 s,
+      steady: {kind: through, origin: floor, destination: exit, arrivals: {every: 2 s,
                 until: 9 s}}
 """
 
@@ -63,7 +63,7 @@ def _errors(tmp_path: Path, text: str) -> tuple[Diagnostic, ...]:
         ("follow, person: {group: 2}", "E146", "no agent belongs to group 2", "2}"),
         ("follow, person: {agent: 5}", "E146", "agent 5 is not there at the start", "5}"),
         ("follow, person: {spawn: late}", "E146", "spawn 'late' is not there", "late"),
-        ("follow, person: {stream: in_turn}", "E146", "stream 'in_turn' is not there", "in_turn"),
+        ("follow, person: {stream: steady}", "E146", "stream 'steady' is not there", "steady"),
         ("approach, person: {spawn: hall}", "E130", "the crowd has no spawn 'hall'", "hall"),
         ("approach, person: {stream: south}", "E130", "the crowd has no stream 'south'", "south"),
         ("follow, person: {agent: 6}", "E147", "agent 6 goes through portals", "6}"),
