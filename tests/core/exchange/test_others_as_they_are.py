@@ -75,6 +75,14 @@ def test_vadere_circles_groups_and_walls_at_the_border(tmp_path: Path) -> None:
     assert "scenario/topography/targets/waiter" not in left
 
 
+def test_jupedsim_floors_that_cross_themselves_are_repaired(tmp_path: Path) -> None:
+    deck = json.loads((FILES / "jupedsim.json").read_text())
+    deck["walkable_area_wkt"] = "POLYGON ((0 0, 20 0, 20 8, 0 7, 0 8, 20 7.5, 20 9, 0 9, 0 0))"
+    deck["distributions"]["west"]["coordinates"] = [[0, 0], [5, 0], [5, 8.5], [0, 9], [0, 0]]
+    scenario, _, _ = _one(tmp_path / "crossing.json", json.dumps(deck))
+    assert scenario["crowd"]["streams"]
+
+
 def test_jupedsim_exits_thinner_than_a_body_are_moved_into_the_floor(tmp_path: Path) -> None:
     deck = json.loads((FILES / "jupedsim.json").read_text())
     deck["exits"]["east"]["coordinates"] = [[19.95, 3], [20, 3], [20, 5], [19.95, 5]]

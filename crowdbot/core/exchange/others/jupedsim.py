@@ -77,7 +77,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
 
 
 def _geometry(text: str, mark: Mark, scene: Draft) -> Any:
-    from shapely import GEOSException, from_wkt  # type: ignore[import-untyped,unused-ignore]
+    from shapely import GEOSException, from_wkt, make_valid  # type: ignore[import-untyped,unused-ignore]
 
     try:
         with warnings.catch_warnings():  # of coordinates that are not numbers, refused below
@@ -92,19 +92,18 @@ def _geometry(text: str, mark: Mark, scene: Draft) -> Any:
         raise SpecError([Diagnostic("E402", "the walkable area has no area", mark)])
     scene.environment = {"kind": "floor_plan", "wkt": " ".join(text.split())}
     scene.origins["environment",] = mark
-    return shape
+    return make_valid(shape).buffer(0)  # outlines that cross themselves, and polygons only
 
 
 def _bare(file: OpenedScene, report: Report) -> Draft:
     """Return a floor with two people who walk back and forth, since WKT has none."""
-    from shapely import from_wkt, maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
+    from shapely import maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
 
     scene = Draft(id_of(file.path.stem))
     scene.notes.append(f"Imported from WKT: {file.path.name}.")
-    _geometry(file.text, file.top, scene)
+    shape = _geometry(file.text, file.top, scene)
     whole = Item("WKT", file.top)
     report.carried(whole, "environment.wkt")
-    shape = from_wkt(file.text)
     parts = sorted(getattr(shape, "geoms", [shape]), key=lambda part: -part.area)
     circle = maximum_inscribed_circle(parts[0], tolerance=0.05)
     (x, y), reach = circle.coords[0], 0.5 * circle.length
