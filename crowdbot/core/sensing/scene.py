@@ -210,6 +210,11 @@ class Scene:
         return immutable(yaw)
 
     @property
+    def walked(self) -> Array:
+        """Return the way that people have walked (M,), m."""
+        return immutable(self._walked)
+
+    @property
     def cylinders(self) -> Array:
         """Return legs and trunks of people, pillars, then people's objects: (D, 5).
 

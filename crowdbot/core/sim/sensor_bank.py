@@ -35,7 +35,6 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel, RobotState
 from crowdbot.core.types.sensor import Reading, SensorInfo
-from crowdbot.dsl.spec.component_specs import SceneLight
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,7 +296,7 @@ def add_sensors(
         seed=seed,
         robot=built.name,
         writer=writer,
-        renderers=_renderers(built.infos, scene, others.models, built.parts.light),
+        renderers=_renderers(built, scene, others.models),
     )
     builder.AddNamedSystem("sensors", bank)
     builder.Connect(robot.port, bank.GetInputPort(ports.ROBOT_STATE))
@@ -322,18 +321,18 @@ def _scene(built: BuiltRun, engine: CrowdEngine | None, others: Sequence[RobotMo
     )  # fmt: skip
 
 
-def _renderers(
-    infos: Mapping[str, SensorInfo], scene: Scene, others: Sequence[RobotModel],
-    light: SceneLight | None,
-) -> dict[str, Graphics]:  # fmt: skip
+def _renderers(built: BuiltRun, scene: Scene, others: Sequence[RobotModel]) -> dict[str, Graphics]:
     """Return renderers of cameras with colour, for which VTK is loaded."""
-    cameras = {n: i for n, i in infos.items() if i.camera is not None and i.camera.colour}
+    cameras = {n: i for n, i in built.infos.items() if i.camera is not None and i.camera.colour}
     if not cameras:
         return {}
+    from crowdbot.core.figures.figure import load_figure
     from crowdbot.core.sim.cameras.rendering import Renderer
 
+    crowd = built.scenario.crowd
+    figures = [load_figure(asset.file) for asset in crowd.body.figures.values()] if crowd else []
     return {
-        n: Renderer(scene, i.camera, i.mount, i.tilt, others, light)
+        n: Renderer(scene, i.camera, i.mount, i.tilt, others, built.parts.light, figures)
         for n, i in cameras.items()
         if i.camera
     }

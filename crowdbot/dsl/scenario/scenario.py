@@ -38,6 +38,7 @@ from crowdbot.dsl.scenario.spawning import Agents, RouteEnd, Spawn
 from crowdbot.dsl.scenario.steering import SteeringSpec, unset
 from crowdbot.dsl.scenario.streams import StreamChoice
 from crowdbot.dsl.spec.areas import GoalArea
+from crowdbot.dsl.spec.assets import Asset
 from crowdbot.dsl.spec.body_regions import BodyRegion
 from crowdbot.dsl.spec.component_specs import (
     CostFunctionSpec,
@@ -106,6 +107,12 @@ class Body(Spec):
         description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
     )
     height: PositiveLength = Field(default=1.7, description="Height, m.")
+    figures: dict[str, Asset] = Field(
+        default={},
+        exclude_if=lambda figures: not figures,
+        description="Named meshes (glTF) of people for colour images, which people have in turn. "
+        "Lidars, depth cameras and contacts do not see them.",
+    )
 
 
 class NamedPolicy(Spec):

@@ -42,7 +42,8 @@ class AssetFiles:
             if found is None:
                 continue
             data = _replaced(data, path, found)
-            for name, text in spec.beside(path[-1], found.file).items():
+            named = {} if spec is None else spec.beside(path[-1], found.file)
+            for name, text in named.items():
                 beside = Asset(path=str(PurePosixPath(asset.path).parent / text))
                 other = self._found_beside(beside, f"'{asset.path}' names it", name, mark, problems)
                 data = data if other is None else _replaced(data, (*path[:-1], name), other)
@@ -50,8 +51,12 @@ class AssetFiles:
 
     def _waiting(
         self, scenario: Scenario
-    ) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec]]:
+    ) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec | None]]:
         """Yield assets to find. Scenarios share components: a complete one is checked once."""
+        figures = {} if scenario.crowd is None else scenario.crowd.body.figures
+        for name, figure in figures.items():
+            if not figure.is_found:
+                yield ("crowd", "body", "figures", name), figure, None
         for path, spec in components(scenario):
             if id(spec) in self._complete:
                 continue

@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from crowdbot.cli import main
+from crowdbot.core.figures.figure import Figure, load_figure
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots import build_model
@@ -25,6 +26,7 @@ from crowdbot.plugin import Pose, RobotModel, RobotState, TiltableMount
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import build
 from crowdbot.testing.sensor_scenes import context
+from tests.core.figures.small_gltf import write
 from tests.core.sim.sim_worlds import constant, rig, scenario
 
 pytestmark = pytest.mark.slow
@@ -252,3 +254,24 @@ def test_light_changes_how_bright_the_picture_is_and_nothing_else() -> None:
     assert np.abs(pictures[0] - pictures[1]).mean() < 2.0  # the usual light, written out
     assert pictures[2].mean() < 0.4 * pictures[0].mean()
     assert np.allclose(pictures[2][0, 0], [16, 16, 24], atol=3)
+
+
+def test_figures_take_the_place_of_the_nearest_people(tmp_path: Path) -> None:
+    red = load_figure(write(tmp_path / "red.glb", moves="node"))
+    green = load_figure(write(tmp_path / "green.glb", textured=True))
+    info = build(SPEC, context()).info()
+    assert info.camera is not None
+
+    def share(people: list[list[float]], figures: list[Figure], colour: int) -> float:
+        scene = _scene(people)
+        image = Renderer(scene, info.camera, info.mount, info.tilt, (), None, figures)(scene, POSE)  # type: ignore[arg-type]
+        others = np.delete(image.astype(int), colour, axis=2).max(axis=2)
+        return float((image[:, :, colour] > 2 * others + 20).mean())
+
+    near, far = [[4.5, 2.2]], [[16.0, 2.7]]
+    assert share(near, [red], 0) > 0.02
+    assert share(near, [green], 1) > 0.02
+    assert share(near, [], 1) == 0.0
+    assert share(far, [green], 1) == 0.0
+    crowd = [[4.0 + 0.3 * k, 2.0 + 0.2 * (k % 3)] for k in range(20)]
+    assert share(crowd, [red, green], 1) > 0.005

@@ -40,12 +40,15 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform, RollPitchYaw, RotationMatrix
 from pydrake.systems.sensors import CameraInfo
 
+from crowdbot.core.figures.figure import Figure
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY
 from crowdbot.core.robots.look import visual_parts
 from crowdbot.core.sensing.body_model import PARTS, TRUNK
 from crowdbot.core.sensing.mount import sensor_pose_in_world
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.core.sim.cameras.figure_pool import HIDDEN as _HIDDEN
+from crowdbot.core.sim.cameras.figure_pool import FigurePool
 from crowdbot.core.sim.cameras.person_mesh import leg_obj, trunk_obj
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel
@@ -65,7 +68,6 @@ _CLOTHES = (
 _THING = (0.30, 0.30, 0.34)
 _TROUSERS = ((0.16, 0.18, 0.26), (0.25, 0.22, 0.2), (0.22, 0.28, 0.36))
 _ROBOT = (0.35, 0.38, 0.45)
-_HIDDEN = RigidTransform([0.0, 0.0, -100.0])
 _PROBE = "from crowdbot.core.sim.cameras.rendering import probe; probe()"
 
 
@@ -80,6 +82,7 @@ class Renderer:
         tilt: tuple[float, float] = (0.0, 0.0),
         robots: Sequence[RobotModel] = (),
         light: SceneLight | None = None,
+        figures: Sequence[Figure] = (),
     ) -> None:
         """Build the scene for VTK.
 
@@ -90,6 +93,7 @@ class Renderer:
             tilt: roll and pitch of the mount, rad.
             robots: appearance of the other robots in the scene.
             light: of the scene; None: a bright day.
+            figures: meshes of people near the robot; without any they have the plain body.
 
         Raises:
             MissingLibraryError: this machine cannot draw.
@@ -103,6 +107,8 @@ class Renderer:
         self._source = self._graph.RegisterSource("crowdbot")
         self._scenery(scene)
         self._people = self._crowd(scene)
+        usual = float(np.median(scene.people_height)) if len(scene.people_height) else 1.7
+        self._figures = FigurePool(self._graph, self._source, figures, usual)
         self._robots = self._fleet(scene, robots)
         self._context = self._graph.CreateDefaultContext()
         self._camera = _render_camera(camera)
@@ -110,7 +116,13 @@ class Renderer:
     def __call__(self, scene: Scene, pose: Pose) -> NDArray[np.uint8]:
         """Return the image (H, W, 3), first row on top."""
         poses = FramePoseVector()
-        for frame, place in zip(self._people, _places(scene), strict=True):
+        meshes, drawn = self._figures.poses(scene, pose)
+        for frame, place in zip(self._figures.frames, meshes, strict=True):
+            poses.set_value(frame, place)
+        bodies = _places(scene)
+        for k in drawn:
+            bodies[PARTS * k : PARTS * (k + 1)] = [_HIDDEN] * PARTS
+        for frame, place in zip(self._people, bodies, strict=True):
             poses.set_value(frame, place)
         for frame, there in zip(self._robots, scene.others.poses, strict=True):
             poses.set_value(frame, _HIDDEN if there is None else _on_the_floor(there))

@@ -1,0 +1,1 @@
+"""Meshes for people: read from glTF, one for each phase of a walk."""

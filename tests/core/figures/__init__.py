@@ -1,0 +1,1 @@
+"""Meshes for people."""
