@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.figures.figure import Figure, load_figure
+from crowdbot.core.figures.shown import shown_figure
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.robots.look import visual_parts
 from crowdbot.core.sensing.appearance_model import heights
@@ -18,7 +21,11 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.spec.assets import Asset
 from crowdbot.dsl.spec.component_specs import SceneLight
+from crowdbot.errors import InputError
+
+_LOG = logging.getLogger("crowdbot")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,10 +35,12 @@ class SolidPeople:
     Attributes:
         height: (M,) m, or (1,) if all are alike.
         look: (M,) names of appearances; empty if all are adults.
+        figures: meshes that people have in turn; empty: the plain body.
     """
 
     height: Array
     look: Sequence[str] = ()
+    figures: Sequence[Figure] = ()
 
 
 def solid_people(scenario: Scenario, people: Realisation) -> SolidPeople | None:
@@ -44,7 +53,19 @@ def solid_people(scenario: Scenario, people: Realisation) -> SolidPeople | None:
         phase=np.asarray(people.phase),
         look=tuple(people.look),
     )
-    return SolidPeople(height=heights(seen, scenario.crowd.body.height), look=seen.look)
+    body = scenario.crowd.body
+    return SolidPeople(
+        height=heights(seen, body.height), look=seen.look, figures=_figures(body.figures)
+    )
+
+
+def _figures(assets: Mapping[str, Asset]) -> list[Figure]:
+    """Return the figures; none, with a warning, where a file is not there any more."""
+    try:
+        return [load_figure(asset.file) for asset in assets.values()]
+    except InputError as error:
+        _LOG.warning("people are drawn without figures: %s", error)
+        return []
 
 
 def solids_of(
@@ -108,7 +129,8 @@ def _people(people: SolidPeople) -> dict[str, Any]:
     heights = np.round(people.height, 3)
     alike = len(heights) > 0 and bool(np.all(heights == heights[0]))
     looks = list(people.look) if any(people.look) else []
-    return {"height": heights[: 1 if alike else None].tolist(), "look": looks}
+    figures = {"figures": [shown_figure(f) for f in people.figures]} if people.figures else {}
+    return {"height": heights[: 1 if alike else None].tolist(), "look": looks, **figures}
 
 
 def _short(rows: Array) -> list[Any]:

@@ -7,9 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from crowdbot.core.environments.build import build_environment
 from crowdbot.core.figures.figure import PHASES, load_figure
+from crowdbot.core.figures.shown import shown_figure
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.runs.solids import solid_people, solids_of
 from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.scenarios.lock import population
 from crowdbot.core.sim.cameras.figure_pool import figure_obj
 from crowdbot.errors import InputError
 from tests.core.figures.small_gltf import write
@@ -95,3 +99,32 @@ def test_the_obj_of_a_part_has_its_height_and_normals(tmp_path: Path) -> None:
     assert np.all(np.sum(normals * (points - points.mean(axis=0)), axis=1) > 0.0)
     assert lines[0] == "mtllib figure.mtl"
     assert sum(line.startswith("f ") for line in lines) == 12
+
+
+def test_a_page_gets_few_corners_and_their_colours(tmp_path: Path) -> None:
+    shown = shown_figure(load_figure(write(tmp_path / "a.glb", moves="skin", textured=True)))
+    assert len(shown["phases"]) == PHASES
+    assert all(len(points) == 3 * 8 for points in shown["phases"])
+    assert shown["colours"] == "00ff00" * 8
+    assert len(shown["triangles"]) == 36
+    assert max(shown["phases"][0][2::3]) == 1000
+
+
+def test_a_figure_that_is_gone_is_told_and_people_keep_their_bodies(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    write(tmp_path / "a.glb")
+    text = (DATA / "short_way.yaml").read_text(encoding="utf-8")
+    text = text.replace("mass: 75 kg", "mass: 75 kg, figures: {a: a.glb}")
+    (tmp_path / "x.yaml").write_text(text, encoding="utf-8")
+    registry = discover(allow=())
+    scenario = pick(open_spec(str(tmp_path / "x.yaml"), registry), None)
+    agents = population(scenario, registry).agents
+    people = solid_people(scenario, agents)
+    parts = build_environment(registry, scenario.environment)
+    assert len(solids_of(parts, {}, people)["people"]["figures"]) == 1
+    (tmp_path / "a.glb").unlink()
+    people = solid_people(scenario, agents)
+    assert people is not None
+    assert people.figures == []
+    assert "without figures" in caplog.text

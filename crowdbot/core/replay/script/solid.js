@@ -77,6 +77,8 @@ function drawSolid(solid, frame, eye, options) {
     placeEye(solid, eye, width / height);
   }
   parts.obstacles.group.scale.z = options.low ? 0.35 : 1; // from outside, walls hide nothing
+  const at = solid.camera.getWorldPosition(new THREE.Vector3());
+  parts.people.eye = { x: at.x, y: -at.z };
   if (run.people) movePeople(parts.people, run, frame, options.hiddenPerson ?? -1);
   moveRobots(parts.robots, frame.robots, options.hiddenRobot ?? -1);
   movePoints(parts.points, options.points ? frame.scans : [], lidarHeight(run));

@@ -40,7 +40,7 @@ function makePeople(people, solids) {
   }
   const heights = solids?.people?.height ?? [1.7];
   return {
-    group, parts, walked: new Float32Array(count), time: NaN, facing: new Float32Array(count),
+    group, parts, figures: makeFigures(solids?.people?.figures, count, group), eye: null, walked: new Float32Array(count), time: NaN, facing: new Float32Array(count),
     height: (p) => heights[heights.length > 1 ? p : 0] ?? 1.7,
     look: (p) => solids?.people?.look[p] ?? "",
   };
@@ -99,14 +99,20 @@ function movePeople(crowd, run, frame, hidden) {
   const passed = frame.time - crowd.time;
   crowd.time = frame.time;
   let row = 0;
+  eachFigure(crowd, (mesh) => { mesh.count = 0; });
   for (let i = 0; i < size; i++) {
     const p = person[i];
     if (passed > 0 && passed < 1) crowd.walked[p] += speed[i] * passed;
     if (!Number.isNaN(heading[i])) crowd.facing[p] = heading[i];
     if (p === hidden) continue;
+    if (hasFigure(crowd, p, x[i], y[i])) {
+      placeFigure(crowd, p, x[i], y[i], crowd.facing[p]);
+      continue;
+    }
     posePerson(crowd, row, p, x[i], y[i], crowd.facing[p], speed[i], radiusOf(run.people, p));
     row += 1;
   }
+  eachFigure(crowd, (mesh) => { mesh.instanceMatrix.needsUpdate = true; });
   for (const [name, pieces] of PARTS) {
     crowd.parts[name].count = row * pieces;
     crowd.parts[name].instanceMatrix.needsUpdate = true;
