@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import sync_playwright
 
+from crowdbot.core.figures.figure import load_figure
+from crowdbot.core.figures.shown import shown_figure
 from crowdbot.core.recording.reading.one_robot import PlannerDrawing
 from crowdbot.core.replay import write_replay
 from tests.browser import PROGRAM, Visit, needs_browser
+from tests.core.figures.small_gltf import write
 from tests.core.replay.replay_cases import passing
 from tests.core.replay.test_browser import until
 
@@ -56,4 +59,33 @@ def test_each_view_shows_people_robot_sensors_and_tracks(tmp_path: Path) -> None
             until(page, _LINES.format("points") + " === 0")
             page.select_option("#view", "plan")
             assert page.is_visible(".closeup canvas")
+        browser.close()
+
+
+@pytest.mark.slow
+@needs_browser
+def test_figures_and_light_of_a_scenario_are_shown(tmp_path: Path) -> None:
+    figure = shown_figure(load_figure(write(tmp_path / "a.glb", moves="node")))
+    solids = {
+        **_SOLIDS, "people": {"height": [1.7], "look": [], "figures": [figure]},
+        "light": {"towards": [0.0, 1.0, 0.0], "sun": 0.5, "ambient": 1.0, "colour": "#ff8800",
+                  "sky": "#102030"},
+    }  # fmt: skip
+    write_replay(tmp_path / "page.html", replace(passing(), solids=solids))
+    drawn = "shown.panels[0].solid.parts.people"
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=PROGRAM, args=_SOFTWARE)
+        with Visit(browser, tmp_path / "page.html", "#t=4") as page:
+            page.evaluate("state.playing = false")
+            page.select_option("#view", "solid")
+            until(page, "(shown.panels[0].solid?.frames ?? 0) > 0")
+            here = page.evaluate("shown.panels[0].frame?.people.size ?? shown.runs[0].people.count")
+            figures = page.evaluate(
+                f"{drawn}.figures[0].reduce((sum, mesh) => sum + mesh.count, 0)"
+            )
+            assert 1 <= figures <= here
+            assert page.evaluate(f"{drawn}.parts.trunk.count") + figures <= here
+            assert (
+                page.evaluate("shown.panels[0].solid.scene.background.getHexString()") == "102030"
+            )
         browser.close()
