@@ -82,6 +82,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("results export", "out"): ("", "results", "export", "{}"),
     ("results failures", "out"): ("", "results", "failures", "{}"),
     ("results atlas", "out"): ("", "results", "atlas", "{}"),
+    ("results power", "reference"): ("", "results", "power", "--reference", "{}"),
     ("seal", "planner"): (".yaml", "seal", "{}"),
     ("serve", "spec"): (".yaml", "serve", "{}"),
     ("simulate", "spec"): (".yaml", "simulate", "{}", "--out", "RUNS"),

@@ -78,6 +78,7 @@ def power(
     *,
     sizes: Sequence[float] = SIZES,
     level: float = 0.95,
+    axis: str = "",
 ) -> Power | None:
     """Return the power of two planners' runs; None without a pair in which both have a value.
 
@@ -87,6 +88,7 @@ def power(
         a, b: the planners.
         sizes: differences to find, in the score's unit.
         level: 1 minus the chance of a false verdict; divide it among several tests.
+        axis: axis of the suite whose labels make the parts; empty: conditions do.
     """
     sides = table.column(name, a), table.column(name, b)
     known = sides[0].known & sides[1].known
@@ -95,7 +97,8 @@ def power(
     label = table.label(name)
     rows = _Rows(table, name, (a, b), sides[0].low - sides[1].low, tuple(sizes), level)
     whole = rows.part("", known)
-    labels = np.array(table.conditions)
+    of_axis = [label or f"no {axis}" for label in table.labels_on(axis)] if axis else ()
+    labels = np.array(of_axis or table.conditions)
     names = sorted(set(labels[known].tolist()))
     apart = tuple(rows.part(one, known & (labels == one)) for one in names)
     return Power(

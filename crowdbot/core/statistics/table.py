@@ -105,6 +105,11 @@ class Table:
         known = {key[:2]: condition for key, condition in found.items()}
         return tuple(found.get(k) or known.get(k[:2]) or f"{k[0]}/{k[1]}" for k in self.keys)
 
+    def labels_on(self, axis: str) -> tuple[str, ...]:
+        """Return the label of each row on one axis; empty where its suite has no such axis."""
+        found = {key[:2]: run.axes[axis] for (_, key), run in self.runs.items() if axis in run.axes}
+        return tuple(found.get(key[:2], "") for key in self.keys)
+
     @cached_property
     def places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Return numbers of each row's condition, and of its draw in that condition, (n,) each."""

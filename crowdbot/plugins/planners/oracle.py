@@ -9,8 +9,6 @@ from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
-    NonNegativeLength,
-    NonNegativeSpeed,
     PlannerRole,
     PositiveDuration,
     PositiveLength,
@@ -38,12 +36,6 @@ class OracleSpec(CrowdPredictionSpec):
     yaw_rates: Annotated[int, Ge(3), Le(32)] = Field(default=15, description="First yaw rates.")
     comfort: PositiveLength = Field(
         default=0.3, description="Clearance above which more is no better, m."
-    )
-    margin: NonNegativeLength = Field(
-        default=0.02, description="Clearance below which a plan counts as a hit, m."
-    )
-    margin_growth: NonNegativeSpeed = Field(
-        default=0.0, description="Clearance to people lost to doubt, m/s."
     )
     hurry: Weight = Field(
         default=1.0,

@@ -19,8 +19,8 @@ NAME = ("m", "corrected")
 RNG = np.random.default_rng(77)
 
 
-def of(results: Results, **more: float) -> Power:
-    found = power(Table(results), NAME, "a", "b", sizes=(0.05, 0.02), **more)
+def of(results: Results, level: float = 0.95) -> Power:
+    found = power(Table(results), NAME, "a", "b", sizes=(0.05, 0.02), level=level)
     assert found is not None
     return found
 
@@ -73,6 +73,29 @@ def test_conditions_differ_in_what_they_tell() -> None:
     assert found.whole.draws == 12
     assert found.whole.minutes == pytest.approx(2.0)
     assert quiet.p < 0.05 < loud.p
+
+
+def test_each_label_of_an_axis_has_its_own_verdict() -> None:
+    runs, scores = [], []
+    for flow, gain in {"in": 0.0, "counter": 0.3}.items():
+        for i, noise in enumerate((-0.1, 0.1, -0.05, 0.05, -0.15, 0.15)):
+            for planner in "ab":
+                axes = {"flow": flow, "density": f"d{i % 2}", "draw": f"n{i // 2}"}
+                runs.append(run(planner, f"{flow}-{i}", f"{flow}-{i}", axes=axes, sim_time=60.0))
+                scores.append(score(runs[-1], gain + noise if planner == "a" else 0.0))
+    results = Results(runs=tuple(runs), scores=tuple(scores))
+    assert {c.pairs for c in of(results).conditions} == {3}
+    found = power(Table(results), NAME, "a", "b", axis="flow")
+    assert found is not None
+    by_flow = {c.condition: c for c in found.conditions}
+    assert {c.pairs for c in by_flow.values()} == {6}
+    assert by_flow["in"].p > 0.5
+    assert by_flow["counter"].p == pytest.approx(2 / 2**6)
+    assert by_flow["counter"].difference.value == pytest.approx(0.3)
+    assert sum(c.share or 0.0 for c in by_flow.values()) == pytest.approx(1.0)
+    other = power(Table(results), NAME, "a", "b", axis="people")
+    assert other is not None
+    assert other.conditions == ()  # one group is the whole
 
 
 def test_stricter_tests_need_more_and_no_spread_needs_the_least() -> None:

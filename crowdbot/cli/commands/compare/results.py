@@ -256,6 +256,13 @@ def power(
     planner: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Only these planners; repeatable.")
     ] = None,
+    by: Annotated[
+        str, typer.Option(metavar="AXIS", help="A line for each label of this, not condition.")
+    ] = "",
+    reference: Annotated[
+        str | None,
+        typer.Option(metavar="crowdbot|FILE|ROOT", help="These reference scores, not --runs."),
+    ] = None,
     altered: Altered = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
     as_json: _Json = False,
@@ -265,11 +272,14 @@ def power(
     Example: crowdbot results power --runs runs --size 0.05 --planner dwa --planner stop_and_go
     """
     from crowdbot.cli.output.power_lines import lines_of
+    from crowdbot.core.results.with_reference import reference_results
     from crowdbot.core.statistics.power import SIZES
 
     sizes = tuple(size or SIZES)
-    found = with_scales(_only(open_results(out, altered), planner, None))
-    print_lines(lines_of(found, (metric, variant), sizes, tests), as_csv=as_csv, as_json=as_json)
+    opened = open_results(out, altered) if reference is None else reference_results(reference)
+    found = with_scales(_only(opened, planner, None))
+    lines = lines_of(found, (metric, variant), sizes, tests, by)
+    print_lines(lines, as_csv=as_csv, as_json=as_json)
 
 
 @results.command()
