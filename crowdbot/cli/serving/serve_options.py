@@ -134,7 +134,7 @@ def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
 def _foxglove(session: LiveSession, manner: Manner, listen: Listen, port: int) -> Door:
     needs("live", "foxglove")
     from crowdbot.core.live.admission import Admission
-    from crowdbot.core.live.foxglove_door import FoxgloveDoor
+    from crowdbot.core.live.foxglove.door import FoxgloveDoor
 
     if not _is_this_machine(listen.host):
         raise UsageError("--foxglove knows no token: it listens on this machine only")

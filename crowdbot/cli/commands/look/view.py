@@ -99,7 +99,7 @@ def _play(run: Path, port: int, origins: Sequence[str]) -> None:
         raise InputError(f"{run}: --foxglove plays a run, or its recording; there is none")
     needs("live", "foxglove")
     from crowdbot.core.live.admission import Admission
-    from crowdbot.core.live.foxglove_playback import FoxglovePlayback
+    from crowdbot.core.live.foxglove.playback import FoxglovePlayback
 
     admission = Admission(server="foxglove", origins=origins)
     player = FoxglovePlayback(recording, "127.0.0.1", port, admission)

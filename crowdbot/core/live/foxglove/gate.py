@@ -15,7 +15,7 @@ from contextlib import suppress
 from typing import Any
 
 from crowdbot.core.live.admission import Admission
-from crowdbot.core.live.foxglove_log import bound_log
+from crowdbot.core.live.foxglove.log import bound_log
 from crowdbot.core.support.loop_thread import LoopThread
 from crowdbot.errors import InputError
 

@@ -11,7 +11,7 @@ from typing import Any, cast
 from mcap.reader import SeekingReader
 
 from crowdbot.core.live.admission import Admission
-from crowdbot.core.live.foxglove_gate import FoxgloveGate
+from crowdbot.core.live.foxglove.gate import FoxgloveGate
 from crowdbot.core.recording.container.records import Record, Records
 from crowdbot.core.recording.reading.contents import contents
 from crowdbot.errors import InputError

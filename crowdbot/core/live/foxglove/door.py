@@ -11,8 +11,8 @@ from typing import Any, cast
 
 from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.commands import twist
-from crowdbot.core.live.foxglove_gate import FoxgloveGate
-from crowdbot.core.live.foxglove_parameters import parameters, set_parameters
+from crowdbot.core.live.foxglove.gate import FoxgloveGate
+from crowdbot.core.live.foxglove.parameters import parameters, set_parameters
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.robot_topics import namespaces, robot_topic
 from crowdbot.core.live.services import Service

@@ -16,8 +16,8 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from crowdbot.core.live.admission import Admission
-from crowdbot.core.live.foxglove_door import FoxgloveDoor
-from crowdbot.core.live.foxglove_parameters import set_parameters
+from crowdbot.core.live.foxglove.door import FoxgloveDoor
+from crowdbot.core.live.foxglove.parameters import set_parameters
 from crowdbot.core.live.live_robot import LiveRobot
 from crowdbot.core.live.message import OfferedTopic, told
 from crowdbot.core.live.services import services

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from websockets.sync.client import ClientConnection, connect
 
-from crowdbot.core.live.foxglove_playback import FoxglovePlayback
+from crowdbot.core.live.foxglove.playback import FoxglovePlayback
 from crowdbot.core.recording import messages as ros
 from crowdbot.errors import InputError
 from tests.core.live.live_cases import AT_MOST
