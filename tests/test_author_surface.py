@@ -24,7 +24,7 @@ PUBLIC = (*SURFACE, "crowdbot", "crowdbot.errors", "crowdbot.rl", "crowdbot.test
 COMMAND = "crowdbot.cli"
 #: Components that others build on are theirs to import, as those of any package are.
 COMPONENTS = "crowdbot.plugins."
-#: Looks inside a run, for whoever works on crowdbot itself: nobody's package.
+#: Looks inside a run, for people who work on crowdbot itself: not for packages.
 INSIDE = "docs/howto/files/draw_diagram.py"
 _IMPORT = re.compile(r"^\s*(?:from|import) (crowdbot(?:\.\w+)*)(?![\w$])", re.MULTILINE)
 
@@ -56,7 +56,7 @@ def _sources() -> Iterator[tuple[str, str]]:
     """Name and text of all that others copy from: pages, templates, examples, and our plugins."""
     for page in PAGES:
         for i, block in enumerate(b for b in blocks(page) if b.language == "python"):
-            if block.names == ROOT / INSIDE:
+            if block.names is not None and block.names.resolve() == ROOT / INSIDE:
                 continue
             yield f"{page.relative_to(ROOT)}[{i}]", block.text
     for folder, pattern in (("crowdbot/templates", "*.tmpl"), ("docs", "*.py")):
