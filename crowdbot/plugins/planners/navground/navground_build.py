@@ -8,8 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.errors import UnknownNameError
-from crowdbot.plugin import Array, Command, Observation, RobotLimits
+from crowdbot.plugin import (
+    Array,
+    Command,
+    InputError,
+    Observation,
+    RobotLimits,
+    did_you_mean,
+    nearest,
+)
 from crowdbot.plugins.planners.navground.navground import NavgroundSpec
 from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner, velocity_of
 from crowdbot.plugins.planners.shared.optional_build import library
@@ -75,7 +82,7 @@ def made(core: Any, spec: NavgroundSpec) -> Any:
     """Return a behaviour with its settings.
 
     Raises:
-        UnknownNameError: the behaviour has no such property.
+        InputError: the behaviour has no such property.
     """
     behavior = core.Behavior.make_type(spec.behavior)
     behavior.horizon, behavior.safety_margin = spec.view, spec.safety_margin
@@ -89,7 +96,8 @@ def _set(behavior: Any, name: str, settings: Mapping[str, bool | int | float]) -
     known = sorted(behavior.properties)
     for key, value in settings.items():
         if key not in known:
-            raise UnknownNameError(f"property of navground's {name}", key, known)
+            near = did_you_mean(nearest(key, known))
+            raise InputError(f"unknown property of navground's {name}: '{key}'{near}")
         behavior.set(key, value)
 
 
@@ -137,6 +145,6 @@ def build(spec: NavgroundSpec) -> Navground:
 
     Raises:
         PluginError: navground is not installed.
-        UnknownNameError: the behaviour has no such property.
+        InputError: the behaviour has no such property.
     """
     return Navground(spec, library("navground", "navground.core", "navground"))

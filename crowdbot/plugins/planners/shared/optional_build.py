@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from crowdbot.errors import PluginError
+from crowdbot.plugin import PluginError
 
 
 def library(kind: str, module: str, extra: str) -> Any:

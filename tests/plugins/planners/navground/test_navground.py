@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from crowdbot.errors import UnknownNameError
+from crowdbot.errors import InputError
 from crowdbot.plugins.planners.navground.navground import NavgroundSpec
 from tests.paths import ROOT
 from tests.plugins.planners.world import PERSON, World
@@ -103,5 +103,5 @@ def test_dummy_looks_at_nothing_and_settings_reach_the_library() -> None:
 def test_a_setting_that_the_library_does_not_know_is_an_error() -> None:
     from crowdbot.plugins.planners.navground.navground_build import build
 
-    with pytest.raises(UnknownNameError, match="navground's HL 'etta'; did you mean 'eta'"):
+    with pytest.raises(InputError, match="navground's HL: 'etta'; did you mean 'eta'"):
         build(NavgroundSpec(behavior="HL", settings={"etta": 0.25}))
