@@ -11,7 +11,7 @@ import numpy as np
 from crowdbot.core.assistance.target import Target
 from crowdbot.core.sensing.points import LidarPoints
 from crowdbot.core.sensing.tracking.people_tracker import PeopleTracker, Tracks
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.sensor import Reading, SensorInfo
 
@@ -22,6 +22,9 @@ TOLD_EVERY, _SPEED_ERROR = 0.25, 0.1
 _GATE, _PART, _FARTHEST = 0.6, 0.5, 2.5
 #: A person who was last seen this fast is expected to walk on for this long, m/s and s.
 _WALKS, _WALKS_ON = 0.2, 2.0
+#: A track whose velocity differs by more from that of the person is another person's, m/s; and
+#: how much of the velocity of the person is that of the track in each step.
+_OTHER, _NEW = 0.7, 0.1
 #: People face where they walk when faster than this, m/s.
 _TURNS = 0.3
 
@@ -33,6 +36,7 @@ class KnownPerson:
     Attributes:
         track: number of its track; -1: none.
         seen: when it was last seen, s.
+        moved: True once its velocity is known.
     """
 
     x: float
@@ -42,6 +46,7 @@ class KnownPerson:
     vy: float = 0.0
     track: int = -1
     seen: float = 0.0
+    moved: bool = False
 
     def at(self, t: float) -> tuple[float, float]:
         """Return where it should be at a time: it walks on for a while."""
@@ -135,6 +140,9 @@ class TrackingFinder(PersonFinder):
         points = self._points(sight.readings, sight.t, sight.twist, sight.vy)
         tracks = self._tracker.update(sight.t, sight.pose, points)
         rows = {int(number): row for row, number in enumerate(tracks.id)}
+        for member in self.members:  # one who passes by takes tracks along
+            if member.track in rows and _differs(member, sight.t, tracks)[rows[member.track]]:
+                member.track = -1
         taken = {m.track for m in self.members if m.track in rows}
         for member in self.members:
             if member.track not in rows:
@@ -151,13 +159,28 @@ def _nearest(member: KnownPerson, t: float, tracks: Tracks, taken: set[int]) -> 
     gone = _PART * math.hypot(member.vx, member.vy) * (t - member.seen) if walks else 0.0
     gate = min(_FARTHEST, _GATE + gone)
     away = np.hypot(tracks.position[:, 0] - x, tracks.position[:, 1] - y)
-    free = ~np.isin(tracks.id, list(taken)) & (away <= gate)
+    free = ~np.isin(tracks.id, list(taken)) & (away <= gate) & ~_differs(member, t, tracks)
     return int(tracks.id[np.argmin(np.where(free, away, np.inf))]) if free.any() else -1
+
+
+def _differs(member: KnownPerson, t: float, tracks: Tracks) -> Mask:
+    """Return True for tracks (N,) that are too fast or too slow to be a person.
+
+    The longer the person is unseen, the more its velocity may have changed.
+    """
+    if not member.moved:
+        return np.zeros(len(tracks.id), np.bool_)
+    off = tracks.velocity - [member.vx, member.vy]
+    return np.asarray(np.hypot(off[:, 0], off[:, 1]) > _OTHER * (1.0 + t - member.seen))
 
 
 def _follow(member: KnownPerson, t: float, tracks: Tracks, row: int) -> None:
     """Take over what a track says."""
     (member.x, member.y), (vx, vy) = tracks.position[row].tolist(), tracks.velocity[row].tolist()
-    member.vx, member.vy, member.seen = vx, vy, t - float(tracks.unseen[row])
-    if math.hypot(vx, vy) > _TURNS:
-        member.heading = math.atan2(vy, vx)
+    new = _NEW if member.moved else 1.0
+    member.vx += new * (vx - member.vx)
+    member.vy += new * (vy - member.vy)
+    member.moved = True
+    member.seen = t - float(tracks.unseen[row])
+    if math.hypot(member.vx, member.vy) > _TURNS:
+        member.heading = math.atan2(member.vy, member.vx)

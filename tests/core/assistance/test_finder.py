@@ -29,10 +29,11 @@ def sight(t: float, pose: Pose, relative: tuple[float, ...]) -> PersonSight:
     )
 
 
-def tracks(*at: tuple[float, float, float]) -> Tracks:
+def tracks(*at: tuple[float, float, float], vx: float = 0.0) -> Tracks:
     rows = np.array(at).reshape(-1, 3)
     none = np.zeros(len(rows))
-    return Tracks(rows[:, 0], rows[:, 1:], np.zeros((len(rows), 2)), none, none)
+    velocity = np.column_stack([none + vx, none])
+    return Tracks(rows[:, 0], rows[:, 1:], velocity, none, none)
 
 
 def test_the_pose_at_the_start_has_the_stated_errors() -> None:
@@ -65,3 +66,12 @@ def test_one_who_walks_is_looked_for_further_on_and_in_a_wider_circle() -> None:
     person = KnownPerson(5.0, 1.0, 0.0, vx=1.0, seen=0.0)
     assert _nearest(person, 1.0, tracks((4, 6.9, 1.0)), set()) == 4
     assert _nearest(person, 1.0, tracks((4, 4.0, 1.0)), set()) == -1
+
+
+def test_one_of_another_speed_is_another_person() -> None:
+    person = KnownPerson(5.0, 1.0, 0.0, vx=0.3, moved=True)
+    assert _nearest(person, 0.0, tracks((4, 5.0, 1.0), vx=1.3), set()) == -1
+    assert _nearest(person, 0.0, tracks((4, 5.0, 1.0), vx=0.6), set()) == 4
+    assert _nearest(person, 0.5, tracks((4, 5.0, 1.0), vx=1.3), set()) == 4  # it may have sped up
+    unknown = KnownPerson(5.0, 1.0, 0.0)
+    assert _nearest(unknown, 0.0, tracks((4, 5.0, 1.0), vx=1.3), set()) == 4

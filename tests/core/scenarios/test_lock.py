@@ -304,6 +304,7 @@ def test_a_suite_with_the_agents_of_the_one_it_extends_shares_their_file(suite: 
 @pytest.mark.parametrize(
     ("name", "count"),
     [
+        ("assistance", 35),
         ("challenge-2020", 162),
         ("challenge-2020-letter", 162),
         ("challenge-2020-literal", 162),

@@ -1,0 +1,72 @@
+"""A planner for goals that are people: drives to its place beside the person, and turns to it."""
+
+import math
+
+import numpy as np
+
+from crowdbot.plugin import Command, LidarPoints
+
+ROOM = 0.6  # m, between the person and a way around
+AHEAD = 0.5  # s, for which the person is expected to walk on
+
+
+class Companion:
+    """Goes around the person, not past it, and keeps away from what its lidars see."""
+
+    needs = ("lidar",)
+
+    def reset(self, task, limits, sensors, seed):
+        if task.person is None or task.robot is None:
+            raise ValueError("Companion is for tasks about people")
+        self.task, self.limits, self.points = task, limits, LidarPoints(sensors)
+
+    def step(self, obs):
+        person, pose = obs.person, obs.pose
+        at = np.array([pose.x, pose.y])
+        who = np.array([person.x, person.y])
+        aim = self.around(at, who, np.array(obs.goal))
+        walk = np.array([person.vx, person.vy]) if self.task.person.kind != "lead" else np.zeros(2)
+        way = aim + AHEAD * walk - at
+        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+        way = np.array([c * way[0] + s * way[1], c * way[1] - s * way[0]])
+        distance = math.hypot(*way)
+        speed = min(self.limits.v_max, distance, self.free(obs, way / max(distance, 1e-9)))
+        v, vy = speed * way / max(distance, 1e-9)
+        turn = math.remainder(self.heading(at, who, person, obs.goal) - pose.yaw, 2.0 * math.pi)
+        if self.task.robot.drive != "holonomic":
+            bearing = math.atan2(way[1], way[0])
+            turn = bearing if distance > 0.4 else turn
+            v, vy = speed * max(0.0, math.cos(bearing)), 0.0
+        return Command(v, 2.0 * turn, vy)
+
+    def around(self, at, who, goal):
+        """Return the goal, or a point beside the person if the person is in the way."""
+        away = self.task.person.radius + self.task.robot.radius + ROOM
+        way = goal - at
+        along = np.clip(np.dot(who - at, way) / max(np.dot(way, way), 1e-9), 0.0, 1.0)
+        nearest = at + along * way
+        gap = math.dist(nearest, who)
+        if gap >= away or along in (0.0, 1.0):
+            return goal
+        aside = (nearest - who) / gap if gap > 0.05 else np.array([-way[1], way[0]])
+        return who + 1.2 * away * aside / math.hypot(*aside)
+
+    def heading(self, at, who, person, goal):
+        """Return where to look: to the person, or where both go."""
+        kind = self.task.person.kind
+        if kind == "lead":
+            return (
+                math.atan2(goal[1] - at[1], goal[0] - at[0]) if math.dist(goal, at) > 0.2 else 0.0
+            )
+        if kind == "accompany" and math.dist(goal, at) < 1.0 and not math.isnan(person.heading):
+            return person.heading
+        return math.atan2(who[1] - at[1], who[0] - at[0])
+
+    def free(self, obs, way):
+        """Return the speed at which the robot can stop before the next thing on its way, m/s."""
+        points = self.points(obs.readings, obs.t, obs.twist, obs.vy)
+        along, across = points @ way, np.abs(points @ np.array([-way[1], way[0]]))
+        radius = self.task.robot.radius
+        ahead = along[(along > 0.0) & (across < radius + 0.15)] - radius - 0.15
+        room = max(0.0, float(ahead.min(initial=9.0)))
+        return math.sqrt(self.limits.a_max * room)
