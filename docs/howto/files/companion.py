@@ -1,10 +1,22 @@
 """A planner for goals that are people: drives to its place beside the person, and turns to it."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.plugin import Command, LidarPoints
+from crowdbot.plugin import (
+    Array,
+    Command,
+    LidarPoints,
+    Observation,
+    PersonEstimate,
+    RobotLimits,
+    SensorInfo,
+    Task,
+)
 
 ROOM = 0.6  # m, between the person and a way around
 AHEAD = 0.5  # s, for which the person is expected to walk on
@@ -15,17 +27,21 @@ class Companion:
 
     needs = ("lidar",)
 
-    def reset(self, task, limits, sensors, seed):
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
         if task.person is None or task.robot is None:
             raise ValueError("Companion is for tasks about people")
-        self.task, self.limits, self.points = task, limits, LidarPoints(sensors)
+        self.person, self.body = task.person, task.robot
+        self.limits, self.points = limits, LidarPoints(sensors)
 
-    def step(self, obs):
+    def step(self, obs: Observation) -> Command:
         person, pose = obs.person, obs.pose
+        assert person is not None  # as the task is about a person
         at = np.array([pose.x, pose.y])
         who = np.array([person.x, person.y])
         aim = self.around(at, who, np.array(obs.goal))
-        walk = np.array([person.vx, person.vy]) if self.task.person.kind != "lead" else np.zeros(2)
+        walk = np.array([person.vx, person.vy]) if self.person.kind != "lead" else np.zeros(2)
         way = aim + AHEAD * walk - at
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         way = np.array([c * way[0] + s * way[1], c * way[1] - s * way[0]])
@@ -33,15 +49,15 @@ class Companion:
         speed = min(self.limits.v_max, distance, self.free(obs, way / max(distance, 1e-9)))
         v, vy = speed * way / max(distance, 1e-9)
         turn = math.remainder(self.heading(at, who, person, obs.goal) - pose.yaw, 2.0 * math.pi)
-        if self.task.robot.drive != "holonomic":
+        if self.body.drive != "holonomic":
             bearing = math.atan2(way[1], way[0])
             turn = bearing if distance > 0.4 else turn
             v, vy = speed * max(0.0, math.cos(bearing)), 0.0
         return Command(v, 2.0 * turn, vy)
 
-    def around(self, at, who, goal):
+    def around(self, at: Array, who: Array, goal: Array) -> Array:
         """Return the goal, or a point beside the person if the person is in the way."""
-        away = self.task.person.radius + self.task.robot.radius + ROOM
+        away = self.person.radius + self.body.radius + ROOM
         way = goal - at
         along = np.clip(np.dot(who - at, way) / max(np.dot(way, way), 1e-9), 0.0, 1.0)
         nearest = at + along * way
@@ -51,9 +67,11 @@ class Companion:
         aside = (nearest - who) / gap if gap > 0.05 else np.array([-way[1], way[0]])
         return who + 1.2 * away * aside / math.hypot(*aside)
 
-    def heading(self, at, who, person, goal):
+    def heading(
+        self, at: Array, who: Array, person: PersonEstimate, goal: tuple[float, float]
+    ) -> float:
         """Return where to look: to the person, or where both go."""
-        kind = self.task.person.kind
+        kind = self.person.kind
         if kind == "lead":
             return (
                 math.atan2(goal[1] - at[1], goal[0] - at[0]) if math.dist(goal, at) > 0.2 else 0.0
@@ -62,11 +80,11 @@ class Companion:
             return person.heading
         return math.atan2(who[1] - at[1], who[0] - at[0])
 
-    def free(self, obs, way):
+    def free(self, obs: Observation, way: Array) -> float:
         """Return the speed at which the robot can stop before the next thing on its way, m/s."""
         points = self.points(obs.readings, obs.t, obs.twist, obs.vy)
         along, across = points @ way, np.abs(points @ np.array([-way[1], way[0]]))
-        radius = self.task.robot.radius
+        radius = self.body.radius
         ahead = along[(along > 0.0) & (across < radius + 0.15)] - radius - 0.15
         room = max(0.0, float(ahead.min(initial=9.0)))
         return math.sqrt(self.limits.a_max * room)
