@@ -62,7 +62,9 @@ def test_every_key_is_described(run: crowdbot.Run) -> None:
     cells = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \|", text, re.M)
     assert {k for c in cells for k in re.findall(r"`(\w+)`", c)} == {
         *run.record.document(),
+        "excused",
         "live",
+        "replace_draws",
         "robots",
         "toppled_time",
     }

@@ -61,9 +61,12 @@ class SceneLight(Spec):
     azimuth: Angle = Field(
         default=math.radians(-123.7), description="Direction in which the sun is, from x, rad."
     )
-    sun: float = Field(default=1.0, ge=0.0, le=3.0, description="Strength of the sun; 1: usual.")
+    sun: float = Field(default=1.0, ge=0.0, le=3.0, description="Strength of the sun, as a factor.")
     ambient: float = Field(
-        default=1.0, ge=0.0, le=3.0, description="Strength of the light from all sides; 1: usual."
+        default=1.0,
+        ge=0.0,
+        le=3.0,
+        description="Strength of the light from all sides, as a factor.",
     )
     colour: str = Field(
         default="#ffffff", pattern=r"^#[0-9a-fA-F]{6}$", description="Of the sunlight, `#rrggbb`."
