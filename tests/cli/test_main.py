@@ -38,7 +38,7 @@ def test_every_commands_help_has_an_example(
     assert "Example" in shown
     assert f"crowdbot {command}" in shown
     common = " ".join(shown.split()).partition("Common options: ")[2]
-    assert "-v says more; -q prints errors only; -h shows this help." in common
+    assert "-v prints more; -q prints errors only; -h shows this help." in common
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,8 @@ def reference(component: Component[Any], owner: Plugin) -> str:
 def _page_of_planner(component: Component[Any]) -> str:
     """Return the page of one of our planners; adversaries share a table, candidates have pages."""
     role = getattr(component.spec, "role", "")
-    pages = {"adversary": "planners.md#adversaries", "candidate": f"planners/{component.kind}.md"}
+    own = f"planners/{component.kind}.md"
+    pages = {"adversary": "planners.md#adversaries", "candidate": own, "ceiling": own}
     return pages.get(role, f"planners.md#{component.kind}")
 
 

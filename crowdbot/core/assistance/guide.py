@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core.assistance.finder import PersonFinder, PersonSight, ToldFinder, TrackingFinder
-from crowdbot.core.assistance.target import Target
+from crowdbot.core.assistance.target import Target, lidars_of
 from crowdbot.core.geometry.stance import SOCIAL, place_beside, together
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
@@ -143,12 +143,3 @@ def check_sees(
             f"{scenario}: robot '{robot}' has to track {target.goal.person}, and has no lidar; "
             "give it one, or write 'knows: told' in its goal"
         )
-
-
-def lidars_of(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorInfo]:
-    """Return the planar lidars, in whose points people are found."""
-    return {
-        name: info
-        for name, info in sensors.items()
-        if info.category == "lidar" and info.angles is not None and info.angles.ndim == 1
-    }

@@ -14,6 +14,7 @@ from crowdbot.core.population.realise import from_source
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.person_task import PersonTask
+from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.dsl.scenario.person_goals import (
     AccompanyGoal,
     ApproachGoal,
@@ -139,3 +140,12 @@ def _rows(
     group = int(people.group[drawn])
     alone = not who.whole_group or group < 0
     return np.asarray(found[found == drawn] if alone else found[people.group[found] == group])
+
+
+def lidars_of(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorInfo]:
+    """Return the planar lidars, in whose points people are found."""
+    return {
+        name: info
+        for name, info in sensors.items()
+        if info.category == "lidar" and info.angles is not None and info.angles.ndim == 1
+    }

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from crowdbot.core.assistance.guide import lidars_of
-from crowdbot.core.assistance.target import Target
+from crowdbot.core.assistance.target import Target, lidars_of
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice, select_sensors
 from crowdbot.core.recording.writer import EXACT

@@ -5,14 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from crowdbot.core.assistance.guide import (
-    PersonGuide,
-    check_sees,
-    lidars_of,
-    task_with_person,
-)
+from crowdbot.core.assistance.guide import PersonGuide, check_sees, task_with_person
 from crowdbot.core.assistance.led import LedPeople
-from crowdbot.core.assistance.target import Target, find_targets, led_people
+from crowdbot.core.assistance.target import Target, find_targets, led_people, lidars_of
 from crowdbot.core.assistance.watch import PersonWatch, rows_in, seen_from
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.population.realisation import Realisation

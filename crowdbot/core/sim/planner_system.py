@@ -21,7 +21,8 @@ from pydrake.systems.framework import (
 )
 
 from crowdbot.core.assistance.finder import PersonSight
-from crowdbot.core.assistance.guide import PersonGuide, lidars_of
+from crowdbot.core.assistance.guide import PersonGuide
+from crowdbot.core.assistance.target import lidars_of
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.crowd.response.notice import notice_time
 from crowdbot.core.geometry.footprint import footprint_of_model

@@ -121,10 +121,10 @@ def mark_of(tree: Node, *path: str | int) -> Mark:
     return locate(tree, path).node.mark
 
 
-def field_names(place: TreePlace) -> list[str]:
-    """Return the fields that the model has at a place."""
+def field_names(place: TreePlace, *, first: bool = False) -> list[str]:
+    """Return the fields that the model has at a place; of several models, perhaps the first's."""
     tag = kind_of(place.node)
-    models = [t for t in place.types if _is_model(t) and _has_kind(t, tag)]
+    models = [t for t in place.types if _is_model(t) and _has_kind(t, tag)][: 1 if first else None]
     return [n for model in models for n, info in model.model_fields.items() if not info.exclude]
 
 
@@ -269,7 +269,8 @@ def _as_map(wanted: str, place: TreePlace) -> str:
         return ""
     if any(hasattr(t, "category") for t in place.types):
         return f"write {{kind: {place.node.value if isinstance(place.node.value, str) else '…'}}}"
-    names = field_names(place)
+    # Those of the usual one of a union, which needs no kind.
+    names = [name for name in field_names(place, first=True) if name != "kind"]
     return f"its fields: {', '.join(names)}" if 0 < len(names) <= _FEW else ""
 
 
