@@ -24,7 +24,8 @@ class EpisodeRecorder(Wrapper):
 
     Args:
         env: `NavEnv`, wrapped or not.
-        folder: gets a replay page ``episode-00000.html`` of each episode that ends; None: none.
+        folder: gets a replay page ``episode-00000.html`` of each episode that ends, numbered on
+            from those that are there; None: none.
         every: only each n-th episode gets a page.
 
     Raises:
@@ -40,7 +41,7 @@ class EpisodeRecorder(Wrapper):
         self._rollout, self._every = env.unwrapped.rollout, every
         self._folder = None if folder is None else Path(folder)
         self._log: EpisodeLog | None = None
-        self._episodes = 0
+        self._episodes, self._first = 0, _next_number(self._folder)
 
     def reset(self, **arguments: Any) -> Any:
         """Begin an episode; see `NavEnv.reset`."""
@@ -81,10 +82,17 @@ class EpisodeRecorder(Wrapper):
     def _end(self) -> None:
         if self._folder is not None and self._episodes % self._every == 0:
             self._folder.mkdir(parents=True, exist_ok=True)
-            self.write_replay(self._folder / f"episode-{self._episodes:05}.html")
+            self.write_replay(self._folder / f"episode-{self._first + self._episodes:05}.html")
         self._episodes += 1
 
     def _begun(self) -> EpisodeLog:
         if self._log is None:
             raise InputError("reset() begins the first episode")
         return self._log
+
+
+def _next_number(folder: Path | None) -> int:
+    """Return the number after those of the pages in a folder."""
+    pages = [] if folder is None else folder.glob("episode-*.html")
+    numbers = (page.stem.removeprefix("episode-") for page in pages)
+    return max((int(n) + 1 for n in numbers if n.isdecimal()), default=0)

@@ -54,6 +54,12 @@ def test_each_episode_that_ends_gets_a_page(tmp_path: Path) -> None:
         drive(env, 8)
     pages = sorted(path.name for path in (tmp_path / "episodes").iterdir())
     assert pages == ["episode-00000.html", "episode-00002.html"]
+    again = rl.EpisodeRecorder(gym.make(rl.NAV, **SHORT), folder=tmp_path / "episodes")
+    again.reset(seed=9)
+    before = (tmp_path / "episodes" / pages[1]).read_bytes()
+    drive(again, 8)
+    assert (tmp_path / "episodes" / "episode-00003.html").is_file()  # nothing is overwritten
+    assert (tmp_path / "episodes" / pages[1]).read_bytes() == before
     assert "timeout" in (tmp_path / "episodes" / pages[0]).read_text("utf-8")
 
 

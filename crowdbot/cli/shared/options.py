@@ -18,6 +18,7 @@ __all__ = [
     "NoPlugins",
     "PlannerMemory",
     "Plugins",
+    "ReplaceDraws",
     "check_ending",
     "installed",
     "planner_place",
@@ -45,6 +46,15 @@ InProcess = Annotated[
 PlannerMemory = Annotated[
     float,
     typer.Option(metavar="GIB", min=0.0, help="Memory of a planner's process; 0: no limit."),
+]
+ReplaceDraws = Annotated[
+    int,
+    typer.Option(
+        min=0,
+        max=3,
+        help="Make a run again with the next draw, at most so often, if its robot was struck "
+        "from behind without fault and toppled.",
+    ),
 ]
 #: Minimum; a Python with numpy needs about a third of it.
 _LEAST_GIB = 0.5

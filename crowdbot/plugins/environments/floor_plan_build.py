@@ -73,6 +73,8 @@ def _place_or_problem(
     try:
         return _place_of(model.model_validate_json(words), *files, told_unit)
     except InputError as error:
+        if isinstance(error.__context__, OSError):  # it may be readable later
+            raise
         return error
 
 

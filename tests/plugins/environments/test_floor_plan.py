@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from crowdbot.errors import InputError
 from crowdbot.plugin import EnvironmentParts
+from crowdbot.plugins.environments import floor_plan_build as build_module
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.place_build import build
 
@@ -180,6 +181,28 @@ def test_too_many_corners(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="21001 corners, more than 20000; raise 'tolerance'"):
         _plan(file=path)
     assert len(_plan(file=path, tolerance="1 cm").walls) < 500
+
+
+def test_a_refused_plan_is_read_once_and_one_that_could_not_be_opened_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, calls = _file(tmp_path, "none.wkt", "POLYGON EMPTY"), list[str]()
+    text = vars(build_module)["input_text"]
+
+    def slow(file: Path, largest: int, name: str) -> str:
+        calls.append(name)
+        if len(calls) == 1:
+            try:
+                raise OSError("too many open files")
+            except OSError as error:
+                raise InputError(f"{name}: {error}") from None
+        return str(text(file, largest, name))
+
+    monkeypatch.setattr(build_module, "input_text", slow)
+    for message in ("too many open files", "the plan is empty", "the plan is empty"):
+        with pytest.raises(InputError, match=message):
+            _plan(file=path)
+    assert calls == ["none.wkt", "none.wkt"]
 
 
 @pytest.mark.parametrize(

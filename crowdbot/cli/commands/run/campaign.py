@@ -16,6 +16,7 @@ from crowdbot.cli.shared.options import (
     NoPlugins,
     PlannerMemory,
     Plugins,
+    ReplaceDraws,
     installed,
     planner_place,
 )
@@ -73,15 +74,7 @@ def campaign(
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="Repeat runs whose planner failed.")
     ] = False,
-    replace_draws: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            max=3,
-            help="Make a run again with the next draw, at most so often, if its robot was struck "
-            "from behind without fault and toppled.",
-        ),
-    ] = 0,
+    replace_draws: ReplaceDraws = 0,
     force: Annotated[
         bool, typer.Option("--force", help="Run everything again, calibration runs too.")
     ] = False,

@@ -14,6 +14,7 @@ from crowdbot.cli.shared.options import (
     NoPlugins,
     PlannerMemory,
     Plugins,
+    ReplaceDraws,
     installed,
     planner_place,
 )
@@ -61,15 +62,7 @@ def simulate(
         float | None,
         typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),
     ] = None,
-    replace_draws: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            max=3,
-            help="Make a run again with the next draw, at most so often, if its robot was struck "
-            "from behind without fault and toppled.",
-        ),
-    ] = 0,
+    replace_draws: ReplaceDraws = 0,
     duration: Annotated[
         float | None,
         typer.Option(metavar="SECONDS", help="Of people alone, without a robot; default 60."),
