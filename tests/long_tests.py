@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-#: The longest tests, 8 minutes of processor time together.
+#: The longest tests, 9 minutes of processor time together.
 LONG = (
     "tests/core/statistics/test_power.py::test_so_many_draws_find_it_in_four_cases_of_five",
     "tests/core/support/test_gc_throttle.py::test_many_new_objects_are_made_without_a_collection",
@@ -11,6 +11,15 @@ LONG = (
     "tests/test_old_names.py::test_a_planner_process_says_it_too",
     "tests/test_check_vocabulary.py::test_the_repository_has_none",  # make style checks it, too
     "tests/core/statistics/test_sign_flip.py::test_level_with_exchangeable_planners_and_power",
+    "tests/core/statistics/test_sign_flip.py::test_a_faster_planner_that_is_worth_nothing_in_a_tenth",
+    "tests/core/statistics/test_summary.py::test_no_difference_between_a_planner_and_itself",
+    "tests/cli/test_campaign.py::test_killed_and_resumed_it_ends_the_same",
+    "tests/plugins/planners/test_oracle.py::test_through_fifty_who_avoid_nobody[1]",
+    "tests/test_old_names.py::test_commands_say_each_old_name_in_one_line",
+    "tests/core/editor/test_page.py::test_twenty_people_two_walls_and_a_robot",
+    "tests/core/live/person/test_browser.py::test_a_second_page_watches",
+    "tests/core/sim/test_excused.py::test_the_next_draw_counts",
+    "tests/core/campaign/test_judge.py::test_judged_from_hand_in_to_the_leaderboard",
     "tests/core/statistics/test_summary.py::test_taking_runs_for_draws_would_find_differences",
     "tests/cli/test_study_page.py",
     "tests/cli/test_verify_command.py::test_what_a_planner_may_take_is_part_of_an_honest_bundle",
