@@ -81,9 +81,8 @@ class Checkout:
 
     def has_floors(self) -> bool:
         """Return True if it also runs floors and ceilings; an older checkout knows none."""
-        places = ("campaign.py", "commands/campaign.py")
-        files = [self.path / "crowdbot" / "cli" / place for place in places]
-        return any("floors:" in file.read_text() for file in files if file.is_file())
+        files = (self.path / "crowdbot" / "cli").rglob("campaign.py")
+        return any("floors:" in file.read_text() for file in files)
 
     def measure(self, out: Path, *options: str) -> Measured:
         """Run one campaign, and say what it took."""

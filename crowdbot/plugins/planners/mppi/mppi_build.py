@@ -14,6 +14,7 @@ import numpy as np
 from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.mppi import rollouts_build as rollouts
+from crowdbot.plugins.planners.mppi import samples_build as samples
 from crowdbot.plugins.planners.mppi.mppi import MppiSpec
 from crowdbot.plugins.planners.shared.braking_build import (
     AroundRobot,
@@ -43,7 +44,7 @@ class Mppi:
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
         self._way = Way(1.0)
-        self._p: Array = np.zeros(rollouts.PARAMETERS)
+        self._p: Array = np.zeros(samples.PARAMETERS)
         self._samples = self._drawn(2, 0)
         self._next = 0.0
 
@@ -62,7 +63,7 @@ class Mppi:
             np.ones((1, 5)), self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
         )
         rollouts.improve(around, self._p, (0.0,) * 6, self._samples)
-        rollouts.shift(self._samples.plan)
+        samples.shift(self._samples.plan)
         can_brake(
             AroundRobot(np.ones((1, 5)), np.ones((1, 2)), self._robot), (0.0,) * 6,
             (0.0, 0.0, 0.0), (limits.a_max, limits.alpha_max), (_HELD, _TOUCH),
@@ -83,10 +84,10 @@ class Mppi:
             return self._surroundings.away
         self._shift(obs.t)
         top = min(spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
-        self._p[rollouts.TOP] = top
+        self._p[samples.TOP] = top
         aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
         self._field.fill(scene.points, pose.x, pose.y)
-        people = people_near(scene, limits.v_max, spec.steps * spec.step_time, rollouts.MOST_PEOPLE)
+        people = people_near(scene, limits.v_max, spec.steps * spec.step_time, samples.MOST_PEOPLE)
         around = rollouts.Around(people, self._field.values, self._field.corner, self._robot, aim)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
         self._start(state, aim, top)
@@ -95,10 +96,10 @@ class Mppi:
         obs.draw("plan", driven(self._samples.plan[::2], 2.0 * spec.step_time))
         return self._braking(AroundRobot(people, scene.points, self._robot), state)
 
-    def _drawn(self, samples: int, seed: int) -> rollouts.Samples:
+    def _drawn(self, count: int, seed: int) -> samples.Samples:
         spec = self._spec
         knots = 1 + max(1, round((spec.steps - 1) * spec.step_time / spec.noise_time))
-        return rollouts.drawn(samples, spec.steps, knots, STARTS, seed)
+        return samples.drawn(count, spec.steps, knots, STARTS, seed)
 
     def _start(self, state: MotionState, aim: tuple[float, float], top: float) -> None:
         """Write the simple plans that are rolled out beside the noisy ones."""
@@ -125,22 +126,22 @@ class Mppi:
         if t <= self._next - self._spec.step_time:
             self._next = t
         while self._next < t:
-            rollouts.shift(self._samples.plan)
+            samples.shift(self._samples.plan)
             self._next += self._spec.step_time
 
 
 def _parameters(spec: MppiSpec, limits: RobotLimits) -> Array:
-    p = np.zeros(rollouts.PARAMETERS)
-    p[rollouts.A_MAX], p[rollouts.ALPHA_MAX] = limits.a_max, limits.alpha_max
-    p[rollouts.V_MIN], p[rollouts.V_MAX] = limits.v_min, limits.v_max
-    p[rollouts.W_MAX], p[rollouts.VY_MAX] = limits.w_max, limits.vy_max
-    p[rollouts.DT], p[rollouts.TEMPERATURE] = spec.step_time, spec.temperature
-    p[rollouts.CONTROL], p[rollouts.COMFORT] = spec.control_weight, spec.comfort
-    p[rollouts.GROWTH], p[rollouts.PROGRESS] = spec.margin_growth, spec.progress
-    p[rollouts.HEADING], p[rollouts.CLEARANCE] = spec.heading, spec.clearance
-    p[rollouts.COLLISION], p[rollouts.BACKWARD] = spec.collision, spec.backward
-    p[rollouts.V_NOISE], p[rollouts.W_NOISE] = spec.speed_noise, spec.yaw_rate_noise
-    p[rollouts.TOP] = spec.speed * limits.v_max
+    p = np.zeros(samples.PARAMETERS)
+    p[samples.A_MAX], p[samples.ALPHA_MAX] = limits.a_max, limits.alpha_max
+    p[samples.V_MIN], p[samples.V_MAX] = limits.v_min, limits.v_max
+    p[samples.W_MAX], p[samples.VY_MAX] = limits.w_max, limits.vy_max
+    p[samples.DT], p[samples.TEMPERATURE] = spec.step_time, spec.temperature
+    p[samples.CONTROL], p[samples.COMFORT] = spec.control_weight, spec.comfort
+    p[samples.GROWTH], p[samples.PROGRESS] = spec.margin_growth, spec.progress
+    p[samples.HEADING], p[samples.CLEARANCE] = spec.heading, spec.clearance
+    p[samples.COLLISION], p[samples.BACKWARD] = spec.collision, spec.backward
+    p[samples.V_NOISE], p[samples.W_NOISE] = spec.speed_noise, spec.yaw_rate_noise
+    p[samples.TOP] = spec.speed * limits.v_max
     return p
 
 
