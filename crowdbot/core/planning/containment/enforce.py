@@ -30,14 +30,13 @@ _SETTINGS = (
 _DEVICES = ("null", "zero", "full", "random", "urandom", "nvidia*", "kfd", "dri")
 
 
-def rules_of(given: Mapping[str, Any], scratch: str) -> int:
+def rules_of(given: Mapping[str, Any]) -> int:
     """Return the descriptor of the rules for files of a planner; -1 if the kernel has none.
 
     They hold for its later processes, too, which saves most of the time that this takes.
 
     Args:
         given: from `contained_request`.
-        scratch: the only folder that it may write to.
 
     Raises:
         OSError: the kernel refuses what it offers.
@@ -47,15 +46,16 @@ def rules_of(given: Mapping[str, Any], scratch: str) -> int:
         system_calls.filter_program(network=given["network"], signals=_filters_signals(given))
     if not version:
         return -1
-    return landlock.make_rules(version, _allowed(given, scratch), network=given["network"])
+    return landlock.make_rules(version, _allowed(given), network=given["network"])
 
 
-def enforce(given: Mapping[str, Any], rules: int) -> None:
+def enforce(given: Mapping[str, Any], rules: int, scratch: str) -> None:
     """Contain this process and all that it starts, as far as the kernel can.
 
     Args:
         given: from `contained_request`.
         rules: from `rules_of`, closed here.
+        scratch: the only folder that it may write to. What lies beside it outlives the run.
 
     Raises:
         OSError: the kernel refuses what it offers.
@@ -65,6 +65,7 @@ def enforce(given: Mapping[str, Any], rules: int) -> None:
     version, network = given["landlock"], given["network"]
     if version:
         landlock.allow(rules, "/proc/self", landlock.READ)
+        landlock.allow(rules, scratch, landlock.EVERYTHING & landlock.known_rights(version))
         landlock.restrict(rules)
     if given["filter"]:
         system_calls.deny_system_calls(network=network, signals=_filters_signals(given))
@@ -74,9 +75,8 @@ def _filters_signals(given: Mapping[str, Any]) -> bool:
     return bool(given["landlock"] < landlock.ABI_SIGNALS)
 
 
-def _allowed(given: Mapping[str, Any], scratch: str) -> Iterator[tuple[str, int]]:
+def _allowed(given: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
     """Yield paths and the rights to them."""
-    yield scratch, landlock.EVERYTHING
     for path in _SYSTEM:
         yield path, landlock.READ
     for name in _SETTINGS:

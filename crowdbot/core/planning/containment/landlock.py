@@ -64,9 +64,9 @@ def make_rules(version: int, allowed: Iterable[tuple[str, int]], *, network: boo
         OSError: the kernel refuses.
     """
     tcp = _TCP if version >= _ABI_TCP and not network else 0
-    ruleset = _ruleset(version, _rights(version), tcp)
+    ruleset = _ruleset(version, known_rights(version), tcp)
     for path, wanted in allowed:
-        allow(ruleset, path, wanted & _rights(version))
+        allow(ruleset, path, wanted & known_rights(version))
     return ruleset
 
 
@@ -102,7 +102,7 @@ def _ruleset(version: int, rights: int, tcp: int) -> int:
     return _checked(_LIBC.syscall(_CREATE, ctypes.byref(given), 8 * fields, 0))
 
 
-def _rights(version: int) -> int:
+def known_rights(version: int) -> int:
     """Return the rights to files that a version knows."""
     return int((1 << _RIGHTS.get(version, _NEWEST_RIGHTS)) - 1)
 

@@ -44,6 +44,8 @@ _NUMBERS: dict[str, tuple[int | None, int | None]] = {
     "msgsnd": (69, 189), "msgrcv": (70, 188), "msgctl": (71, 187), "mq_open": (240, 180),
     "mq_unlink": (241, 181), "add_key": (248, 217), "request_key": (249, 218),
     "keyctl": (250, 219),
+    # names of files anywhere, as others make them
+    "inotify_init": (253, None), "inotify_init1": (294, 26), "fanotify_init": (300, 262),
     # ways around the rules for files and sockets
     "io_uring_setup": (425, 425), "open_by_handle_at": (304, 265), "mount": (165, 40),
     "umount2": (166, 39), "pivot_root": (155, 41), "chroot": (161, 51), "setns": (308, 268),
@@ -59,7 +61,7 @@ _NUMBERS: dict[str, tuple[int | None, int | None]] = {
     # with conditions
     "prlimit64": (302, 261), "sched_setparam": (142, 118), "sched_setscheduler": (144, 119),
     "sched_setaffinity": (203, 122), "sched_setattr": (314, 274), "setpriority": (141, 140),
-    "ioprio_set": (251, 30), "socket": (41, 198), "clone": (56, 220), "clone3": (435, 435),
+    "ioprio_set": (251, 30), "socket": (41, 198), "socketpair": (53, 199), "clone": (56, 220), "clone3": (435, 435),
     "fcntl": (72, 25), "ioctl": (16, 29), "open": (2, None), "openat": (257, 56),
     "openat2": (437, 437), "kill": (62, 129), "tkill": (200, 130), "tgkill": (234, 131),
     "rt_sigqueueinfo": (129, 138), "rt_tgsigqueueinfo": (297, 240),
@@ -83,6 +85,12 @@ _O_ACCESS, _O_TRUNCATE = 0o3, 0o1000
 _FCNTL = (8, 15, 1024, 1026)
 #: FIOSETOWN, SIOCSPGRP, TIOCSTI, TIOCLINUX.
 _IOCTL = (0x8901, 0x8902, 0x5412, 0x541C)
+#: Kinds of ioctl that change attributes of files, or make and delete trees of them, without a right
+#: to write: ext4 and others, versions, XFS, btrfs. Their calls that read, or that copy into a file
+#: that is open for writing: GETFLAGS, FIEMAP, FSGETXATTR, FICLONE, FICLONERANGE.
+_OF_FILE_SYSTEMS, _KIND = (0x6600, 0x7600, 0x5800, 0x9400), 0xFF00
+_HARMLESS = (0x80086601, 0xC020660B, 0x801C581F, 0x40049409, 0x4020940D)
+_LOCAL, _DATAGRAMS = 1, 2  # AF_UNIX; a bit of SOCK_DGRAM and SOCK_RAW, which reach sockets by name
 _INTERNET = (2, 10, 16)  # AF_INET, AF_INET6; AF_NETLINK, by which addresses are looked up
 
 
@@ -155,11 +163,12 @@ def _program(*, network: bool, signals: bool) -> list[bytes]:
     for name in ("tkill", "pidfd_send_signal") if signals else ():
         program += only(name, [_do(_RETURN, _DENY)])
     program += only("socket", _one_of(0, _INTERNET if network else ()))
+    program += only("socketpair", [*_unless(0, _LOCAL), *_masked(1, _DATAGRAMS, 0)])
     program += only("clone", _masked(0, _NEW_SPACES, 0))
     for name in ("clone3", "openat2"):  # their arguments are out of reach; libraries use others
         program += only(name, [_do(_RETURN, _UNKNOWN)])
     program += only("fcntl", _none_of(1, _FCNTL))
-    program += only("ioctl", _none_of(1, _IOCTL))
+    program += only("ioctl", [*_none_of_kinds(1), *_none_of(1, _IOCTL)])
     for name, place in (("open", 1), ("openat", 2)):  # cutting a file that is opened for reading
         program += only(name, _masked_not(place, _O_ACCESS | _O_TRUNCATE, _O_TRUNCATE))
     return [*program, _do(_RETURN, _ALLOW)]
@@ -193,6 +202,18 @@ def _none_of(argument: int, values: Iterable[int]) -> list[bytes]:
 def _unless(argument: int, value: int) -> list[bytes]:
     """Deny the call unless an argument has a value; go on if it has."""
     return [_load(argument), _jump(_EQUAL, value, 1, 0), _do(_RETURN, _DENY)]
+
+
+def _none_of_kinds(argument: int) -> list[bytes]:
+    """Deny calls of some kinds that are not harmless; go on with all others."""
+    last = len(_OF_FILE_SYSTEMS) - 1
+    kinds = [
+        _jump(_EQUAL, value, last - k, int(k == last)) for k, value in enumerate(_OF_FILE_SYSTEMS)
+    ]
+    denied = [_do(_AND, _KIND), *kinds, _do(_RETURN, _DENY)]
+    rest = len(_HARMLESS) - 1 + len(denied)
+    harmless = [_jump(_EQUAL, value, rest - k, 0) for k, value in enumerate(_HARMLESS)]
+    return [_load(argument), *harmless, *denied]
 
 
 def _masked(argument: int, mask: int, wanted: int) -> list[bytes]:

@@ -216,16 +216,16 @@ class ForkServer:
     def _rules_of(self, given: Mapping[str, Any]) -> int:
         """Return the rules for files, made again if the planner or one of its files is another.
 
-        Each process adds a rule for its own ``/proc``, so they are not used without end.
+        Each process adds rules for its own ``/proc`` and folder: they are not used without end.
         """
         files = [(path, _inode(path)) for path in (*given["read"], *given["list"])]
-        key = (self._folder, given["network"], files)
+        key = (given["network"], files)
         known, rules, uses = self._rules
         if known != key or uses >= _MOST_USES:
             if rules >= 0:
                 os.close(rules)
             self._rules = (None, -1, 0)
-            rules, uses = rules_of(given, self._folder), 0
+            rules, uses = rules_of(given), 0
         self._rules = (key, rules, uses + 1)
         return rules
 
@@ -278,7 +278,7 @@ def _be_planner(
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         scratch, rules = place
         _be_ended_first()
-        enforce(request["contain"], rules)
+        enforce(request["contain"], rules, scratch)
         _take_descriptors(descriptors)
         die_with_parent(parent)
         set_inspectable(False)

@@ -28,13 +28,19 @@ pytestmark = pytest.mark.skipif(
 )
 
 TOP = """
-import resource, socket, mmap, multiprocessing, tempfile
+import array, fcntl, resource, socket, mmap, multiprocessing, tempfile
 FATHER, FILE = os.getppid(), os.path.abspath(__file__)
 FOLDER = os.path.dirname(FILE)
 def call(name, *given):
     libc = ctypes.CDLL(None, use_errno=True)
     if getattr(libc, name)(*given) == -1:
         raise OSError(ctypes.get_errno(), name)
+def mark():
+    flags = array.array('l', [0])
+    with open(FILE) as file:
+        fcntl.ioctl(file, 0x80086601, flags)
+        flags[0] |= 0x40
+        fcntl.ioctl(file, 0x40086602, flags)
 def count(attempts):
     denied = []
     for k, attempt in enumerate(attempts):
@@ -54,6 +60,10 @@ DENIED = [
     "os.symlink('/', FOLDER + '/s')", "os.mkfifo(FOLDER + '/f')", "open(FOLDER + '/secret.txt')",
     "os.truncate(FILE, 0)", "os.open(FILE, os.O_RDONLY | os.O_TRUNC)", "os.chmod(FILE, 0o777)",
     "os.chown(FILE, 1, 1)", "os.utime(FILE)", "os.setxattr(FILE, 'user.a', b'x')",
+    "mark()", "call('inotify_init1', 0)", "call('fanotify_init', 0x200, 0)",
+    # the folder of its folder, which outlives the run
+    "open(os.path.expanduser('~/../note'), 'w')", "os.listdir(os.path.expanduser('~/..'))",
+    "os.rename(os.path.expanduser('~'), os.path.expanduser('~/../other'))",
     "open('/dev/shm/x', 'w')", "open('/etc/shadow')", "os.listdir('/')", "os.listdir('/tmp')",
     # other processes
     "os.kill(FATHER, 0)", "os.kill(1, 0)", "open(f'/proc/{FATHER}/status')",
@@ -67,11 +77,14 @@ DENIED = [
     # network
     "socket.socket()", "socket.socket(socket.AF_INET, socket.SOCK_DGRAM)",
     "socket.socket(socket.AF_UNIX)", "socket.socket(socket.AF_NETLINK, socket.SOCK_RAW)",
-    "call('fcntl', 0, 8, FATHER)",
+    "call('fcntl', 0, 8, FATHER)", "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)",
+    "socket.socketpair(socket.AF_UNIX, socket.SOCK_RAW)",
 ]  # fmt: skip
 #: What planners do that do nothing wrong.
 ALLOWED = [
     "open(FILE).read()", "open(FOLDER + '/weights.txt').read()", "socket.socketpair()",
+    "fcntl.ioctl(open(FILE), 0x80086601, array.array('l', [0]))",
+    "socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)",
     "open(os.path.expanduser('~/mine'), 'w').write('x')", "tempfile.TemporaryDirectory()",
     "os.rename(os.path.expanduser('~/mine'), os.path.expanduser('~/yours'))",
     "threading.Thread(target=time.time).start()", "mmap.mmap(-1, 4096)", "os.nice(0)",
