@@ -14,6 +14,7 @@ from crowdbot.core.support.compile_cache import (
     is_plain_numba,
     is_readable_only,
 )
+from crowdbot.core.support.compiling.compile_cache_file import check_all_cache_files
 from crowdbot.core.support.compiling.compiled_state import CompiledState
 
 
@@ -36,3 +37,6 @@ class CompiledStateLocator(UserProvidedCacheLocator):
     def get_source_stamp(self) -> Any:
         """Return the state that must be unchanged for compiled code to be reused."""
         return CompiledState(self._function)
+
+
+check_all_cache_files()  # numba imports this module before it opens the first of them
