@@ -63,8 +63,8 @@ _NUMBERS: dict[str, tuple[int | None, int | None]] = {
     "sched_setaffinity": (203, 122), "sched_setattr": (314, 274), "setpriority": (141, 140),
     "ioprio_set": (251, 30), "socket": (41, 198), "socketpair": (53, 199), "clone": (56, 220),
     "clone3": (435, 435), "fcntl": (72, 25), "ioctl": (16, 29), "open": (2, None),
-    "openat": (257, 56), "openat2": (437, 437), "kill": (62, 129), "tkill": (200, 130), "tgkill": (234, 131),
-    "rt_sigqueueinfo": (129, 138), "rt_tgsigqueueinfo": (297, 240),
+    "openat": (257, 56), "openat2": (437, 437), "kill": (62, 129), "tkill": (200, 130),
+    "tgkill": (234, 131), "rt_sigqueueinfo": (129, 138), "rt_tgsigqueueinfo": (297, 240),
     "pidfd_send_signal": (424, 424),
 }  # fmt: skip
 _CONDITIONAL = "prlimit64"
