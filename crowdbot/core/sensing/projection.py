@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.sensing.raycast_columns import OVERLAP
+from crowdbot.core.sensing.raycast_columns import OVERLAP, PARALLEL
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
@@ -157,11 +157,13 @@ def cross_wall(
     """As `cross_disc`, for an upright plate from p to p + e."""
     cosine, dx, dy = cosines[first:last], rays[RAY_X, first:last], rays[RAY_Y, first:last]
     near, far = rays[NEAR, first:last], rays[FAR, first:last]
+    least = PARALLEL * (ex * ex + ey * ey)
     for c in range(cosine.shape[0]):
         across = dx[c] * ey - dy[c] * ex
         distance = (px * ey - py * ex) / across
         share = (px * dy[c] - py * dx[c]) / across
         hit = (distance >= 0.0) & (share >= -OVERLAP) & (share <= 1.0 + OVERLAP)
+        hit &= across * across > least
         near[c] = far[c] = distance * cosine[c] if hit else math.inf
 
 

@@ -13,11 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
+from crowdbot.core.sensing.raycast_columns import OVERLAP, PARALLEL
 from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
-
-#: Ends of a wall are extended by this fraction, so that no ray passes through a corner.
-_OVERLAP = 1e-9
 
 
 @array_kernel
@@ -72,12 +70,12 @@ def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: fl
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     px, py = wall[0] - o[0], wall[1] - o[1]
     across = dx * ey - dy * ex
-    if across == 0.0:  # parallel, or a wall without length
+    if across * across <= PARALLEL * (ex * ex + ey * ey) * (dx * dx + dy * dy):
         return math.inf
     t = (px * ey - py * ex) / across
     s = (px * dy - py * dx) / across
     z = o[2] + t * dz
-    if t < 0.0 or s < -_OVERLAP or s > 1.0 + _OVERLAP or z < heights[0] or z > heights[1]:
+    if t < 0.0 or s < -OVERLAP or s > 1.0 + OVERLAP or z < heights[0] or z > heights[1]:
         return math.inf
     return float(t)
 

@@ -35,6 +35,9 @@ _LAST = -(2**62)
 _OFTEN = 16
 #: Ends of a wall are extended by this fraction, so that no ray passes through a corner.
 OVERLAP = 1e-9
+#: Square of the sine of an angle between a ray and a wall below which they count as parallel: where
+#: the ray runs along the wall, rounding would decide at which distance they meet.
+PARALLEL = 1e-24
 
 
 class Obstacles(NamedTuple):
@@ -301,7 +304,7 @@ def _add_wall(
     for run in range(number):
         for c in range(runs[run, 0], runs[run, 1]):
             across = cos[c] * ey - sin[c] * ex
-            if across == 0.0:
+            if across * across <= PARALLEL * length * length:
                 continue
             t = (px * ey - py * ex) / across
             s = (px * sin[c] - py * cos[c]) / across
@@ -446,6 +449,8 @@ def _add_visible_wall(
             t = swept / across
             s = (px * sin[c] - py * cos[c]) / across
             if t < 0.0 or t > reach or s < -OVERLAP or s > 1.0 + OVERLAP:
+                continue
+            if across * across <= PARALLEL * square:
                 continue
             if length == 0.0:  # most plates are hidden
                 length = math.hypot(ex, ey)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.hidden_walls import hidden_walls
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices
 
 #: With fewer walls all are tried.
@@ -39,21 +41,6 @@ class Walls(NamedTuple):
     bound: Array
 
 
-class _Cell(NamedTuple):
-    """The standing walls of a cell.
-
-    Attributes:
-        near: all within reach of any point of it.
-        seen: those of them that none of the others hides from a sensor between two heights.
-        lowest, highest: these heights, m.
-    """
-
-    near: Walls
-    seen: Walls
-    lowest: float
-    highest: float
-
-
 class WallsNear:
     """Walls that can be seen from a point; others are never hit, so results stay the same.
 
@@ -66,7 +53,16 @@ class WallsNear:
         count = len(segments)
         self._all = Walls(segments, heights, None, np.arange(count), np.zeros(count))
         self._fixed = fixed
-        self._known: dict[tuple[int, int, float], _Cell] = {}
+        self._standing: Indices = np.arange(fixed)
+        #: Heights between which the same walls begin and end.
+        self._levels = [-math.inf, math.inf]
+        if fixed >= _FEW:
+            self._standing = _first_of_equal(np.column_stack([segments, heights])[:fixed])
+            self._levels[1:1] = np.unique(heights[:fixed]).tolist()
+        start, end = segments[self._standing, :2].T, segments[self._standing, 2:].T
+        square = ((end - start) ** 2).sum(0)
+        self._lines = start, end - start, np.where(square > 0.0, square, 1.0)
+        self._known: dict[tuple[int, int, float, int], Walls] = {}
 
     def near(self, x: float, y: float, reach: float, z: float = math.nan) -> Walls:
         """Return at least all walls within ``reach`` (m) of a point that can be seen from there.
@@ -76,34 +72,38 @@ class WallsNear:
         """
         if self._fixed < _FEW or not math.isfinite(reach):
             return self._all
-        key = math.floor(x / _SIDE), math.floor(y / _SIDE), reach
-        cell = self._known.get(key)
-        if cell is None:
+        level = bisect_right(self._levels, z) if math.isfinite(z) else 0
+        key = math.floor(x / _SIDE), math.floor(y / _SIDE), reach, level
+        found = self._known.get(key)
+        if found is None:
             if len(self._known) >= _MOST_CELLS:
                 self._known.clear()
-            cell = self._known[key] = self._within(*key)
-        found = cell.seen if cell.lowest <= z <= cell.highest else cell.near
+            found = self._known[key] = self._within(*key)
         moving = len(self._all.segments) - self._fixed
         return self._with_moving(found) if moving else found
 
-    def _within(self, column: int, row: int, reach: float) -> _Cell:
-        """Return the standing walls within reach of any point of a cell."""
+    def _within(self, column: int, row: int, reach: float, level: int) -> Walls:
+        """Return the standing walls that can be within reach of a point of a cell.
+
+        Args:
+            level: number of `_levels` that are not above the sensor; 0: unknown.
+        """
         x, y = (column + 0.5) * _SIDE, (row + 0.5) * _SIDE
-        ax, ay, bx, by = self._all.segments[: self._fixed].T
-        ex, ey = bx - ax, by - ay
-        square = ex * ex + ey * ey
-        share = np.clip(((x - ax) * ex + (y - ay) * ey) / np.where(square > 0.0, square, 1.0), 0, 1)
+        (ax, ay), (ex, ey), square = self._lines
+        share = np.clip(((x - ax) * ex + (y - ay) * ey) / square, 0.0, 1.0)
         away = np.hypot(ax + share * ex - x, ay + share * ey - y)
         bound = np.maximum(0.0, away - _HALF_DIAGONAL * _SIDE)
-        indices = np.flatnonzero(bound <= reach)
-        near = self._chosen(indices, bound[indices])
+        within = bound <= reach
+        indices, bound = self._standing[within], bound[within]
+        near = self._chosen(indices, bound)
+        if level == 0:
+            return near
         hidden = np.zeros(len(indices), np.bool_)
-        half = 0.5 * _SIDE + _ROUNDING
-        lowest, highest = hidden_walls(
-            x, y, half, near.segments, near.heights, near.order, hidden
+        hidden_walls(
+            (x, y, 0.5 * _SIDE + _ROUNDING), (self._levels[level - 1], self._levels[level]),
+            near.segments, near.heights, near.order, hidden,
         )  # fmt: skip
-        seen = self._chosen(indices[~hidden], bound[indices[~hidden]])
-        return _Cell(near, seen, lowest, highest)
+        return self._chosen(indices[~hidden], bound[~hidden])
 
     def _with_moving(self, found: Walls) -> Walls:
         assert found.indices is not None
@@ -120,9 +120,23 @@ class WallsNear:
         return Walls(segments, heights, indices, order, bound[order])
 
 
+def _first_of_equal(rows: Array) -> Indices:
+    """Return the indices (N,) of the rows but those equal to an earlier one, in their order.
+
+    Of walls that lie on each other the first is hit.
+    """
+    return np.sort(np.unique(rows, axis=0, return_index=True)[1])
+
+
 def in_scene(body: NDArray[np.int64], walls: Walls) -> None:
     """Change the numbers of walls that were hit, -(2 + index), to those of the scene, in place."""
-    if walls.indices is None:
-        return
-    own = (body <= -2) & (body >= -1 - len(walls.indices))
-    body[own] = -2 - walls.indices[-2 - body[own]]
+    if walls.indices is not None and body.size:
+        _renumber(body.reshape(-1), walls.indices)
+
+
+@kernel
+def _renumber(body: Indices, indices: Indices) -> None:
+    least = -1 - indices.shape[0]
+    for k in range(body.shape[0]):
+        if least <= body[k] <= -2:
+            body[k] = -2 - indices[-2 - body[k]]

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core.geometry.rough_angle import rough_angle
 from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid, rough_half
+from crowdbot.core.sensing.scene import Scene
 from tests.core.sensing.sensing_worlds import scene_of, world
 from tests.examples import costly
 
@@ -92,3 +93,18 @@ def test_rough_angles_leave_no_column_out() -> None:
         assert rough_angle(x, y) == pytest.approx(math.atan2(y, x), abs=2e-5)
     for sine in np.linspace(0.0, 1.0, 1001):
         assert math.asin(sine) <= rough_half(sine) <= math.asin(sine) + 1e-3
+
+
+def test_a_wall_along_which_a_ray_runs_is_never_hit_before_its_end() -> None:
+    """Rounding decides nothing where ray and wall lie on one line."""
+    walls = np.array([[-4.25, 4.25, -1.25, 1.25], [-6.0, 4.0, -4.0, 6.0]])
+    scene = Scene(walls, (0.0, 2.5), np.zeros(0), 1.7)
+    grid = RayGrid(np.linspace(-math.pi, math.pi, 720, endpoint=False), [0.0])
+    distance, _, body = scene.cast_grid(grid, (0.0, 0.0, 1.0), 0.0, 25.0)
+    along = int(np.argmin(np.abs(grid.azimuth - 0.75 * math.pi)))
+    assert (distance[0, along], body[0, along]) == (pytest.approx(5.0 * math.sqrt(2.0)), -3)
+    azimuth = grid.azimuth[along]
+    ray = np.array([[math.cos(azimuth), math.sin(azimuth), 0.0]])
+    for found in (scene.cast, lambda at, d, reach: scene.cast_tilted(at[0], np.eye(3), d, reach)):
+        one, _, what = found(np.array([[0.0, 0.0, 1.0]]), ray, 25.0)
+        assert (one[0], what[0]) == (pytest.approx(5.0 * math.sqrt(2.0)), -3)

@@ -94,6 +94,18 @@ def test_walls_behind_others_are_left_out_and_nothing_changes(
     assert found == _readings()
 
 
+def test_the_first_of_walls_that_lie_on_each_other_is_hit(monkeypatch: pytest.MonkeyPatch) -> None:
+    walls = np.repeat(_rooms(), 2, axis=0)
+    heights = np.tile([0.0, 2.5], (len(walls), 1))
+    grid = RayGrid(np.linspace(-3.0, 3.0, 181), [0.0])
+    near = Scene(walls, heights, np.zeros(0), 1.7).cast_grid(grid, (9.3, 8.2, 0.6), 0.3, 10.0)
+    body = near[2][near[2] < -1]
+    assert (body % 2 == 0).all()
+    monkeypatch.setattr(module, "_FEW", 10**9)
+    every = Scene(walls, heights, np.zeros(0), 1.7).cast_grid(grid, (9.3, 8.2, 0.6), 0.3, 10.0)
+    assert [a.tobytes() for a in near] == [a.tobytes() for a in every]
+
+
 def test_level_rays_stop_at_the_walls_of_single_rays() -> None:
     scene = _scene()
     grid = RayGrid(np.linspace(-3.0, 3.0, 181), [0.0])
