@@ -11,6 +11,7 @@ from crowdbot.core.exchange.write import WrittenLine
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.dsl.text.bounded_files import MAX_BYTES
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
@@ -27,8 +28,9 @@ def check(
         default: position of errors that no part of the files caused.
 
     Raises:
-        SpecError: E402, what the files say is not a valid scenario.
+        SpecError: E402, what the files say is not a valid scenario, or is too large for one file.
     """
+    _check_size(lines, len(scenes), default)
     with tempfile.TemporaryDirectory(prefix="crowdbot-import-") as folder:
         path = Path(folder) / "imported.yaml"
         write(path, lines, scenes)
@@ -37,6 +39,14 @@ def check(
         except SpecError as error:
             found = [_at_origin(d, path, lines, scenes, default) for d in error.diagnostics]
             raise SpecError(list({d.sort_key(): d for d in found}.values())) from None
+
+
+def _check_size(lines: Sequence[WrittenLine], scenes: int, default: Mark) -> None:
+    size = sum(len(line.text.encode()) + 1 for line in lines)
+    if size > MAX_BYTES:
+        message = f"{scenes} scenarios make a document of {size / 1e6:.1f} MB"
+        hint = f"it may have {MAX_BYTES / 1e6:g} MB: give fewer files in one command"
+        raise SpecError([Diagnostic("E402", message, default, hint)])
 
 
 def write(path: Path, lines: Sequence[WrittenLine], scenes: Sequence[Draft]) -> list[Path]:

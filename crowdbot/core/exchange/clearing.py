@@ -90,6 +90,13 @@ class FreeFloor:
             "size": [round(right - left - 2e-6, 6), round(high - low - 2e-6, 6)],
         }
 
+    def pockets(self) -> list[Any]:
+        """Return the places that walls close off from all sides, as polygons."""
+        from shapely import Polygon  # type: ignore[import-untyped,unused-ignore]
+
+        parts = getattr(self._solid, "geoms", [self._solid])
+        return [Polygon(ring) for part in parts for ring in getattr(part, "interiors", ())]
+
     def joins(self, start: Any, goal: Any, radius: float) -> bool:
         """Return True if one part of the free floor has room in both of two shapes."""
         free = self.of(radius)

@@ -14,6 +14,7 @@ from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
 from crowdbot.core.exchange.overlaps import enter_in_turn
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.scene import Draft, id_of
+from crowdbot.core.exchange.ways_out import keep_ways
 from crowdbot.core.exchange.write import WrittenLine, document
 from crowdbot.core.registry.registry import Registry
 from crowdbot.dsl.text.diagnostics import Diagnostic
@@ -64,6 +65,7 @@ def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Import
             report.rest(root)
     for scene in scenes:
         step_out(scene, report)
+        keep_ways(scene, report)
         enter_in_turn(scene, report)
     title = f"Imported from {' and '.join(read)}"
     lines = document(scenes, context.name, title)

@@ -89,6 +89,13 @@ class Item:
             child.used = True
         return found
 
+    def elements(self) -> list[Item]:
+        """Return all children but attributes, and count them as used."""
+        found = [child for child in self.children if not child.name.startswith("@")]
+        for child in found:
+            child.used = True
+        return found
+
     def take_all(self) -> None:
         """Count this item and everything in it as used."""
         stack = [self]

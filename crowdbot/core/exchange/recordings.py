@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import LARGEST, Item
 from crowdbot.core.exchange.opened import OpenedScene
-from crowdbot.core.exchange.report import Report
+from crowdbot.core.exchange.report import UNKNOWN, Report
 from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
@@ -20,6 +20,9 @@ _CELLS = re.compile(r"[,;\t]")
 _NAMES = {"t": ("t", "time", "timestamp"), "id": ("id", "agent", "agent_id", "person", "ped_id"),
           "x": ("x", "pos_x", "posx"), "y": ("y", "pos_y", "posy"),
           "entity": ("entity", "type", "kind")}  # fmt: skip
+#: Columns that follow from the places.
+_FOLLOWING = {"yaw", "heading", "theta", "angle", "orientation", "vx", "vy", "vel_x", "vel_y",
+              "velocity_x", "velocity_y", "speed"}  # fmt: skip
 #: Columns of a file without a header: UMANS' time, place and viewing direction of one agent.
 _BARE = {"t": 0, "x": 1, "y": 2}
 _NUMBERED = re.compile(r"(\d{1,9})$")
@@ -27,7 +30,7 @@ RECORDING = RowTable(
     "CSV with a header",
     (
         Row("time, id, x, y", "crowd.policy replay.file"),
-        Row("yaw, vx, vy", "", "they follow from the places"),
+        Row("yaw, vx, vy and the like", "", "they follow from the places"),
         Row("entity robot", "", "a planner drives the robot here"),
     ),
 )
@@ -75,21 +78,29 @@ def _people(file: OpenedScene, report: Report) -> dict[int, list[tuple[float, fl
     bare = not columns
     number = _NUMBERED.search(file.path.stem)
     found: dict[int, list[tuple[float, float, float]]] = {}
-    robots = 0
+    robots: list[_Row] = []
+    marks: dict[int, Mark] = {}
     for at in range(0 if bare else 1, len(lines)):
         if not lines[at].strip():
             continue
         row = _Row(file, at, _CELLS.split(lines[at]), columns or _BARE)
         if not bare and "entity" in columns and row.text("entity").lower().startswith("robot"):
-            robots += 1
+            robots.append(row)
             continue
+        row.end(len(head))
         ident = int(number[1]) if bare and number else row.whole("id") if not bare else 0
         point = (row.number("t"), row.number("x"), row.number("y"))
         points = found.setdefault(ident, [])
+        marks.setdefault(ident, row.mark)
         if points and point[0] <= points[-1][0]:
             row.refuse("the times of a person have to rise")
         points.append(point)
-    _record(file, report, head, bare, robots)
+    whole = _record(file, report, head, bare)
+    if robots:
+        report.left_out(whole.add(Item("robot", robots[0].mark)), RECORDING.rows[2].note)
+    for ident in (ident for ident, points in found.items() if len(points) == 1):
+        person = whole.add(Item(f"person {ident}", marks[ident]))
+        report.left_out(person, "it has one line only: recorded people need two")
     return {ident: points for ident, points in found.items() if len(points) > 1}
 
 
@@ -105,18 +116,22 @@ def _columns(head: Sequence[str]) -> dict[str, int]:
     return found if {"t", "id", "x", "y"} <= set(found) else {}
 
 
-def _record(
-    file: OpenedScene, report: Report, head: Sequence[str], bare: bool, robots: int
-) -> None:
+def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool) -> Item:
+    """Record the columns of a file; return the item that stands for the file."""
     table = WRITTEN if bare else RECORDING
     whole = Item(table.element, Mark(file.source))
     report.carried(whole, table.rows[0].ours)
-    more = len(head) > 3 if bare else len(head) > len(_columns(head))
-    if more:
-        other = whole.add(Item("further columns", Mark(file.source)))
-        report.left_out(other, table.rows[1].note)
-    if robots:
-        report.left_out(whole.add(Item("robot", Mark(file.source))), RECORDING.rows[2].note)
+    used = set((_columns(head) or _BARE).values())
+    column = 0
+    for at, cell in enumerate(head):
+        name = cell.strip().strip('"') or f"column {at + 1}"
+        if at not in used:
+            mark = Mark(file.source, 0, column, max(1, len(cell)))
+            known = bare or name.lower() in _FOLLOWING
+            other = whole.add(Item(f"column {at + 1}" if bare else name, mark))
+            report.left_out(other, table.rows[1].note if known else UNKNOWN)
+        column += len(cell) + 1
+    return whole
 
 
 class _Row:
@@ -151,9 +166,19 @@ class _Row:
             self.refuse(f"{name} is {self.text(name)[:40]!r}, and has to be a whole number")
         return int(value)
 
+    @property
+    def mark(self) -> Mark:
+        """Its position."""
+        return Mark(self._file.source, self._line)
+
+    def end(self, columns: int) -> None:
+        """Refuse cells that the first line has no column for."""
+        if any(cell.strip() for cell in self._cells[columns:]):
+            self.refuse(f"{len(self._cells)} cells, and the first line has {columns}")
+
     def refuse(self, message: str) -> None:
         """Raise a SpecError at this line."""
-        raise SpecError([Diagnostic("E402", message, Mark(self._file.source, self._line))])
+        raise SpecError([Diagnostic("E402", message, self.mark)])
 
 
 def _is_recording(file: OpenedScene) -> bool:

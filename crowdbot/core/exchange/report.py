@@ -10,6 +10,8 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.rows import Fate, RowTable
 from crowdbot.dsl.text.diagnostics import Mark
 
+#: Most parts that a line of the report names of one that is left out as a whole.
+_SHOWN = 8
 #: Reason of parts that no reader asked for.
 UNKNOWN = "no meaning of it is known here"
 
@@ -24,6 +26,7 @@ class Trace:
         at: its position; None for what only our document has.
         ours: place in our document; empty if it has none.
         note: reason, or how it was interpreted.
+        within: paths and positions of the parts that share its fate, each path once.
     """
 
     fate: Fate
@@ -31,13 +34,18 @@ class Trace:
     at: Mark | None
     ours: str = ""
     note: str = ""
+    within: tuple[tuple[str, Mark], ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for ``--json``; line and column count from 1."""
-        place = {"file": self.at.source.name, "line": self.at.line + 1,
-                 "column": self.at.column + 1} if self.at else {}  # fmt: skip
+        place = {"file": self.at.source.name, **_line_and_column(self.at)} if self.at else {}
+        within = [{"theirs": path, **_line_and_column(mark)} for path, mark in self.within]
         return {"fate": self.fate.value, "theirs": self.theirs, **place, "ours": self.ours,
-                "note": self.note}  # fmt: skip
+                "note": self.note} | ({"within": within} if within else {})  # fmt: skip
+
+
+def _line_and_column(mark: Mark) -> dict[str, int]:
+    return {"line": mark.line + 1, "column": mark.column + 1}
 
 
 @dataclass(slots=True)
@@ -58,10 +66,16 @@ class Report:
 
     def left_out(self, item: Item, note: str, *, whole: bool = True) -> None:
         """Record a part, by default with everything in it, that has no place in our language."""
+        within: dict[str, Mark] = {}
         if whole:
+            for part in item.walk():
+                if not part.used and part is not item:
+                    within.setdefault(part.path, part.mark)
             item.take_all()
         item.used = True
-        self.entries.append(Trace(Fate.LEFT_OUT, item.path, item.mark, "", note))
+        self.entries.append(
+            Trace(Fate.LEFT_OUT, item.path, item.mark, "", note, tuple(within.items()))
+        )
 
     def added(self, ours: str, note: str, at: Mark | None = None) -> None:
         """Record a field that our language needs and the files do not have."""
@@ -88,6 +102,12 @@ class Report:
                 else:
                     self.left_out(part, row.note)
         return found
+
+    def others(self, item: Item, note: str, *names: str) -> None:
+        """Record the parts of an item that no reader asked for: all, or those of some names."""
+        for part in item.children:
+            if not part.used and (not names or part.name in names):
+                self.left_out(part, note)
 
     def rest(self, root: Item) -> None:
         """Record what nothing asked for: at its outermost part."""
@@ -128,9 +148,16 @@ def _same(part: Item, value: str) -> bool:
         return False
 
 
+def _below(path: str, whole: str) -> str:
+    """Return a path from the part that it is in."""
+    return path.removeprefix(whole).lstrip("/@") or path
+
+
 def _line(key: tuple[Fate, str, str, str], entries: list[Trace]) -> str:
     fate, theirs, ours, note = key
     first = next((str(e.at) for e in entries if e.at), "")
     more = f" and {len(entries) - 1} more" if len(entries) > 1 else ""
-    what = " -> ".join(filter(None, (theirs, ours)))
+    names = dict.fromkeys(_below(path, theirs) for entry in entries for path, _ in entry.within)
+    shown = ", ".join([*list(names)[:_SHOWN], *(["…"] if len(names) > _SHOWN else [])])
+    what = " -> ".join(filter(None, (f"{theirs} ({shown})" if shown else theirs, ours)))
     return f"{fate.value}: {f'{first}{more}: ' if first else ''}{what}{f': {note}' if note else ''}"

@@ -23,6 +23,8 @@ MOST_DEEP, MOST_ITEMS = 64, 400_000
 _MOST_ROOTS, _FURTHER_ROOT = 8, 9
 #: Characters after the beginning of an element within which its attributes are looked for.
 _NEAR = 4000
+#: Most lines that they are looked for in.
+_LINES = 40
 
 
 def read_xml(path: Path) -> tuple[list[Item], list[tuple[Mark, str]]]:
@@ -133,11 +135,17 @@ class _Reader:
         return Mark(self._source, line, column, width)
 
     def _attribute(self, mark: Mark, name: str) -> Mark:
-        """Return the position of an attribute on its element's line, or the element's own."""
-        lines = self._source.lines
-        line = lines[mark.line] if mark.line < len(lines) else ""
-        at = line.find(f" {name}=", mark.column, mark.column + _NEAR)
-        return mark if at < 0 else Mark(mark.source, mark.line, at + 1, len(name))
+        """Return the position of an attribute near its element's name, or the element's own."""
+        lines, start, left = self._source.lines, mark.column, _NEAR
+        for number in range(mark.line, min(mark.line + _LINES, len(lines))):
+            line = f" {lines[number]}"
+            for written in (f" {name}=", f":{name}="):
+                at = line.find(written, start, start + left)
+                if at >= 0:
+                    return Mark(mark.source, number, at, len(name))
+            left = max(0, left - len(line) + start)
+            start = 0
+        return mark
 
 
 def _bare(name: str) -> str:

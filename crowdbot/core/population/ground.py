@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Tolerance for touching a wall, m.
 _SLACK = 1e-6
+#: Width of a corner's margin beyond a body's radius, relative to it.
+_CORNER = 0.45
 
 
 class Ground:
@@ -54,12 +56,16 @@ class Ground:
     def reaches(self, start: Point, goal: Point, radius: float) -> bool:
         """Return True if a person with path finding gets from one place to another.
 
-        Others always do.
+        Others always do. Margins of corners are a little wider than a body: one that stands there
+        is in the part of the floor beside it.
         """
         if not self.finds_way:
             return True
-        parts = self._space(radius).part_of(np.array([start, goal]))
-        return bool(parts[0] == parts[1] >= 0)
+        space = self._space(radius)
+        begin, end = space.part_of(np.array([start, goal]))
+        if begin < 0 and self.is_free(*start, radius):  # beside a corner, whose margin is wider
+            begin = space.nearest_part(start, _CORNER * radius)
+        return bool(begin == end >= 0)
 
     def check_route(self, who: str, start: Point, route: Sequence[Point], radius: float) -> None:
         """Refuse a route without a path from one point to the next.

@@ -73,6 +73,18 @@ def test_a_gap_that_validate_takes_for_a_way_is_found_when_people_are_drawn(tmp_
         realise(scenario, build_environment(REGISTRY, scenario.environment))
 
 
+def test_who_stands_close_to_a_corner_has_a_way(tmp_path: Path) -> None:
+    """The margin of a corner is cut straight, a little wider than a body is round."""
+    scenario = _scenario(tmp_path, 10.0)
+    assert scenario.crowd is not None
+    ground = Ground(build_environment(REGISTRY, scenario.environment), scenario.crowd)
+    start = (2.815, 2.815)
+    assert ground.is_free(*start, 0.25)
+    assert ground.reaches(start, (9.0, 1.0), 0.25)
+    assert not ground.reaches(start, (11.0, 1.0), 0.25)
+    assert not ground.reaches((2.9, 2.9), (9.0, 1.0), 0.25)  # within the block's reach
+
+
 def test_an_empty_ground_is_free_everywhere() -> None:
     ground = Ground()
     assert ground.is_free(0.0, 0.0, 1.0)

@@ -65,6 +65,13 @@ class FreeSpace:
             found[open_[inside]] = number
         return found
 
+    def nearest_part(self, point: tuple[float, float], reach: float) -> int:
+        """Return the index of the part nearest to a point; -1 if none is within a reach, m."""
+        at = shapely.Point(point)
+        far = [part.distance(at) for part in self.parts]
+        nearest = min(range(len(far)), key=far.__getitem__, default=-1)
+        return nearest if nearest >= 0 and far[nearest] <= reach else -1
+
     def holding(self, points: Array) -> FreeSpace:
         """Return only the parts that contain some of (M, 2) points."""
         numbers = sorted(set(self.part_of(points).tolist()) - {-1})

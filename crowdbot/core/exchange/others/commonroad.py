@@ -31,9 +31,18 @@ SCENARIO = RowTable(
         Row("lanelet, trafficSign, trafficLight, intersection", "", "people walk anywhere"),
         Row("planningProblem", "", "it is of a vehicle"),
         Row("location, scenarioTags", "", "for people"),
+        Row("orientation, velocity, acceleration", "", "they follow from the places"),
+        Row("signalState, signalSeries", "", "people have no lights"),
+        Row("staticObstacle type, initialState.time", "", "all are solid, and all the time"),
     ),
 )
 _PERSON = "pedestrian"
+_SIGNALS = ("initialSignalState", "signalSeries")
+_SIZES = ("length", "width", "radius", "orientation")
+#: Parts of a state beside its place and time.
+_OF_MOTION = ("orientation", "velocity", "acceleration", "yawRate", "slipAngle", "steeringAngle",
+              "velocityY", "accelerationY", "positionZ", "rollAngle", "rollRate", "pitchAngle",
+              "pitchRate", "jerk", "curvature")  # fmt: skip
 Point = tuple[float, float, float]
 #: Time, s, number, x and y, m.
 Recorded = tuple[float, int, float, float]
@@ -88,11 +97,10 @@ def _pedestrian(item: Item, dt: float, report: Report) -> tuple[list[Recorded], 
         report.left_out(item, SCENARIO.rows[2].note)
         return [], []
     ident = item.need("@id").whole(0)
-    rows = [(t, ident, x, y) for t, x, y in _states(item, dt)]
+    rows = [(t, ident, x, y) for t, x, y in _states(item, dt, report)]
     report.interpreted(item, "crowd.policy replay.file", SCENARIO.rows[1].note)
     radii = _radius(item, report)
-    for part in item.children:
-        part.take_all()
+    report.others(item, SCENARIO.rows[9].note, *_SIGNALS)
     return rows, radii
 
 
@@ -109,7 +117,7 @@ def _record(rows: list[Recorded], scene: Draft, root: Item, context: Context) ->
     scene.policy({"policy": {"kind": "replay", "file": table}, "costs": {}}, "replay", root.mark)
 
 
-def _states(item: Item, dt: float) -> list[Point]:
+def _states(item: Item, dt: float, report: Report) -> list[Point]:
     states = [item.need("initialState")]
     trajectory, occupied = item.find("trajectory"), item.find("occupancySet")
     states += trajectory.every("state") if trajectory else []
@@ -119,7 +127,8 @@ def _states(item: Item, dt: float) -> list[Point]:
     for state in states:
         time = _exact(state.need("time")) * dt
         shape = state.find("position") or state.need("shape")
-        x, y = _middle(shape)
+        x, y = _middle(shape, report)
+        report.others(state, SCENARIO.rows[8].note, *_OF_MOTION)
         if found and time == found[-1][0]:  # the first occupancy is the initial state
             continue
         if found and time < found[-1][0]:
@@ -130,13 +139,14 @@ def _states(item: Item, dt: float) -> list[Point]:
     return found
 
 
-def _middle(position: Item) -> tuple[float, float]:
+def _middle(position: Item, report: Report) -> tuple[float, float]:
     """Return a point, or the middle of a region, m."""
     if (point := position.find("point")) is not None:
         return point.need("x").number(), point.need("y").number()
     for kind in ("rectangle", "circle"):
         if (region := position.find(kind)) is not None:
             centre = region.need("center")
+            report.others(region, "an uncertain place is its middle", *_SIZES)
             return centre.need("x").number(), centre.need("y").number()
     corners = position.need("polygon").every("point")
     if not corners:
@@ -161,6 +171,9 @@ def _radius(item: Item, report: Report) -> list[float]:
     if shape is None or (circle is None and rectangle is None):
         return []
     report.interpreted(shape, "crowd.body.radius", SCENARIO.rows[4].note)
+    for part in (circle, rectangle):
+        if part is not None:
+            report.others(part, "people are round, about their place", "center", "orientation")
     if circle is not None:
         return [circle.need("radius").number(1e-3, 10.0)]
     assert rectangle is not None
@@ -169,17 +182,18 @@ def _radius(item: Item, report: Report) -> list[float]:
 
 def _static(item: Item, scene: Draft, report: Report) -> None:
     state = item.find("initialState")
-    x, y = _middle(state.need("position")) if state else (0.0, 0.0)
+    x, y = _middle(state.need("position"), report) if state else (0.0, 0.0)
     turn = state.find("orientation") if state else None
     angle = _exact(turn) if turn else 0.0
-    for shape in item.need("shape").every():
+    for shape in item.need("shape").elements():
         centre = shape.find("center")
         u, v = (centre.need(n).number() for n in ("x", "y")) if centre else (0.0, 0.0)
         at = (x + u * math.cos(angle) - v * math.sin(angle),
               y + u * math.sin(angle) + v * math.cos(angle))  # fmt: skip
         _solid(shape, (*at, angle), (x, y), scene, report)
     report.interpreted(item, "environment.blocks", SCENARIO.rows[3].note)
-    item.take_all()
+    for part in (item, *([state] if state else [])):
+        report.others(part, SCENARIO.rows[10].note, "@id", "type", *_OF_MOTION, "time", *_SIGNALS)
 
 
 def _solid(

@@ -121,9 +121,7 @@ def _agent(name: Item, parameters: Item, policy: str, scene: Draft, report: Repo
     if heading is not None:
         row["heading"] = heading.number()
     report.carried(pose, "crowd.agents.x, y, heading")
-    for extra in ("z",):
-        if (height := pose.find(extra)) is not None:
-            report.left_out(height, MORE.rows[3].note)
+    report.others(pose, MORE.rows[3].note, "z")
     row["goals"] = _goals(item, parameters, report) or [[row["x"], row["y"]]]
     _behave(item, row, report)
     scene.agent(row, item.mark)
@@ -137,9 +135,7 @@ def _goals(item: Item, parameters: Item, report: Report) -> list[list[float]]:
         found.append([goal.need("x").number(), goal.need("y").number()])
         report.carried(name, "crowd.agents.goals")
         report.carried(goal, "crowd.agents.goals")
-        for extra in ("h", "z"):
-            if (other := goal.find(extra)) is not None:
-                report.left_out(other, MORE.rows[3].note)
+        report.others(goal, MORE.rows[3].note, "h", "z")
     return found
 
 
@@ -151,9 +147,7 @@ def _behave(item: Item, row: Data, report: Report) -> None:
     name, like = _BEHAVIOURS[kind]
     row["attention"] = 0.0 if kind == 2 else 0.5
     report.interpreted(given.find("type") or given, "crowd.agents.attention", f"{name}: {like}")
-    for part in given.children:
-        if not part.used:
-            report.left_out(part, "parameters of that behaviour")
+    report.others(given, "parameters of that behaviour")
 
 
 def _ignoring(scene: Draft) -> None:

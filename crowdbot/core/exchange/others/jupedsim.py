@@ -22,7 +22,7 @@ from crowdbot.errors import SpecError
 SCENARIO = RowTable(
     "scenario",
     (
-        Row("walkable_area_wkt, or a WKT file beside it", "environment.wkt"),
+        Row("walkable_area_wkt, geometry_wkt, or a WKT file beside it", "environment.wkt"),
         Row("exits", "crowd.streams.destination", "a rectangle within their outline"),
         Row("distributions", "crowd.streams", "a rectangle within their outline"),
         Row("distributions.parameters.number", "crowd.streams.count"),
@@ -38,7 +38,7 @@ SCENARIO = RowTable(
         Row("seed, baseSeed", "crowd.seed.root"),
         Row("zones", "", "speeds do not depend on the place"),
         Row("transitions, waypoint_routing", "", "journeys say the way"),
-        Row("obstacles", "", "holes of the walkable area are solid"),
+        Row("obstacles", "environment.wkt", "cut out of the walkable area"),
         Row("simulationParams", "", "parameters of JuPedSim's models"),
     ),
 )  # fmt: skip
@@ -47,7 +47,7 @@ _MODEL = "the model's own parameters have no place here"
 
 
 #: Parts that are left out -> their row.
-_LEFT_OUT = {"zones": 11, "transitions": 12, "waypoint_routing": 12, "routing": 12, "obstacles": 13}
+_LEFT_OUT = {"zones": 11, "transitions": 12, "waypoint_routing": 12, "routing": 12}
 
 
 @dataclass(slots=True)
@@ -118,9 +118,9 @@ def _bare(file: OpenedScene, report: Report) -> Draft:
 
 
 def _scene(file: OpenedScene, texts: Sequence[OpenedScene], report: Report) -> Draft:
-    root, scene = file.roots[0], Draft(id_of(file.path.stem))
+    root, scene = _root(file.roots[0]), Draft(id_of(file.path.stem))
     scene.notes.append(f"Imported from JuPedSim: {file.path.name}.")
-    floor = _floor(root, file, texts, scene, report)
+    floor = _without_obstacles(root, _floor(root, file, texts, scene, report), scene, report)
     _model(root, scene, report)
     places = _Places(floor=floor)
     for name, into in (("exits", places.exits), ("checkpoints", places.checkpoints)):
@@ -128,8 +128,8 @@ def _scene(file: OpenedScene, texts: Sequence[OpenedScene], report: Report) -> D
             into[item.name], how = rectangle_in(pairs(item.need("coordinates")), floor)
             row = SCENARIO.rows[1 if name == "exits" else 7]
             report.interpreted(item, row.ours, how or row.note)
-            _rest(item, "exits and checkpoints have no such parameter", report)
-    journeys = _journeys(root, report)
+            report.others(item, "exits and checkpoints have no such parameter")
+    journeys = _journeys(root, places, report)
     for item in _entries(root, "distributions"):
         _distribution(item, places, journeys, scene, report)
     for name, at in _LEFT_OUT.items():
@@ -149,16 +149,20 @@ def _entries(root: Item, name: str) -> list[Item]:
     return listed.every() if listed else []
 
 
-def _rest(item: Item, note: str, report: Report) -> None:
-    for part in item.children:
-        if not part.used:
-            report.left_out(part, note)
+def _root(top: Item) -> Item:
+    """Return the scenario itself: in a message to a running program it is a part, ``config``."""
+    inside = top.find("config") if any(c.name == "geometry_wkt" for c in top.children) else None
+    return inside if inside is not None and _is_scenario(inside) else top
+
+
+def _is_scenario(item: Item) -> bool:
+    return {"distributions", "exits"} <= {part.name for part in item.children}
 
 
 def _floor(
     root: Item, file: OpenedScene, texts: Sequence[OpenedScene], scene: Draft, report: Report
 ) -> Any:
-    inside = root.find("walkable_area_wkt")
+    inside = root.find("walkable_area_wkt") or (root.parent or root).find("geometry_wkt")
     if inside is not None:
         report.carried(inside, "environment.wkt")
         return _geometry(inside.text(), inside.mark, scene)
@@ -176,6 +180,22 @@ def _floor(
     return _geometry(text, Mark(source), scene)
 
 
+def _without_obstacles(root: Item, floor: Any, scene: Draft, report: Report) -> Any:
+    """Return the walkable area less the obstacles that are given beside it."""
+    from shapely import Polygon, to_wkt  # type: ignore[import-untyped,unused-ignore]
+
+    for item in _entries(root, "obstacles"):
+        shape = Polygon(pairs(item.need("coordinates"))).buffer(0)
+        if shape.intersection(floor).area > 0.0:
+            floor = floor.difference(shape)
+            scene.environment["wkt"] = to_wkt(floor, rounding_precision=9)
+        if not floor.area > 0.0:
+            item.refuse("nothing of the walkable area is left beside the obstacles")
+        report.interpreted(item, "environment.wkt", SCENARIO.rows[13].note)
+        report.others(item, "obstacles have no such parameter")
+    return floor
+
+
 def _model(root: Item, scene: Draft, report: Report) -> None:
     kinds = [item for item in root.walk() if item.name == "model_type"]
     social = any("social" in item.text().lower() for item in kinds)
@@ -187,11 +207,13 @@ def _model(root: Item, scene: Draft, report: Report) -> None:
     if seeds:
         scene.crowd["seed"] = {"root": seeds[0].whole(0, 10**9)}
         for item in seeds:
-            item.number()
-            report.carried(item, "crowd.seed.root")
+            if item.number() == seeds[0].number():
+                report.carried(item, "crowd.seed.root")
+            else:
+                report.left_out(item, "the first seed in the file counts")
     config = root.find("config")
     for item in config.walk() if config else ():
-        if item.parent is config or item.name in ("simulation_settings", "simulationParams"):
+        if item.children and item.name in ("simulation_settings", "simulationParams"):
             item.used = True
     for item in list(config.walk()) if config else ():
         if not item.used:
@@ -202,16 +224,21 @@ def _model(root: Item, scene: Draft, report: Report) -> None:
     report.added("crowd.routing", "JuPedSim's people find their way round walls", root.mark)
 
 
-def _journeys(root: Item, report: Report) -> dict[str, list[str]]:
+def _journeys(root: Item, places: _Places, report: Report) -> dict[str, list[str]]:
     """Return the names of the stages of each journey, in turn."""
     found: dict[str, list[str]] = {}
+    starts = {item.name for item in _entries(root, "distributions")}
+    known = {*places.exits, *places.checkpoints, *starts}
     for listed, stages in (("journeys_v2", "sequence"), ("journeys", "stages")):
         for item in _entries(root, listed):
             ident = item.need("id").text()
             names = item.find(stages)
             found[ident] = [part.text() for part in names.every()] if names else []
             report.interpreted(item, "crowd.streams", SCENARIO.rows[8].note)
-            _rest(item, "journeys have no such parameter", report)
+            for part in names.every() if names else ():
+                if part.text() not in known:
+                    report.left_out(part, f"no exit or checkpoint '{part.text()[:60]}'")
+            report.others(item, "journeys have no such parameter")
     return found
 
 
@@ -233,12 +260,8 @@ def _distribution(
         left -= share
         if share > 0:
             _stream(item, parameters, area, way, share, scene)
-    for name in ("type",):
-        if (part := item.find(name)) is not None:
-            part.take_all()
-    if parameters is not item:
-        _rest(parameters, "streams have no such parameter", report)
-    _rest(item, "streams have no such parameter", report)
+    for whole in (parameters, item):
+        report.others(whole, "streams have no such parameter")
 
 
 def _count(parameters: Item, area: Data) -> int:
@@ -312,7 +335,7 @@ def _stream(
 
 def _fits(file: OpenedScene) -> bool:
     if file.kind == "data":
-        return "distributions" in file.tags and "exits" in file.tags
+        return _is_scenario(_root(file.roots[0]))
     return file.kind == "text" and file.text.lstrip().upper().startswith(_WKT)
 
 

@@ -187,30 +187,48 @@ def _robot(item: Item, at: tuple[float, float], way: _Way, scene: Draft, report:
     scene.robots[name] = standing_robot(f"{name}_goal", (*at, 0.0))
     scene.origins["robots", name] = item.mark
     report.interpreted(item, "robots", AGENT.rows[3].note)
-    for part in item.every("@n", "@dx", "@dy", "@type", "@x", "@y"):
-        part.text()
+    for part in item.every("@n", "@dx", "@dy"):
+        fine = part.number() == (1 if part.name == "@n" else 0)
+        if fine:
+            report.carried(part, "robots")
+        else:
+            report.left_out(part, "one robot stands at its x and y")
 
 
 def _robot_goal(
     item: Item, at: tuple[float, float], way: _Way, scene: Draft, report: Report
 ) -> tuple[float, float]:
-    """Return the last way point to which a way leads, m; without one the last of all."""
-    if not way:
-        report.added("robots.task.goal", "5 m ahead: the robot has no way point", item.mark)
-        return at[0] + 5.0, at[1]
+    """Return the last way point to which a way leads, m; without one a place near the start."""
+    floor = FreeFloor(scene)
+    middles = [(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3])) for _, b in reversed(way)]
+    apart = [(name, goal) for (name, _), goal in zip(reversed(way), middles, strict=True)
+             if max(abs(goal[0] - at[0]), abs(goal[1] - at[1])) > 2.0 * _HALF]  # fmt: skip
+    for name, goal in apart:
+        if _leads(floor, at, goal):
+            if name != way[-1][0]:
+                note = f"the way point '{name}': the robot starts in later ones, or walls shut them"
+                report.interpreted(item, "robots.task.goal", f"{note} off")
+            return goal
+    if apart:
+        return apart[0][1]
+    near = next((p for p in _around(at) if _leads(floor, at, p)), _around(at)[0])
+    note = f"{math.dist(at, near):g} m away: the robot has no way point that it does not start in"
+    report.added("robots.task.goal", note, item.mark)
+    return near
+
+
+def _around(at: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return places ahead, behind and beside, far ones first, m."""
+    ways = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
+    return [(at[0] + far * x, at[1] + far * y) for far in (5.0, 3.0, 2.0) for x, y in ways]
+
+
+def _leads(floor: FreeFloor, start: tuple[float, float], goal: tuple[float, float]) -> bool:
+    """Return True if the floor has a way from a place to another."""
     from shapely import Point  # type: ignore[import-untyped,unused-ignore]
 
-    floor, start = FreeFloor(scene), Point(at).buffer(_HALF)
-    middles = [(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3])) for _, b in reversed(way)]
-    if not floor.bounded:
-        return middles[0]
-    for number, goal in enumerate(middles):
-        if floor.joins(start, Point(goal).buffer(_HALF), _HALF) and math.dist(goal, at) > _HALF:
-            if number:
-                note = f"the way point '{way[-1 - number][0]}': walls shut off later ones"
-                report.interpreted(item, "robots.task.goal", note)
-            return goal
-    return middles[0]
+    ends = Point(start).buffer(_HALF), Point(goal).buffer(_HALF)
+    return not floor.bounded or floor.joins(*ends, _HALF)
 
 
 PEDSIM = SceneFormat(

@@ -34,7 +34,8 @@ SVG = RowTable(
         Row("label single_ped_ID_start, single_ped_ID_goal", "crowd.agents"),
         Row("class poi, other labels", "", "places that no one goes to"),
         Row("shapes without a label", "", "robot_sf does not read them"),
-        Row("@transform, styles, layers", "", "robot_sf reads raw coordinates, and so does this"),
+        Row("@transform", "", "robot_sf reads raw coordinates, and so does this"),
+        Row("styles, layers, titles", "", "robot_sf reads labelled shapes only"),
     ),
 )  # fmt: skip
 MAP = RowTable(
@@ -90,10 +91,11 @@ def _svg(root: Item, report: Report) -> RobotSfMap:
         if item.used and item.name in _DRAWN:
             _style(item, report)
         elif item.name in _DRAWN:
-            report.left_out(item, SVG.rows[-2].note)
+            report.left_out(item, SVG.rows[-3].note)
     for item in root.walk():
         if not item.used:
-            report.left_out(item, SVG.rows[-1].note)
+            row = SVG.rows[-2 if item.name == "@transform" else -1]
+            report.left_out(item, row.note)
     return found
 
 
@@ -185,23 +187,15 @@ def _labelled(
             singles[1][single[1]] = at
             report.carried(item, "crowd.agents.goals")
     else:
-        report.left_out(item, SVG.rows[-3].note)
+        report.left_out(item, SVG.rows[-4].note)
 
 
 def _style(item: Item, report: Report) -> None:
-    for part in item.every():
-        if part.name == "@transform":
-            report.left_out(part, SVG.rows[-1].note)
-        else:
-            part.take_all()
+    report.others(item, SVG.rows[-2].note, "@transform")
+    report.others(item, SVG.rows[-1].note)
     parent = item.parent
-    while parent is not None and not parent.used:
+    while parent is not None and not parent.used:  # its own attributes follow at the end
         parent.used = True
-        for part in parent.children:
-            if part.name.startswith("@"):
-                part.take_all()
-                if part.name == "@transform":
-                    report.left_out(part, SVG.rows[-1].note)
         parent = parent.parent
 
 
@@ -209,8 +203,7 @@ def _data(root: Item, report: Report) -> RobotSfMap:
     found = RobotSfMap(root)
     _margins(root, found, report)
     for item in [*_entries(root, "obstacles"), *_entries(root, "Obstacles")]:
-        if (ident := item.find("ID")) is not None:
-            ident.take_all()
+        report.others(item, "blocks have names of their own", "ID")
         vertices = item.find("vertices") or item.find("Vertex")
         found.obstacles.append((item, pairs(vertices or item)))
     for kind in ("robot_spawn", "robot_goal", "ped_spawn", "ped_goal", "ped_crowded"):

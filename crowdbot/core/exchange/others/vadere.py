@@ -22,6 +22,7 @@ SCENARIO = RowTable(
         Row("mainModel", "crowd.policy", "social forces are ours of 1995, others the usual costs"),
         Row("attributesModel", "", "parameters of Vadere's models"),
         Row("attributesSimulation", "", "people decide 16 times a second and move 128 times"),
+        Row("attributesStrategy", "", "nothing changes routes while people walk"),
         Row("attributesPsychology", "", "people have no psychology layer here"),
         Row("eventInfos", "", "nothing happens to people from outside"),
         Row("stimulusInfos", "", "nothing happens to people from outside"),
@@ -98,7 +99,7 @@ def _topography(item: Item, into: Topography) -> None:
     _bounds(item.need("attributes"), scene, report)
     for obstacle in _entries(item, "obstacles"):
         add_obstacle(obstacle, scene, report)
-        take_ids(obstacle)
+        take_ids(obstacle, report)
         report.carried(obstacle, "environment.blocks")
     for row in TOPOGRAPHY.rows[6:]:
         if (part := item.find(row.theirs)) is not None:
@@ -131,9 +132,7 @@ def _bounds(attributes: Item, scene: Draft, report: Report) -> None:
     scene.environment |= {"area": area, "border": "walls" if walled else "open"}
     scene.origins["environment",] = bounds.mark
     report.carried(bounds, "environment.area")
-    for part in attributes.children:
-        if not part.used:
-            report.left_out(part, "the floor has no other frame")
+    report.others(attributes, "the floor has no other frame")
 
 
 def _people(item: Item, scene: Draft, report: Report) -> None:
@@ -143,9 +142,8 @@ def _people(item: Item, scene: Draft, report: Report) -> None:
     body = {name: fields[name] for name in ("radius", "max_speed", "max_acceleration")
             if name in fields}  # fmt: skip
     scene.crowd["body"] = {"radius": 0.2, **body}
-    for part in given.children if given else []:
-        if not part.used:
-            report.left_out(part, "a parameter of Vadere's models")
+    if given:
+        report.others(given, "a parameter of Vadere's models")
 
 
 def _target(item: Item, into: Topography) -> None:
@@ -157,14 +155,14 @@ def _target(item: Item, into: Topography) -> None:
     given = absorber.find("enabled") if absorber else item.find("absorbing")
     into.absorbing[ident] = given is None or given.truth()
     into.report.interpreted(item, "crowd.streams.destination", TOPOGRAPHY.rows[2].note)
-    take_ids(item)
+    take_ids(item, into.report)
     if absorber is not None and (far := absorber.find("deletionDistance")) is not None:
         into.report.left_out(far, "a goal is reached at the crowd's own distance")
     waiter = item.find("waiter")
     enabled = waiter.find("enabled") if waiter else None
     if waiter is not None and enabled is not None and not enabled.truth():
-        waiter.take_all()
         into.report.carried(waiter, "(no one waits there)")
+        into.report.others(waiter, "no one waits there")
     elif waiter is not None:
         into.report.left_out(waiter, TOPOGRAPHY.rows[3].note)
     for part in item.children:
@@ -204,9 +202,8 @@ def _element(item: Item, into: Topography) -> None:
             row[ours] = positive(part)
     into.scene.agent(row, item.mark)
     into.report.carried(item, "crowd.agents")
-    for part in [*item.children, *(attributes.children if attributes else [])]:
-        if not part.used:
-            into.report.left_out(part, "state of Vadere's models")
+    for whole in (item, *([attributes] if attributes else [])):
+        into.report.others(whole, "state of Vadere's models")
 
 
 def _group(item: Item) -> Data:

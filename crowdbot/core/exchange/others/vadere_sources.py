@@ -5,6 +5,7 @@ from __future__ import annotations
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.others.shapes import area_of
 from crowdbot.core.exchange.others.vadere_shapes import read_area
+from crowdbot.core.exchange.others.vadere_times import read_times
 from crowdbot.core.exchange.others.vadere_topography import Topography, take_ids, way_of
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, number
@@ -43,7 +44,7 @@ def add_source(item: Item, into: Topography) -> None:
     if way[:-1]:
         stream["via"] = [area_of(into.targets[k]) for k in way[:-1]]
     stream |= _when(spawner, int(count), fields, report)
-    take_ids(item)
+    take_ids(item, report)
     stream["at_destination"] = "leave" if into.absorbing[way[-1]] else "stop"
     if groups := _groups(item):
         stream["groups"] = groups
@@ -82,38 +83,19 @@ def _when(item: Item, count: int, fields: Data, report: Report) -> Data:
     begin = fields.get("begin", _newer(item, "constraintsTimeStart", 0.0))
     ends = item.find("endTime")
     end = ends.number() if ends else _newer(item, "constraintsTimeEnd", begin)
-    if end <= begin:
-        for part in _distribution(item):
-            part.take_all()
-            report.carried(part, "(people come in once)")
-        times = {} if begin <= 0.0 else {"arrivals": {"times": [begin] * min(count, 10_000)}}
-        return times or {"count": count}
-    mean, regular = _interval(item, report)
-    every = mean / max(count, 1)
+    times = read_times(item, report)
     most = item.find("maxSpawnNumberTotal") or item.find("constraintsElementsMax")
-    if most is not None and most.whole() > 0:
-        end = min(end, begin + most.whole() * every)
+    total = most.whole() if most is not None else -1
+    if end <= begin or times.once is not None:
+        at = begin if times.once is None else max(begin, times.once)
+        count = min(count, total) if total > 0 else count
+        return {"arrivals": {"times": [at] * min(count, 10_000)}} if at > 0.0 else {"count": count}
+    every = times.mean / max(count, 1)
+    if total > 0:
+        end = min(end, begin + total * every)
     when: Data = {"begin": begin, "until": round(end, 6)}
-    return {"arrivals": when | ({"every": every} if regular else {"rate": 1.0 / every})}
-
-
-def _interval(item: Item, report: Report) -> tuple[float, bool]:
-    """Return the mean time between spawns, s, and True if it is regular."""
-    wholes = _distribution(item)
-    parts = [part for whole in wholes for part in whole.walk()]
-    values = [part.number(1e-6) for part in parts if isinstance(part.value, int | float)]
-    text = " ".join(part.text().lower() for part in parts if isinstance(part.value, str))
-    for part in wholes:
-        note = "arrivals with the same mean time between them, single persons"
-        report.interpreted(part, "crowd.streams.arrivals", note)
-        part.take_all()
-    return (values[0] if values else 1.0), "exponential" not in text and "poisson" not in text
-
-
-def _distribution(item: Item) -> list[Item]:
-    """Return the parts that say when people come in."""
-    names = ("interSpawnTimeDistribution", "distribution", "distributionParameters")
-    return [part for name in names if (part := item.find(name)) is not None]
+    rate = {"every": every} if times.regular else {"rate": 1.0 / every}
+    return {"arrivals": when | rate}
 
 
 def _groups(item: Item) -> list[Data]:

@@ -19,11 +19,9 @@ class Topography:
     absorbing: dict[int, bool] = field(default_factory=dict)
 
 
-def take_ids(item: Item) -> None:
-    """Count names and the like as used."""
-    for name in ("id", "visible", "reference"):
-        if (part := item.find(name)) is not None:
-            part.take_all()
+def take_ids(item: Item, report: Report) -> None:
+    """Record names and the like."""
+    report.others(item, "its name, or its look", "id", "visible", "reference")
 
 
 def way_of(item: Item, into: Topography) -> list[int]:

@@ -96,8 +96,7 @@ def _add(
         row["heading"] = motion.heading
     row |= {"goals": motion.goals, "at_goal": motion.at_goal}
     if motion.file is not None:
-        number = len(scene.agents)
-        row |= {"policy": replays.add(motion, number, row, scene)}
+        row |= {"policy": replays.add(motion, row, scene, report)}
         report.interpreted(motion.file, "crowd.policies.replay.file",
                            "copied to a table of t, id, x, y in our frame")  # fmt: skip
     else:

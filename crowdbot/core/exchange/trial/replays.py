@@ -8,6 +8,7 @@ from pathlib import Path
 
 from crowdbot.core.exchange.companions import companion
 from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.scene import Data, Draft
 from crowdbot.core.exchange.source import source_of
 from crowdbot.core.exchange.trial.law import Motion
@@ -32,13 +33,13 @@ class Replays:
         self._beside, self._name, self._words = beside, name, words
         self._rows: list[str] = []
 
-    def add(self, motion: Motion, number: int, row: Data, scene: Draft) -> str:
+    def add(self, motion: Motion, row: Data, scene: Draft, report: Report) -> str:
         """Read the file of one person; set the start and goal in its row, return its policy.
 
         Raises:
             SpecError: the file is missing, or is not a table of numbers.
         """
-        item = motion.file
+        item, number = motion.file, len(scene.agents)
         assert item is not None
         text = item.text()
         for word, value in self._words.items():
@@ -46,6 +47,7 @@ class Replays:
         path = companion(item, self._beside, text)
         source, content = source_of(path)
         points = read_columns(source, content, motion.columns, item)
+        _name_others(source, content, motion.columns, item, report)
         self._rows += [f"{t!r},{number},{x!r},{y!r}\n" for t, x, y in points]
         _, row["x"], row["y"] = points[0]
         row["goals"] = [list(points[-1][1:])]
@@ -54,6 +56,17 @@ class Replays:
         scene.tables[self._name] = HEADER + "".join(self._rows)
         replay: Data = {"policy": {"kind": "replay", "file": self._name}, "costs": {}}
         return scene.policy(replay, "replay", item.mark)
+
+
+def _name_others(
+    source: Source, text: str, columns: dict[str, int], item: Item, report: Report
+) -> None:  # fmt: skip
+    """Record the columns that nothing asks for."""
+    most = max((len(_CELLS.split(line)) for line in text.split("\n")), default=0)
+    for column in sorted(set(range(1, most + 1)) - {abs(n) for n in columns.values()}):
+        other = Item(f"column {column}", Mark(source))
+        other.parent = item
+        report.left_out(other, "people follow their recorded places only")
 
 
 def read_columns(

@@ -9,6 +9,7 @@ from typing import Any
 
 from crowdbot.core.exchange.formats import Context
 from crowdbot.core.exchange.item import Item
+from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Data, Draft, free_name, name_of
 from crowdbot.core.exchange.trial.law import Motion, heading, place, read_law
@@ -71,7 +72,7 @@ def _read(item: Item, scene: Draft, context: Context) -> tuple[float, bool]:
     start = place(item.need("Position"), report)
     facing = heading(item.need("Rotation"))
     report.carried(item.need("Rotation"), "robots.task.start")
-    motion = read_law(item.find("controlLaw"), start, facing, report)
+    motion = _law(item, start, facing, report)
     if (sim := item.find("controlSim")) is not None:
         report.left_out(sim, ROBOT.rows[-1].note)
     name = free_name(name_of(mesh.text()), scene.robots)
@@ -81,6 +82,24 @@ def _read(item: Item, scene: Draft, context: Context) -> tuple[float, bool]:
     scene.robots[name] = robot
     scene.origins["robots", name] = item.mark
     return _margin(item, robot["model"]["kind"], context), _in_sim(item, context)
+
+
+def _law(item: Item, start: list[float], facing: float, report: Report) -> Motion:
+    """Return the motion of a robot's law, of which the last goal alone counts."""
+    motion = read_law(item.find("controlLaw"), start, facing, Report())
+    law = motion.item
+    if law is None:
+        return motion
+    note = ROBOT.rows[5].note if motion.walks else "a planner drives the robot"
+    report.interpreted(law, ROBOT.rows[5].ours, note)
+    parts = [part for part in law.walk() if part.used and part is not law]
+    goals = [part for part in parts if part.name in ("Goal", "Waypoint")]
+    for part in parts:
+        if goals and part is goals[-1]:
+            report.carried(part, "robots.task.goal")
+        elif part in goals or (part.parent is law and not part.children):
+            report.left_out(part, "a planner drives the robot to the last goal")
+    return motion
 
 
 def _margin(item: Item, kind: str, context: Context) -> float:

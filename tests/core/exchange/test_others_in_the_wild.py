@@ -1,0 +1,93 @@
+"""Scenes of others as people publish them: wrapped, with pockets, with times of other kinds."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from shapely import Point, from_wkt  # type: ignore[import-untyped,unused-ignore]
+
+from tests.core.exchange.importing import FILES, document_of, imported, notes
+
+_ROOM = "POLYGON ((0 0, 20 0, 20 10, 0 10, 0 0))"
+
+
+def _square(x: float, y: float, side: float) -> list[list[float]]:
+    return [[x, y], [x + side, y], [x + side, y + side], [x, y + side], [x, y]]
+
+
+def test_jupedsim_scenarios_in_a_message_have_their_geometry_beside_them(tmp_path: Path) -> None:
+    pillar = {"type": "polygon", "coordinates": _square(9, 4, 2)}
+    deck = {"config": {"exits": {"door": {"coordinates": _square(18, 4, 2)}},
+                       "distributions": {"hall": {"coordinates": _square(1, 2, 4),
+                                                  "parameters": {"number": 4}}},
+                       "obstacles": {"pillar": pillar},
+                       "journeys_v2": [{"id": "a", "sequence": ["door", "nowhere"]}]},
+            "geometry_wkt": _ROOM}  # fmt: skip
+    file = tmp_path / "a.json"
+    file.write_text(json.dumps(deck, indent=1))
+    found = imported(file)
+    scenario = document_of(found)["scenario"]
+    floor = from_wkt(scenario["environment"]["wkt"])
+    assert (floor.area, floor.contains(Point(10, 5))) == (196.0, False)
+    assert scenario["crowd"]["streams"]["hall"]["count"] == 4
+    assert "no exit or checkpoint 'nowhere'" in notes(found, "left out").values()
+
+
+@pytest.mark.parametrize(
+    ("distribution", "arrivals"),
+    [
+        ({"type": "poisson", "numberPedsPerSecond": 0.5}, {"rate": 0.5}),
+        ({"type": "constant", "updateFrequency": 4.0}, {"every": 4.0}),
+        ({"type": "negativeExponential", "mean": 2.0}, {"rate": 0.5}),
+        ({"type": "binomial", "trials": 10, "p": 0.2}, {"rate": 0.5}),
+        ({"type": "empirical", "values": [1.0, 3.0]}, {"every": 2.0}),
+        (
+            {"type": "timeSeries", "intervalLength": 8.0, "spawnsPerInterval": [1, 3]},
+            {"every": 4.0},
+        ),
+        ({"type": "singleSpawn", "spawnTime": 3.0}, {"times": [3.0]}),
+    ],
+)
+def test_vadere_sources_spawn_at_the_mean_rate_of_their_distribution(
+    tmp_path: Path, distribution: dict[str, Any], arrivals: dict[str, Any]
+) -> None:
+    deck = json.loads((FILES / "vadere.scenario").read_text())
+    source = deck["scenario"]["topography"]["sources"][1]
+    for name in ("interSpawnTimeDistribution", "distributionParameters"):
+        del source[name]
+    source["distribution"] = distribution
+    file = tmp_path / "a.scenario"
+    file.write_text(json.dumps(deck))
+    streams = document_of(imported(file))["scenario"]["crowd"]["streams"]
+    assert arrivals.items() <= list(streams.values())[1]["arrivals"].items()
+
+
+_WALLS = "".join(
+    f'<obstacle x1="{a}" y1="{b}" x2="{c}" y2="{d}"/>'
+    for a, b, c, d in [(0, 0, 30, 0), (30, 0, 30, 20), (30, 20, 0, 20), (0, 20, 0, 0),
+                       (8, 8, 12, 8), (12, 8, 12, 12), (12, 12, 8, 12), (8, 12, 8, 8)]
+)  # fmt: skip
+
+
+def test_pedsim_clusters_leave_pockets_and_what_is_outside(tmp_path: Path) -> None:
+    """A cluster over a hollow pillar that sticks out of the house: each person has a way."""
+    file = tmp_path / "a.xml"
+    file.write_text(f"""<scenario>{_WALLS}<waypoint id="in" x="25" y="10" r="2"/>
+<agent x="5" y="10" n="9" dx="9" dy="6" type="0"><addwaypoint id="in"/></agent></scenario>""")
+    found = imported(file)
+    scenario = document_of(found)["scenario"]
+    area = scenario["crowd"]["spawns"]["people"]["area"]
+    assert area["centre"][0] - 0.5 * area["size"][0] > 0.3
+    assert scenario["environment"]["blocks"]["pocket"]["corners"]
+    assert scenario["crowd"]["routing"] == {"kind": "mesh"}
+
+
+def test_pedsim_robots_that_start_in_their_way_point_drive_a_few_metres(tmp_path: Path) -> None:
+    file = tmp_path / "a.xml"
+    file.write_text(f"""<scenario>{_WALLS}<waypoint id="in" x="26" y="10" r="2"/>
+<agent x="26" y="10" n="1" dx="0" dy="0" type="2"><addwaypoint id="in"/></agent></scenario>""")
+    zone = document_of(imported(file))["scenario"]["environment"]["zones"]["robot_goal"]
+    assert zone == {"x": [20.5, 21.5], "y": [9.5, 10.5]}  # behind it, since a wall is ahead
