@@ -1,4 +1,4 @@
-"""When the sources of Vadere let people in: its distributions of the time between spawns."""
+"""Times at which the sources of Vadere let people in: distributions of the time between spawns."""
 
 from __future__ import annotations
 
