@@ -22,12 +22,12 @@ import crowdbot
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))  # as a script, too
 
-from scripts.metric_pictures import near, people, robot  # noqa: E402
+from scripts.metric_pictures import near, people, person, robot  # noqa: E402
 from scripts.metric_pictures.registry import DRAWINGS  # noqa: E402
 from scripts.metric_pictures.world import World  # noqa: E402
 from scripts.write_metric_cards import with_declared, with_parameters  # noqa: E402
 
-DRAWN = (near, people, robot)
+DRAWN = (near, people, person, robot)
 HERE = Path(__file__).parent / "metric_pictures"
 IMAGES = ROOT / "docs" / "images" / "metrics"
 PAGES = ROOT / "docs" / "reference" / "metrics"

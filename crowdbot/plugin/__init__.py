@@ -124,7 +124,7 @@ if TYPE_CHECKING:
     from crowdbot.core.types.arrays import Array, Indices, Mask
     from crowdbot.core.types.environment import EnvironmentParts
     from crowdbot.core.types.motion import Command, Pose
-    from crowdbot.core.types.person_task import PersonEstimate, PersonTask
+    from crowdbot.core.types.person_task import PersonEstimate, PersonTask, TaskPerson
     from crowdbot.core.types.robot import (
         DifferentialDrive,
         HolonomicDrive,
@@ -352,6 +352,7 @@ __all__ = [
     "Spec",
     "Speed",
     "Task",
+    "TaskPerson",
     "TiltableMount",
     "Tracks",
     "Trajectories",

@@ -30,6 +30,7 @@ from crowdbot.core.trajectories.paired_people import (
     whole_effects,
 )
 from crowdbot.core.trajectories.person_contacts import PersonContacts, person_contacts
+from crowdbot.core.trajectories.person_track import PersonStance, person_stance
 from crowdbot.core.trajectories.preprocess import (
     heading_changes,
     inf_to_nan,
@@ -65,6 +66,7 @@ __all__ = [
     "MeanPace",
     "Pairing",
     "PersonContacts",
+    "PersonStance",
     "approach",
     "as_disc",
     "at_fault",
@@ -88,6 +90,7 @@ __all__ = [
     "people_speeds",
     "people_velocities",
     "person_contacts",
+    "person_stance",
     "present",
     "relative_velocity",
     "robot_approach",

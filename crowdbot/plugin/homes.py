@@ -58,7 +58,7 @@ HOMES = {
     "crowdbot.core.types.arrays": "Array Indices Mask",
     "crowdbot.core.types.environment": "EnvironmentParts",
     "crowdbot.core.types.motion": "Command Pose",
-    "crowdbot.core.types.person_task": "PersonEstimate PersonTask",
+    "crowdbot.core.types.person_task": "PersonEstimate PersonTask TaskPerson",
     "crowdbot.core.types.robot": (
         "DifferentialDrive HolonomicDrive RobotBody RobotLimits RobotModel RobotState"
     ),

@@ -10,6 +10,8 @@ import numpy as np
 
 from crowdbot.core.registry.registry import Plugin, assemble
 from crowdbot.core.scoring.evaluate import score
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.person_task import PersonTask, TaskPerson
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.metric_component import MetricComponent
@@ -22,8 +24,11 @@ Scored = Mapping[str, Score]
 def with_signals(component: Component[Any], world: World) -> World:
     """Return a world whose run has the signals that a metric declares to read.
 
-    They are smooth in time, the same at every sampling rate, and between 0 and 1.
+    They are smooth in time, the same at every sampling rate, and between 0 and 1. A run of a
+    metric about the person of a task has such a task: to follow the first of its people.
     """
+    if getattr(component, "about_person", False):
+        world = replace(world, run=_about_someone(world.run))
     names = getattr(component, "signals", ())
     if not names or not len(world.run.t):
         return world
@@ -33,6 +38,15 @@ def with_signals(component: Component[Any], world: World) -> World:
         for k, name in enumerate(names)
     }
     return replace(world, run=replace(world.run, signals={**world.run.signals, **signals}))
+
+
+def _about_someone(run: Trajectories) -> Trajectories:
+    """Return a run whose task is to follow one of its people; without people the same run."""
+    if run.agents is None or not len(run.agents.id):
+        return run
+    task = PersonTask(kind="follow", distance=1.2, tolerance=1.0, angle=1.5, hold=20.0)
+    one = run.agents.id[:1]
+    return replace(run, person=TaskPerson(task=task, id=one, facing=np.zeros(1)))
 
 
 def scores_of(component: Component[Any], world: World) -> dict[str, Score]:

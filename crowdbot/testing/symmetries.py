@@ -12,6 +12,7 @@ import numpy as np
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack, Trajectories
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.person_task import PersonSide
 
 Change = Callable[[Trajectories], Trajectories]
 
@@ -56,18 +57,31 @@ def move(
     if agents is not None:
         (x, y), (vx, vy) = place(agents.x, agents.y), rotate(agents.vx, agents.vy)
         agents = replace(agents, x=x, y=y, vx=vx, vy=vy)
-    body, contacts = run.robot_footprint, run.contacts
+    body, contacts, person = run.robot_footprint, run.contacts, run.person
+    if person is not None:
+        person = replace(
+            person,
+            facing=mirror * person.facing + angle,
+            task=replace(person.task, side=_side(person.task.side, mirror)),
+        )
     if contacts is not None:
         contacts = replace(contacts, bearing=mirror * contacts.bearing)
     return replace(
         run,
         contacts=contacts,
+        person=person,
         robot=robot,
         agents=agents,
         goal_zone=points(run.goal_zone),
         walls=points(run.walls),
         robot_footprint=None if body is None else body * (1, mirror),
     )
+
+
+def _side(side: PersonSide, mirror: int) -> PersonSide:
+    """Return the side of a person to go on, in a mirror."""
+    swapped: dict[PersonSide, PersonSide] = {"left": "right", "right": "left", "either": "either"}
+    return swapped[side] if mirror < 0 else side
 
 
 def _move_robot(

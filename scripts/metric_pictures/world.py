@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,7 @@ from crowdbot.core.trajectories.encounters import (
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival
 from crowdbot.core.trajectories.questionnaires import TLX_SCALES
 from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack
+from crowdbot.core.types.person_task import PersonTask, TaskPerson
 from scripts.metric_pictures.figure import PERSON, QUIET, ROBOT, Array, Figure, number
 
 JUMP = 10.0
@@ -64,7 +65,7 @@ class World:
         Raises:
             ValueError: a reference is missing, or the robot did not arrive.
         """
-        whole, refs = made.trajectories, made.references
+        whole, refs = with_made_up_person(made.trajectories), made.references
         alone, crowd = refs.robot_alone, refs.crowd_alone
         if alone is None or crowd is None or whole.robot is None or whole.robot.goal_time is None:
             raise ValueError("the pictures need a run that arrived, with both references")
@@ -227,6 +228,15 @@ def made_up_commands(run: crowdbot.Trajectories) -> crowdbot.Commands:
         t=t - t[0], v_user=np.round(0.5 + 0.1 * np.sin(0.9 * t), 1), w_user=np.round(late * 1.4, 1),
         v_sc=v, w_sc=w, v_max=0.65, w_max=3.14, t_end=float(t[-1] - t[0]) + 0.15,
     )  # fmt: skip
+
+
+def with_made_up_person(run: crowdbot.Trajectories) -> crowdbot.Trajectories:
+    """The run as if the robot were to come to the front of the person whom it comes nearest."""
+    gap = encounter(run, JUMP).gap
+    nearest = int(np.argmin(np.nanmin(np.where(np.isnan(gap), np.inf, gap), axis=0)))
+    task = PersonTask(kind="approach", distance=1.5, tolerance=1.0, angle=0.8, hold=2.0)
+    who = TaskPerson(task=task, id=people(run).id[[nearest]], facing=np.zeros(1))
+    return replace(run, person=who)
 
 
 def mean_of(values: Array) -> Array:

@@ -159,7 +159,8 @@ def score(
         commands_baseline: commands of a drive of the same user without shared control.
         questionnaires: answers; see `Questionnaires.from_mapping`.
         metrics: one or several globs over metric names; each must match. Experimental metrics are
-            scored only if a glob matches no stable one, as their own names do.
+            scored only if a glob matches no stable one, as their own names do. Metrics about the
+            person of a task are scored only if the run has one, or if they are named.
         variants: ``all``, or the names of the variants to keep.
         parameters: metric -> field -> value; others keep their defaults.
 
@@ -187,7 +188,7 @@ def score(
         if trajectories is not None:
             truncate_at_arrival(trajectories)  # not the metric's fault
             check_sizes(trajectories)
-    specs = metric_specs(registry, metrics, parameters or {})
+    specs = _of_task(registry, metric_specs(registry, metrics, parameters or {}), run, metrics)
     scores = [s for spec in specs for s in _scores_of(registry, spec, run, refs)]
     return Scores(tuple(_of_variants(scores, variants)))
 
@@ -211,6 +212,18 @@ def metric_specs(
     asked = chosen.union(parameters)
     specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known if kind in asked}
     return [specs[kind] for kind in known if kind in chosen]
+
+
+def _of_task(
+    registry: Registry, specs: Sequence[MetricSpec], run: Trajectories, metrics: str | Sequence[str]
+) -> list[MetricSpec]:
+    """Leave out metrics about a task's person that are not named, if the run has no person."""
+    if run.person is not None:
+        return list(specs)
+    known = registry.components("metric")
+    about = {name for name, metric in known.items() if getattr(metric, "about_person", False)}
+    left_out = about.difference(texts_of("metrics", metrics))
+    return [spec for spec in specs if spec.kind not in left_out]
 
 
 def _matching(known: Mapping[str, Component[MetricSpec]], glob: str, absent: str) -> list[str]:

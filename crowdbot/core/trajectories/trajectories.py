@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.support.arguments import mapping_of, number_of, point_of
+from crowdbot.core.support.arguments import expect, mapping_of, number_of, point_of
 from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.from_recordings import FromRecordings
@@ -190,6 +190,7 @@ class Trajectories(FromRecordings):
         planner_step_time: ArrayLike | None = None,
         robot_footprint: ArrayLike | None = None,
         signals: Mapping[str, ArrayLike] | None = None,
+        person: TaskPerson | None = None,
     ) -> Trajectories:
         """Build from plain arrays; ``robot_*`` or ``agent_*`` may be left out.
 
@@ -204,6 +205,8 @@ class Trajectories(FromRecordings):
         Raises:
             InputError: a shape is wrong, time does not increase, a part is missing.
         """
+        if person is not None:
+            expect("person", person, TaskPerson)
         arguments = locals()
         arguments["robot_goal_time"] = _arrival(arguments)
         run = cls(
@@ -218,6 +221,7 @@ class Trajectories(FromRecordings):
             robot_footprint=None if robot_footprint is None else _read_only(robot_footprint),
             robot_speed_limit=_speed_limit(robot_speed_limit),
             signals=_signals(signals or {}),
+            person=person,
         )
         _check(run)
         _check_travellers(run)

@@ -12,6 +12,8 @@ from crowdbot.core.types.arrays import Array
 
 #: What a robot does with a person.
 PersonTaskKind = Literal["approach", "follow", "accompany", "lead"]
+#: Side of the person to go on, as the person sees it.
+PersonSide = Literal["left", "right", "either"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +44,7 @@ class PersonTask:
     in_a_row: bool = False
     knows: Literal["tracked", "told"] = "tracked"
     radius: float = 0.33
-    side: Literal["left", "right", "either"] = "either"
+    side: PersonSide = "either"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from crowdbot.core.assistance.target import Target, find_targets
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.population.realisation import Realisation
@@ -32,10 +33,11 @@ def build_map_content(scenario: Scenario, people: Realisation, registry: Registr
     """
     areas = {} if scenario.crowd is None else _areas(scenario.crowd)
     parts = build_environment(registry, scenario.environment)
+    targets = find_targets(scenario, parts, people)
     return MapContent(
         parts=parts,
         people=people,
-        robots=tuple(_robot(n, r, registry) for n, r in scenario.robots.items()),
+        robots=tuple(_robot(n, r, registry, targets.get(n)) for n, r in scenario.robots.items()),
         areas=areas,
         ways=ways_of(scenario.crowd, people, parts),
     )
@@ -53,7 +55,7 @@ def _areas(crowd: Crowd) -> dict[str, dict[str, tuple[Point, ...]]]:
     return {"spawn": spawns, "goal-area": goals}
 
 
-def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
+def _robot(name: str, robot: Robot, registry: Registry, target: Target | None) -> RobotView:
     x, y, yaw = robot.task.start
     model = build_model(registry, robot.model)
     body = footprint_of_model(model)
@@ -65,6 +67,7 @@ def _robot(name: str, robot: Robot, registry: Registry) -> RobotView:
         radius=body.reach,
         outline=tuple(map(tuple, body.outline(x, y, yaw).tolist())),
         goal=robot.task.zone or "",
+        wanted=() if target is None else tuple(target.rows.tolist()),
         sensors=tuple(_sectors(robot, x, y, yaw, model.base_height)),
     )
 

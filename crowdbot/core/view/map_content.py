@@ -46,7 +46,7 @@ class Sector:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotView:
-    """A robot at its start: x, y, heading; name of its goal zone.
+    """A robot at its start: x, y, heading; name of its goal zone, rows of people of its task.
 
     ``radius`` covers the whole footprint, m; ``outline`` holds points around a robot that is not a
     disc, world frame.
@@ -58,6 +58,7 @@ class RobotView:
     yaw: float
     radius: float
     goal: str
+    wanted: tuple[int, ...] = ()
     sensors: tuple[Sector, ...] = ()
     outline: tuple[Point, ...] = ()
 
@@ -193,6 +194,9 @@ def _people(content: MapContent, world: Map) -> Iterator[Shape]:
             role=f"person-{shade}",
             about=_about(people, i),
         )
+    for i in sorted({row for robot in content.robots for row in robot.wanted}):
+        at = world.at(float(people.x[i]), float(people.y[i]))
+        yield Disc(centre=at, radius=float(people.radius[i]) * world.scale + 4.0, role="wanted")
     for i in range(len(people)):
         x, y, speed = float(people.x[i]), float(people.y[i]), float(people.speed[i])
         if speed > 0.0:

@@ -91,9 +91,7 @@ def _entries(content: MapContent) -> Iterator[tuple[str, str]]:
         yield "group", "group"
     if any(content.people.goals):
         yield "route", "their routes"
-    if content.robots:
-        yield "robot", "robot"
-        yield "goal", "its goal"
+    yield from _robot_entries(content)
     if any(robot.sensors for robot in content.robots):
         yield "sensor", "what its sensors reach"
     if content.ways.margins:
@@ -106,6 +104,18 @@ def _entries(content: MapContent) -> Iterator[tuple[str, str]]:
     for role, label in (("spawn", "spawn area"), ("goal-area", "goal area")):
         if content.areas.get(role):
             yield role, label
+
+
+def _robot_entries(content: MapContent) -> Iterator[tuple[str, str]]:
+    """Yield legend entries of robots and of what their tasks are about."""
+    if not content.robots:
+        return
+    yield "robot", "robot"
+    wanted = any(robot.wanted for robot in content.robots)
+    if not wanted or any(robot.goal for robot in content.robots):
+        yield "goal", "its goal"
+    if wanted:
+        yield "wanted", "person of its task"
 
 
 def _wall_entries(parts: EnvironmentParts) -> Iterator[tuple[str, str]]:
@@ -140,7 +150,7 @@ def _swatch(role: str, x: float, y: float) -> Iterator[Shape]:
         for i in range(len(SPEEDS)):
             box = _box(x + i * step, low, x + (i + 1) * step, high)
             yield Path(points=box, role=f"ramp-{i}", closed=True, inside=False)
-    elif role == "robot":
+    elif role in ("robot", "wanted"):
         yield Disc(centre=(x + 8.0, middle), radius=6.0, role=role, inside=False)
     elif role == "arrow":
         yield Path(points=((x, middle), (end, middle)), role=role, inside=False)

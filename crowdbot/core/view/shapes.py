@@ -125,6 +125,7 @@ STYLES = {
         for i in range(len(SPEEDS))
     },
     **{f"ramp-{i}": Style(fill=f"speed_{i}") for i in range(len(SPEEDS))},
+    "wanted": Style(stroke="goal", width=3.0),
     "involved": Style(stroke="route", width=2.5),
     "arrow": Style(stroke="arrow", width=1.4),
     "robot": Style(fill="robot", stroke="robot_edge", width=1.8),

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from crowdbot.core.trajectories.encounters import people, robot_of
+from crowdbot.core.trajectories.person_track import members_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.core.view.map_content import arrow
@@ -37,6 +38,7 @@ def people_at(
 ) -> Iterator[Shape]:
     """Yield people, coloured by their speed, with their direction; the one involved is named."""
     crowd = people(run)
+    wanted = () if run.person is None else members_of(crowd, run.person).tolist()
     for i in range(len(crowd.id)):
         x, y = float(crowd.x[sample, i]), float(crowd.y[sample, i])
         if not (
@@ -48,6 +50,8 @@ def people_at(
         shade = min(len(SPEEDS) - 1, int(speed / _FASTEST * len(SPEEDS)))
         radius = float(crowd.radius[i]) * world.scale
         yield Disc(centre=world.at(x, y), radius=radius, role=f"person-{shade}")
+        if i in wanted:
+            yield Disc(centre=world.at(x, y), radius=radius + 4.0, role="wanted")
         if speed > 0.05:
             yield from arrow(world, x, y, math.atan2(vy, vx), speed)
         if i == involved:

@@ -53,6 +53,7 @@ class MetricComponent(Component[S_co]):
         unit, better: defaults for its variants.
         variants: name -> variant, in the order in which they are scored.
         signals: names of the signals that it reads; the conformance kit's runs contain them.
+        about_person: True if it is about the person of a task; see `declare_metric`.
 
     Raises:
         PluginError: a text is empty, there is no variant, or no such direction.
@@ -64,6 +65,7 @@ class MetricComponent(Component[S_co]):
     better: Better
     variants: Mapping[str, MetricVariant]
     signals: tuple[str, ...] = ()
+    about_person: bool = False
 
     def __post_init__(self) -> None:
         texts = {"symbol": self.symbol, "category": self.score_category}
@@ -93,6 +95,7 @@ def declare_metric(
     category: str,
     variants: Sequence[str] | Mapping[str, VariantOptions] = ("corrected",),
     signals: Sequence[str] = (),
+    about_person: bool = False,
     build: str = "",
     summary: str = "",
     spec_version: int = 1,
@@ -115,6 +118,8 @@ def declare_metric(
             differences: ``unit``, ``better``, ``rate_over`` (see `MetricVariant`) and fields of
             `MetricInvariants`.
         signals: names of the signals that it reads.
+        about_person: True if it is about the person of a task: it is scored only in runs whose task
+            is about a person, and where it is named.
         build: ``"package.module:function"``. Default: beside the spec; that of
             ``package.motion:SpeedSpec`` is ``package.motion_build:Speed``.
         summary: one line. Default: the symbol and the first line of the spec's docstring.
@@ -144,6 +149,7 @@ def declare_metric(
         better=better,
         variants={name: _variant(spec, name, {**common, **v}) for name, v in changes.items()},
         signals=tuple(signals),
+        about_person=about_person,
     )
 
 

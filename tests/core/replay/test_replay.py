@@ -190,6 +190,7 @@ def test_robot_is_exact_to_single_precision(
         "zone": zone.tolist(),
         "radius": 0.2,
         "outline": [],
+        "wanted": [],
         "goal": [46.5, 0.0],
         "goalRadius": 0.5,
         "goalTime": 2.25,

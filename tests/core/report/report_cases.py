@@ -114,7 +114,7 @@ def _metrics(names: Sequence[str] | None) -> list[MetricComponent[Any]]:
         c
         for name, c in sorted(known.items())
         if isinstance(c, MetricComponent)
-        and (name in names if names is not None else not c.experimental)
+        and (name in names if names is not None else not (c.experimental or c.about_person))
     ]
 
 

@@ -125,6 +125,7 @@ def _robot(name: str, built: BuiltRun) -> dict[str, Any]:
     look = [(part.outline, part.colour) for part in seen_from_above(model)]
     return {
         **robot_numbers(name, model.footprint_radius, model.footprint, task.goal_zone, look),
+        "wanted": [] if built.target is None else built.target.rows.tolist(),
         "goal": list(task.goal),
         "goalRadius": 0.0,
         "start": list(task.start),

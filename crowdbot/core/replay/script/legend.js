@@ -17,6 +17,7 @@ function legendEntries() {
     [state.thoughts && any((run) => run.drawings.length), "thought", "what the planner thinks"],
     [any((run) => run.contacts.length), "contact", "contact"],
     [any((run) => run.zone.length || run.robots.some(({ goal }) => goal)), "goal", "goal"],
+    [any((run) => run.robots.some(({ wanted }) => wanted.length)), "wanted", "person of the robot's task"],
     ...kinds.map(({ whom, text }) => [true, `wall wall-${whom}`, text]),
     [any((run) => run.blocks.length), "block", "block"],
     [any((run) => run.steps.length), "block step", "block that people step over"],

@@ -77,6 +77,25 @@ function drawFollowedTrail(g, run, frame, person, px) {
   g.stroke();
 }
 
+/** Draws a ring around people that robots' tasks are about, with a line where they face. */
+function drawWanted(g, run, { people: { x, y, heading, person, size } }, px) {
+  const wanted = new Set(run.robots.flatMap((robot) => robot.wanted));
+  if (!wanted.size) return;
+  g.beginPath();
+  for (let i = 0; i < size; i++) {
+    if (!wanted.has(person[i])) continue;
+    const r = radiusOf(run.people, person[i]) + 3 * px;
+    g.moveTo(x[i] + r, y[i]);
+    g.arc(x[i], y[i], r, 0, 2 * Math.PI);
+    if (Number.isNaN(heading[i])) continue;
+    g.moveTo(x[i] + r * Math.cos(heading[i]), y[i] + r * Math.sin(heading[i]));
+    g.lineTo(x[i] + 1.6 * r * Math.cos(heading[i]), y[i] + 1.6 * r * Math.sin(heading[i]));
+  }
+  g.strokeStyle = colours.goal;
+  g.lineWidth = 4 * px;
+  g.stroke();
+}
+
 /** Draws a ring around the followed body. */
 function drawFollowed(g, place, radius, px) {
   g.beginPath();

@@ -30,7 +30,8 @@ function makeSolid(canvas, run, bounds) {
     people: makePeople(run.people, solids), points: pointCloud(), thoughts: markLines(), cones: markLines(),
     robots: run.robots.map((robot, i) => makeRobot(robot, solids.robots[i])), ways: run.robots.map(wayLine),
   };
-  world.add(rig, parts.floor.group, parts.obstacles.group, parts.goals.group, parts.people.group, parts.points, parts.thoughts, parts.cones, ...parts.robots, ...parts.ways);
+  parts.wanted = makeWanted(run.robots, parts.goals.wanted, parts.people.height);
+  world.add(rig, parts.floor.group, parts.obstacles.group, parts.goals.group, parts.wanted, parts.people.group, parts.points, parts.thoughts, parts.cones, ...parts.robots, ...parts.ways);
   const solid = { canvas, run, renderer, scene, rig, camera, upright, parts, frames: 0, before: 0, slow: 0, ratio: 1 };
   paintSolid(solid);
   return solid;
@@ -57,6 +58,7 @@ function paintSolid({ scene, parts, run }) {
   parts.obstacles.material.color = colour("muted").lerp(colour("floor"), 0.6);
   parts.obstacles.marks.color = colour("robot");
   parts.goals.material.color = colour("goal");
+  parts.goals.wanted.color = colour("goal");
   parts.points.material.color = colour("lidar");
   parts.thoughts.material.color = colour("thought");
   parts.cones.material.color = colour("sonar");
@@ -79,6 +81,7 @@ function drawSolid(solid, frame, eye, options) {
   parts.obstacles.group.scale.z = options.low ? 0.35 : 1; // from outside, walls hide nothing
   const at = solid.camera.getWorldPosition(new THREE.Vector3());
   parts.people.eye = { x: at.x, y: -at.z };
+  if (run.people) moveWanted(parts.wanted, frame);
   if (run.people) movePeople(parts.people, run, frame, options.hiddenPerson ?? -1);
   moveRobots(parts.robots, frame.robots, options.hiddenRobot ?? -1);
   movePoints(parts.points, options.points ? frame.scans : [], lidarHeight(run));

@@ -90,5 +90,30 @@ function makeGoals(robots) {
     mesh.position.z = 0.01;
     group.add(mesh);
   }
-  return { group, material };
+  return { group, material, wanted: new THREE.MeshBasicMaterial({ side: THREE.DoubleSide }) };
+}
+
+/** Marks of people that robots' tasks are about: a hoop on the floor, and a tip above the head. */
+function makeWanted(robots, material, height) {
+  const group = new THREE.Group();
+  group.userData.people = [];
+  for (const p of new Set(robots.flatMap(({ wanted }) => wanted))) {
+    const ring = new THREE.Mesh(new THREE.CylinderGeometry(0.45, 0.45, 0.1, 24, 1, true).rotateX(Math.PI / 2), material);
+    ring.position.z = 0.05;
+    const tip = new THREE.Mesh(new THREE.CylinderGeometry(0.13, 0.01, 0.28, 8).rotateX(Math.PI / 2), material);
+    tip.position.z = height(p) + 0.35;
+    const mark = new THREE.Group();
+    mark.add(ring, tip);
+    group.userData.people.push(p);
+    group.add(mark);
+  }
+  return group;
+}
+
+function moveWanted(group, { people }) {
+  group.userData.people.forEach((p, k) => {
+    const i = people.person.subarray(0, people.size).indexOf(p);
+    group.children[k].visible = i >= 0;
+    if (i >= 0) group.children[k].position.set(people.x[i], people.y[i], 0);
+  });
 }

@@ -27,6 +27,7 @@ function drawAll(g, run, frame, options, px) {
   if (run.people && trails) drawPeopleTrails(g, run, frame, px);
   if (followed?.person >= 0) drawFollowedTrail(g, run, frame, followed.person, px);
   if (run.people) drawPeople(g, run, frame, px);
+  if (run.people) drawWanted(g, run, frame, px);
   for (const { other, ghost, colour } of options.ghosts) drawGhost(g, other, ghost, frame, colour, px);
   if (lidar) for (const scan of frame.scans) drawHits(g, scan, px);
   if (sonar) for (const cone of frame.cones) drawEcho(g, cone, px);

@@ -22,6 +22,7 @@ function drawPlan(frame) {
   drawWalls(g, run, px);
   run.robots.forEach((robot, i) => drawTrail(g, run, robot, frame.robots[i], frame, colours.robot, px));
   drawPeople(g, run, frame, px);
+  drawWanted(g, run, frame, px);
   for (const scan of frame.scans) drawHits(g, scan, px);
   drawThoughts(g, run, frame.time, px);
   run.robots.forEach((robot, i) => drawRobot(g, robot, frame.robots[i], colours.robot, px));
