@@ -156,6 +156,20 @@ def test_all_that_is_lost_is_named() -> None:
     assert "<Policies>" in made.policies
 
 
+def test_each_field_without_a_word_in_trials_is_named(tmp_path: Path) -> None:
+    found = imported("trials/small.xml")
+    path = write(tmp_path / "mine.yaml", found.lines, found.scenes)[0]
+    scenario = open_spec(str(path), registry()).scenarios[0]
+    plain = {entry.ours for entry in export_trial(scenario, registry()).report.entries}
+    words = {"crowd.solids=firm": "crowd.solids", "crowd.exit_point=offset": "crowd.exit_point",
+             "crowd.body.avoided_radius=0.4": "crowd.body.avoided_radius",
+             "crowd.robot_response.sight=3": "crowd.robot_response.sight"}  # fmt: skip
+    assert not plain & set(words.values())
+    scenario = open_spec(str(path), registry(), list(words)).scenarios[0]
+    lost = {entry.ours for entry in export_trial(scenario, registry()).report.entries}
+    assert set(words.values()) <= lost
+
+
 def test_streams_are_exported_as_the_people_that_they_draw(tmp_path: Path) -> None:
     scenario = open_spec(str(FILES.parent / "short_way.yaml"), registry()).scenarios[0]
     made = export_trial(scenario, registry())

@@ -13,6 +13,7 @@ from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.trial.robots import KINDS
 from crowdbot.core.exchange.trial.stages import STAGES
 from crowdbot.core.exchange.trial_export.elements import add, number, place, text_of, turn
+from crowdbot.core.exchange.trial_export.lost import name_lost
 from crowdbot.core.exchange.trial_export.people import add_people
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_model
@@ -58,6 +59,7 @@ def export_trial(scenario: Scenario, registry: Registry) -> TrialDocument:
         policies = add_people(agents, scenario, people, registry, report)
     _obstacles(root, scenario, registry, report)
     _rest(scenario, report)
+    name_lost(scenario, report)
     return TrialDocument(text_of(root), policies, report)
 
 

@@ -97,7 +97,9 @@ def _agent(
     place(agent, "Position", x, y)
     turn(agent, heading)
     law = add(agent, "controlLaw")
-    if not route or (len(route) == 1 and math.dist(route[0], (x, y)) < 1e-9):
+    looping = _LOOPS.get(people.at_goal[k], "false")
+    stays = len(route) == 1 and math.dist(route[0], (x, y)) < 1e-9 and looping == "false"
+    if not route or stays:
         standing = add(law, "LawStanding", animationType="1")
         place(standing, "LookAt", x + math.cos(heading), y + math.sin(heading))
     else:
@@ -105,7 +107,7 @@ def _agent(
             add(
                 law, "LawGoals", speedCurrent="0", speedDefault=number(people.speed[k]),
                 accelerationMax=limit(people.max_acceleration[k]), angularSpeed="36000",
-                reachedDist="0.5", isLooping=_LOOPS.get(people.at_goal[k], "false"),
+                reachedDist="0.5", isLooping=looping,
             ),
             "Goals",
         )  # fmt: skip
