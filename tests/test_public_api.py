@@ -166,5 +166,11 @@ def test_loading_a_suite_needs_neither_numbers_nor_drake() -> None:
     assert not loaded & {"numpy", "numba", "pydrake"}
 
 
-def test_trajectories_need_no_drake() -> None:
-    assert not _loaded_by("import crowdbot; crowdbot.Trajectories; crowdbot.score") & {"pydrake"}
+def test_trajectories_need_neither_drake_nor_scipy() -> None:
+    loaded = _loaded_by("import crowdbot; crowdbot.Trajectories; crowdbot.score")
+    assert not loaded & {"pydrake", "scipy"}
+
+
+def test_simulating_needs_no_scipy() -> None:
+    """It takes a third of a second to load; what a bag's frames or statistics need is lazy."""
+    assert "scipy" not in _loaded_by("import crowdbot; crowdbot.simulate")

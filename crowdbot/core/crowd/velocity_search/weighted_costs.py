@@ -142,6 +142,7 @@ class WeightedCosts:
         self._settings["relaxation"][:], self._settings["parity"][:] = relaxation_time, parity
         self._time_step, self._broken = self._settings["time_step"], self._deciding["broken"]
         self._largest_seen, self._reach = math.nan, 0.0
+        self._grid: tuple[Array, float, SegmentGrid] | None = None
         self._discs, self._found = rows_of(0, DISC), rows_of(0, WALL)
         self._make_room(1, 0)
 
@@ -167,6 +168,11 @@ class WeightedCosts:
             walls: (S, 4), m.
             largest: the largest radius of a disc, m.
         """
+        if self._grid is None or self._grid[0] is not walls or self._grid[1] != largest:
+            self._grid = walls, largest, self._built_grid(walls, largest)
+        return self._grid[2]
+
+    def _built_grid(self, walls: Array, largest: float) -> SegmentGrid:
         reach, (metres, seconds) = self.reach_of(largest), self._walls_matter(largest)
         quick = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
         covered = min(reach, metres + seconds * quick)

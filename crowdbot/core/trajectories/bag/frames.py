@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from crowdbot.core.types.arrays import Array
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 #: Topics of transforms; those of the second do not change.
 TF, TF_STATIC = "/tf", "/tf_static"
@@ -42,6 +44,8 @@ class _Link:
 
     def at(self, t: NDArray[np.int64]) -> tuple[Rotation, Array]:
         """Return rotation and translation at times (N,), ns; NaN long before or after all."""
+        from scipy.spatial.transform import Rotation  # a third of a second
+
         if self.is_static or len(self.t) == 1:
             rows = np.full(len(t), len(self.t) - 1)
             return Rotation.from_quat(self.quaternion[rows]), self.xyz[rows]
@@ -120,6 +124,8 @@ class FrameTree:
         return inverse * turn, inverse.apply(at - origin)
 
     def _chain(self, frames: list[str], t: NDArray[np.int64]) -> tuple[Rotation, Array]:
+        from scipy.spatial.transform import Rotation
+
         turn, at = Rotation.identity(len(t)), np.zeros((len(t), 3))
         for frame in frames:
             r, p = self._links[frame].at(t)
