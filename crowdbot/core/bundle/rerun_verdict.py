@@ -154,6 +154,8 @@ def same_platform(claimed: RunRecord, record: RunRecord) -> bool:
 _ENDING = (
     "status", "goal_time", "toppled_time", "sim_time", "density", "privileged", "clamped_commands",
 )  # fmt: skip
+#: Keys that follow from the trajectory to the last digit, on one platform only.
+_TO_THE_DIGIT = ("reference_hashes", "worst_moment")
 #: Keys that follow from the suite.
 _OF_SUITE = ("axis_words", "suite_metrics", "crowd")
 
@@ -167,6 +169,9 @@ def _other_ending(rerun: Rerun) -> Iterator[str]:
         equal = are_equal(*numbers) if len(numbers) == 2 else said == found
         if not equal:
             yield f"{rerun.claimed.name}: {key} is claimed to be {said!r}, but is {found!r}"
+    for key in _TO_THE_DIGIT if rerun.same_platform else ():
+        if claimed.get(key) != here.get(key):
+            yield f"{rerun.claimed.name}: {key} does not follow from the run"
 
 
 def _other_people(rerun: Rerun) -> Iterator[str]:

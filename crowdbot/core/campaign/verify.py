@@ -76,7 +76,7 @@ def choose_planner(
     """
     record = manifest.planner
     kind, digest = str(record.get("kind", "")), record.get("sha256")
-    if given is None and (problems := list(planner_problems(record))):
+    if problems := list(planner_problems(record)):
         raise NotRunnable(problems[0])
     if given is None and digest is not None:
         raise NotRunnable(
@@ -99,11 +99,15 @@ def choose_planner(
         raise NotRunnable(
             f"{given} is not the class that the bundle was made with: {_class(record)}"
         )
+    if bool(choice.spec_dump.get("network")) != bool(record.get("network")):
+        raise NotRunnable(f"{given} asks for the network, and the bundle does not, or conversely")
     if _parameters(json.loads(json.dumps(choice.spec_dump))) != _parameters(record):
         raise NotRunnable(
             f"planner '{choice.label}' has other parameters here than in the bundle, "
             f"where it is called '{manifest.label}'; install the version of the team"
         )
+    if choice.label != manifest.label:
+        raise NotRunnable(f"the bundle calls its planner '{manifest.label}'; it is {choice.label}")
     return choice
 
 

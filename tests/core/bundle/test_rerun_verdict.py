@@ -58,6 +58,7 @@ def test_the_same_trajectory_and_scores_are_verified() -> None:
     ({"role": "floor"}, "role is claimed to be 'floor', but is 'candidate'"),
     ({"conditions": {"rates.log": "8 Hz"}}, "conditions differ from those of the suite: rates.log"),
     ({"metrics": {"risk": {"spec_version": 1, "horizon": 9.0}}}, "metrics differ from those"),
+    ({"reference_hashes": {"robot_alone": "x"}}, "reference_hashes does not follow from the run"),
 ])  # fmt: skip
 def test_records_that_the_trajectory_does_not_bear_out(claim: dict[str, Any], why: str) -> None:
     true: dict[str, Any] = {
