@@ -92,9 +92,12 @@ def judge(setup: Judge) -> Judgement:
     own = own_public_key()
     lines = read_log(path, {own} - {""})
     found = Judgement()
+    hidden = any(scenario.hidden for scenario in expansion.scenarios)
     closed = expansion.round.problem(datetime.now(UTC)) if expansion.round else ""
+    if expansion.commitment and not hidden:
+        closed = closed or "not received before the draws were revealed"
     sealed = dict(_received(setup, path, lines, found, closed))
-    if any(scenario.hidden for scenario in expansion.scenarios):
+    if hidden:
         found.waits = True
         return found
     if setup.options.place.contained and (missing := kernel_offer().missing):

@@ -194,7 +194,8 @@ def test_judged_from_hand_in_to_the_leaderboard(
 def test_hidden_draws_only_receive(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shutil.copy(DATA / "diagnostics" / "parts" / "minimal.yaml", tmp_path)
     (tmp_path / "suite.yaml").write_text(HIDDEN)
-    assert cli.main(["draws", "commit", str(tmp_path / "suite.yaml")]) == 0
+    draws = [str(tmp_path / "suite.yaml"), "--secret", str(tmp_path / "secret.json")]
+    assert cli.main(["draws", "commit", *draws]) == 0
     _planner(tmp_path / "mine")
     (tmp_path / "in").mkdir()
     assert _seal(tmp_path / "mine", tmp_path / "in" / "us.cbs") == 0
@@ -204,6 +205,11 @@ def test_hidden_draws_only_receive(tmp_path: Path, capsys: pytest.CaptureFixture
         said = capsys.readouterr().out
         assert f"{received} received; the draws are hidden: nothing was run" in said
     assert _log(tmp_path / "out") == ["received"]
+    assert cli.main(["draws", "reveal", *draws]) == 0
+    shutil.rmtree(tmp_path / "out")  # as if it had come after the reveal
+    assert _judge(tmp_path) == 1
+    assert "us.cbs is left out: not received before the draws were" in capsys.readouterr().err
+    assert "received" not in _log(tmp_path / "out")
 
 
 @pytest.mark.parametrize(
