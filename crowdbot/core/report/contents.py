@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from crowdbot.core.realism.crowds import lines_of
@@ -57,7 +58,7 @@ class Heading:
     audit: Audit | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Contents:
     """Contents of one report.
 
@@ -113,9 +114,16 @@ class Contents:
         """All seeds, in order."""
         return sorted({a.seed for a in self.attempts})
 
+    @cached_property
+    def _by_planner(self) -> Mapping[str, list[Attempt]]:
+        found: dict[str, list[Attempt]] = {}
+        for attempt in self.attempts:
+            found.setdefault(attempt.planner, []).append(attempt)
+        return found
+
     def of(self, planner: str) -> list[Attempt]:
         """Return the attempts of one planner."""
-        return [a for a in self.attempts if a.planner == planner]
+        return self._by_planner.get(planner, [])
 
     def counts(self, attempts: Sequence[Attempt] | None = None) -> dict[str, int]:
         """Return how many attempts had each outcome; default: all attempts."""

@@ -167,10 +167,11 @@ def encode_scores(
         codes[s, here] = np.asarray(known, np.uint16)[state]
         for blob, numbers in ((values, scores.value), (lower, scores.lower), (upper, scores.upper)):
             blob[s, here] = numbers[place[here]]
-        shown = dict(zip(here.tolist(), is_ok[state].tolist(), strict=True))
+        shown = np.zeros(len(tried), np.bool_)
+        shown[here] = is_ok[state]
         for r, code in failed.items():
             value = WITHOUT_RUN.get(one.metric) if isinstance(tried[r], Failure) else None
-            if not shown.get(r, False):
+            if not shown[r]:
                 codes[s, r] = code if value is None else 0
                 values[s, r], lower[s, r], upper[s, r] = _number(value), np.nan, np.nan
     return list(states), {

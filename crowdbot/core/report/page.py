@@ -18,7 +18,7 @@ from crowdbot.core.report.methods import methods
 from crowdbot.core.report.packing import pack, pack_document, pack_whole
 from crowdbot.core.results.rows import RunRow, processes
 from crowdbot.core.statistics.estimate_text import estimate_text, joined_text
-from crowdbot.core.support.atomic_write import atomic_lines, atomic_write
+from crowdbot.core.support.atomic_write import atomic_parts, atomic_write
 from crowdbot.core.support.html_page import Allowed, render_page
 from crowdbot.core.support.text import plural
 from crowdbot.core.types.ending import ATTEMPTED, ending_style
@@ -45,7 +45,7 @@ def write_report(path: Path, contents: Contents) -> dict[str, Path]:
     """
     paths = {"html": path, "csv": path.with_suffix(".csv"), "md": path.with_suffix(".md")}
     page = render(contents)
-    atomic_lines(paths["csv"], tables.csv_lines(contents))
+    atomic_parts(paths["csv"], tables.csv_parts(contents))
     atomic_write(paths["md"], markdown(contents))
     atomic_write(path, page)
     return paths

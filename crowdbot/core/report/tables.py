@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.encode import Attempt, status_of
@@ -20,11 +22,11 @@ _SCORE = (
     "lower", "upper",
 )  # fmt: skip
 
-_END = "\r\n"
+_END = b"\r\n"
 
 
-def csv_lines(contents: Contents) -> Iterator[str]:
-    """Yield the header, then one line per score; an attempt without scores has one line.
+def csv_parts(contents: Contents) -> Iterator[bytes]:
+    """Yield the header, then the lines of each attempt: one per score, or one without scores.
 
     Texts that many lines share are quoted once. NaN, a value that is not there, is an empty cell.
     """
@@ -33,25 +35,71 @@ def csv_lines(contents: Contents) -> Iterator[str]:
     order = np.argsort(scores.run, kind="stable")
     ends = np.searchsorted(scores.run[order], np.arange(len(scores.run_ids) + 1))
     place_of = {name: i for i, name in enumerate(scores.run_ids)}
-    labels_texts = [(csv_cells(x[:4]), csv_cells(x[4:])) for x in scores.labels]
-    states = [csv_cells(state) for state in scores.states]
-    columns = (scores.label, scores.value, scores.state, scores.lower, scores.upper)
-    yield csv_cells((*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)) + _END
+    lines = _Lines.of(scores, order)
+    yield csv_cells((*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)).encode() + _END
     for attempt in contents.attempts:
         labels = [attempt.axes.get(name, "") for name in axes]
-        head = csv_cells((*_run_cells(attempt), *labels))
+        head = csv_cells((*_run_cells(attempt), *labels)).encode()
         place = place_of.get(attempt.run_id) if isinstance(attempt, RunRow) else None
-        found = order[:0] if place is None else order[ends[place] : ends[place + 1]]
-        if not len(found):
-            yield f"{head},{csv_cells(_without_scores(attempt))}{_END}"
-            continue
-        rows = zip(*(column[found].tolist() for column in columns), strict=True)
-        yield from [
-            f"{head},{labels_texts[label][0]},{'' if value != value else repr(value)},"
-            f"{labels_texts[label][1]},{states[state]},{'' if low != low else repr(low)},"
-            f"{'' if high != high else repr(high)}{_END}"
-            for label, value, state, low, high in rows
-        ]
+        own = slice(0) if place is None else slice(ends[place], ends[place + 1])
+        without = csv_cells(_without_scores(attempt)).encode()
+        yield lines.of_run(head, own) or b"%b,%b%b" % (head, without, _END)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Lines:
+    """Lines of scores, run by run.
+
+    A text of ASCII is joined much faster than one of other letters, so the UTF-8 of texts passes
+    for Latin-1 until a run's lines are complete.
+
+    Attributes:
+        before: text in front of the value, by label; ``behind``: after the value, without bounds.
+        label, kind, value, lower, upper: (n,) of each score; ``kind`` is its place in ``behind``.
+    """
+
+    before: Sequence[str]
+    behind: Sequence[str]
+    label: NDArray[np.int32]
+    kind: NDArray[np.intp]
+    value: NDArray[np.float64]
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+
+    @staticmethod
+    def of(scores: ScoreColumns, order: NDArray[np.intp]) -> _Lines:
+        """Prepare scores, in an order by run."""
+        count = max(1, len(scores.states))
+        kinds, kind = np.unique(scores.label.astype(np.int64) * count + scores.state,
+                                return_inverse=True)  # fmt: skip
+        pairs = [divmod(k, count) for k in kinds.tolist()]
+        cells = [csv_cells((*scores.labels[a][4:], *scores.states[b])) for a, b in pairs]
+        return _Lines(
+            before=[_latin(f",{csv_cells(label[:4])},") for label in scores.labels],
+            behind=[_latin(f",{text},") for text in cells],
+            label=scores.label[order], kind=kind[order], value=scores.value[order],
+            lower=scores.lower[order], upper=scores.upper[order],
+        )  # fmt: skip
+
+    def of_run(self, head: bytes, own: slice) -> bytes:
+        """Return the lines of one run; empty without scores."""
+        start, end, behind = head.decode("latin-1"), _END.decode(), self.behind
+        rest = [f"{behind[k]},{end}" for k in self.kind[own].tolist()]
+        lower, upper = self.lower[own], self.upper[own]
+        for i in np.flatnonzero(~(np.isnan(lower) & np.isnan(upper))).tolist():
+            rest[i] = f"{behind[self.kind[own][i]]}{_number(lower[i])},{_number(upper[i])}{end}"
+        before = map(self.before.__getitem__, self.label[own].tolist())
+        lines = zip(before, self.value[own].tolist(), rest, strict=True)
+        text = "".join([f"{start}{a}{'' if x != x else repr(x)}{b}" for a, x, b in lines])
+        return text.encode("latin-1")
+
+
+def _latin(text: str) -> str:
+    return text.encode().decode("latin-1")
+
+
+def _number(value: float) -> str:
+    return "" if np.isnan(value) else repr(float(value))
 
 
 def _run_cells(attempt: Attempt) -> tuple[str, ...]:

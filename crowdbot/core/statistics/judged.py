@@ -152,7 +152,7 @@ def _contributions(mine: Floats, theirs: Floats, weight: Floats, other: Floats) 
     that the exchange turns the sign of the contribution; their sum has the sign of the difference.
     """
     total = float((weight + other).sum())
-    rate = float(mine @ weight + theirs @ other) / total if total else 0.0
+    rate = float((mine * weight).sum() + (theirs * other).sum()) / total if total else 0.0
     found = (mine - rate) * weight - (theirs - rate) * other
     size = np.maximum(np.abs(mine), np.abs(theirs)) * np.maximum(weight, other)
     found[np.abs(found) <= _ROUNDING * size] = 0.0

@@ -205,7 +205,7 @@ class Table:
         reasons = Counter({"not_finite": int(infinite.sum())})
         reasons.update(tried.status[i] for i in np.flatnonzero(outcome == FAILED).tolist())
         unknown = ((outcome == UNDEFINED) | (outcome == CENSORED)) & ~infinite
-        for number, times in Counter(state[unknown].tolist()).items():
+        for number, times in enumerate(np.bincount(state[unknown] + 1).tolist(), -1):
             reasons[_reason(scores.states[number]) if number >= 0 else "not_scored"] += times
         if tried.lost.any():
             kind, reason, (low[tried.lost], high[tried.lost]) = _without_run(name[0])

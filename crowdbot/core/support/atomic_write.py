@@ -44,11 +44,11 @@ def atomic_write(path: Path, content: str | bytes) -> None:
         part.write_bytes(data)
 
 
-def atomic_lines(path: Path, lines: Iterable[str]) -> None:
-    """Write lines with their ends as `atomic_write` does, without keeping them in memory.
+def atomic_parts(path: Path, parts: Iterable[bytes]) -> None:
+    """Write the parts of a file as `atomic_write` does, without keeping them in memory.
 
     Raises:
         InputError: the path cannot be written.
     """
-    with atomic_path(path) as part, part.open("w", encoding="utf-8", newline="") as file:
-        file.writelines(lines)
+    with atomic_path(path) as part, part.open("wb") as file:
+        file.writelines(parts)
