@@ -2,12 +2,13 @@
 
 A step is one period of the planner (1/16 s) of one world: decisions, contacts and motion of people,
 the robot, a scan. Steps are counted per second of the process's own time, best of several rounds,
-so that other programs disturb little. Peers come with ``pip install ir-sim navground``; those that
-are not installed are named. Each runs with its own model of people: what is compared is the cost
-of a step.
+so that other programs disturb little. ``--ceiling`` adds as many processes as threads that know
+nothing of each other: what the machine gives. Peers come with ``pip install ir-sim navground``;
+those that are not installed are named. Each runs with its own model of people: what is compared is
+the cost of a step.
 
     python benchmarks/rl_steps.py --people 20,100 --beams 0,180 --worlds 64
-    python benchmarks/rl_steps.py --threads 1,2
+    python benchmarks/rl_steps.py --threads 1,2 --ceiling
     python benchmarks/rl_steps.py --memory 1000000
 """
 
@@ -16,11 +17,14 @@ from __future__ import annotations
 import argparse
 import importlib
 import importlib.util
+import math
+import multiprocessing
 import os
 import sys
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -97,6 +101,23 @@ def environment(people: int, beams: int, worlds: int, threads: int) -> Rate | No
     env.reset(seed=1)
     actions = np.random.default_rng(1).uniform(-1.0, 1.0, env.action_space.shape)
     return best(lambda: env.step(actions), worlds)
+
+
+def apart(people: int, beams: int, worlds: int, start: float) -> float:
+    """Steps per second of one batch in a process of its own, from a moment on."""
+    time.sleep(max(0.0, start - time.time()))
+    return kernels(people, beams, worlds, 1)[1]
+
+
+def ceiling(people: int, beams: int, worlds: int, number: int) -> Rate:
+    """Steps per second of several processes at once, each with its share of the worlds."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(number, mp_context=context) as pool:
+        sizes = [(people, beams, worlds // number)] * number
+        list(pool.map(kernels, *zip(*sizes, strict=True), [1] * number))  # compiles
+        start = time.time() + 0.2
+        found = sum(pool.map(apart, *zip(*sizes, strict=True), [start] * number))
+    return math.nan, found  # their processor time is not this process's
 
 
 def session(people: int, beams: int) -> Rate:
@@ -196,6 +217,7 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--worlds", type=int, default=64)
     parser.add_argument("--threads", default="1")
     parser.add_argument("--peers", action="store_true", help="crowdbot.Session, IR-SIM, navground")
+    parser.add_argument("--ceiling", action="store_true", help="as many processes as threads")
     parser.add_argument("--memory", type=int, metavar="STEPS", help="memory over many steps")
     given = parser.parse_args(arguments)
     if given.memory:
@@ -208,6 +230,8 @@ def main(arguments: list[str]) -> None:
                 size = people, beams, given.worlds, threads
                 show("batch", people, beams, threads, kernels(*size))
                 show("environment", people, beams, threads, environment(*size))
+                if given.ceiling and threads > 1:
+                    show("batch, processes", people, beams, threads, ceiling(*size))
             if given.peers:
                 show("crowdbot.Session", people, beams, 1, session(people, beams))
                 show("IR-SIM", people, beams, 1, irsim(people, beams))

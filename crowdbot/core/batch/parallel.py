@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
 from crowdbot.core.batch.batch import Batch
+from crowdbot.core.batch.step_threads import StepThreads
 from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.types.arrays import Array, Indices
 
@@ -27,8 +27,7 @@ class Batches:
         self._parts: list[tuple[int, int]] = list(itertools.pairwise(ends))
         self._thread_of = np.repeat(np.arange(len(self._parts)), np.diff(ends)).tolist()
         self._batches: list[Batch] = [Batch(worlds[a:b], keys[a:b]) for a, b in self._parts]
-        several = len(self._batches) > 1
-        self._pool = ThreadPoolExecutor(len(self._batches)) if several else None
+        self._threads = StepThreads(len(self._batches) - 1)
 
     def thread_of(self, w: int) -> int:
         """Return the number of the thread of a world."""
@@ -53,7 +52,7 @@ class Batches:
             if len(own):
                 self._batches[number].step(commands[first:end], own)
 
-        self._each(one)
+        self._threads.share(one)
 
     def robots(self, out: Array) -> None:
         """Write the rows (W, R, 8) of all robots, see `Batch.robots`."""
@@ -83,15 +82,8 @@ class Batches:
 
     def close(self) -> None:
         """End the threads."""
-        if self._pool is not None:
-            self._pool.shutdown()
+        self._threads.end()
 
     def _into(self, out: Array, write: Callable[[Batch, Array], None]) -> None:
         for batch, (first, end) in zip(self._batches, self._parts, strict=True):
             write(batch, out[first:end])
-
-    def _each(self, one: Callable[[int], None]) -> None:
-        if self._pool is None:
-            one(0)
-        else:
-            list(self._pool.map(one, range(len(self._batches))))
