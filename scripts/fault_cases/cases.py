@@ -51,24 +51,30 @@ class Case:
     shown: tuple[float, ...]
     outline: bool = False
 
-    def run(self) -> crowdbot.Trajectories:
-        """Return the case as a run."""
-        r = self.robot
-        vx, vy = np.gradient(r.x, T), np.gradient(r.y, T)
+    def run(self, t: Array = T) -> crowdbot.Trajectories:
+        """Return the case as a run, sampled at other times if they are given, (N,) s."""
+        r, people = _at(self.robot, t), [_at(p, t) for p in self.people]
         robot: dict[str, Any] = {
             "robot_x": r.x, "robot_y": r.y, "robot_theta": r.theta,
-            "robot_w": np.gradient(r.theta, T), "robot_radius": ROBOT, "robot_mass": 6.3,
-            "robot_v": vx * np.cos(r.theta) + vy * np.sin(r.theta),
+            "robot_w": np.gradient(r.theta, t), "robot_radius": ROBOT, "robot_mass": 6.3,
+            "robot_vx": np.gradient(r.x, t), "robot_vy": np.gradient(r.y, t),
             "robot_goal": (20.0, 0.0), "robot_speed_limit": 0.65,
         }  # fmt: skip
         if self.outline:
             robot["robot_footprint"] = LONG
         crowd: dict[str, Any] = {
-            "agent_x": np.column_stack([p.x for p in self.people]),
-            "agent_y": np.column_stack([p.y for p in self.people]),
+            "agent_x": np.column_stack([p.x for p in people]),
+            "agent_y": np.column_stack([p.y for p in people]),
             "agent_radius": PERSON, "agent_mass": 75.0,
         }  # fmt: skip
-        return crowdbot.Trajectories.from_arrays(t=T, **robot, **crowd)
+        return crowdbot.Trajectories.from_arrays(t=t, **robot, **crowd)
+
+
+def _at(track: Track, t: Array) -> Track:
+    """Return a track at other times, (N,) s."""
+    if t is T:
+        return track
+    return Track(**{name: np.interp(t, T, getattr(track, name)) for name in ("x", "y", "theta")})
 
 
 def _path(velocity: Callable[[Array], Array], start: float = 0.0) -> Array:
@@ -112,6 +118,8 @@ def _all() -> tuple[Case, ...]:
     leaves = Track(x=_path(_until(2.0, 0.0, 1.0), REACH - 0.005), y=_ZERO)
     brakes = _braking(0.5, 3.6)
     aside = Track(x=0.5 * T, y=_path(lambda t: np.where((t > 3.0) & (t < 4.6), 0.5, 0.0), -0.8))
+    over = Track(x=0.5 * T, y=_path(lambda t: np.where((t > 4.0) & (t < 4.6), 0.5, 0.0), -0.48))
+    meets = Track(x=0.5 * T, y=_path(lambda t: np.where((t > 4.0) & (t < 4.4), -0.6, 0.0)))
     slows = _braking(0.5, 2.0)
     shoved = Track(x=_path(_until(3.0, 0.0, 0.2)), y=_ZERO)
     turning = Track(x=_ZERO, y=_ZERO, theta=np.clip(T - 3.0, 0.0, 1.2))
@@ -123,6 +131,12 @@ def _all() -> tuple[Case, ...]:
         Case(name="head_on", told="drives on blindly at a person who comes towards it", fault=True,
              rule="driven", robot=_straight(0, 0, 0.5), people=(_straight(6.0, 0.0, -1.3),),
              shown=(1.5, 2.3, 3.1)),
+        Case(name="comes_over", told="turns at once into a person who walks beside it", fault=True,
+             rule="came_over", robot=over, people=(_straight(0.0, 0.0, 0.5),),
+             shown=(3.0, 4.0, 4.4)),
+        Case(name="meets_halfway", told="and a person beside it turn to each other at once",
+             fault=False, rule="braked", people=(meets,),
+             robot=Track(x=over.x, y=over.y - 0.1), shown=(3.0, 4.0, 4.3)),
         Case(name="reverses", told="reverses into a person behind it", fault=True, rule="driven",
              robot=Track(x=-0.4 * T, y=_ZERO), people=(_still(-2.0),), shown=(1.0, 3.0, 4.1)),
         Case(name="turns_into", told="turns on the spot, and its end sweeps into a person",

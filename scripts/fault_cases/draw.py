@@ -21,6 +21,12 @@ RULES = {
         "had not braked since the contact was foreseeable",
         True,
     ),
+    "came_over": (
+        "the robot came over by a turn or a start: with its velocity of twice `fault_reaction` "
+        "before, it would have passed by more than `fault_margin`, and the person did not change "
+        "theirs",
+        True,
+    ),
     "pushed": (
         "while the contact lasts, after `fault_reaction`, the touching point comes nearer faster "
         "than braking allows, or moves the person by more than `fault_margin`; a contact that "
@@ -43,7 +49,7 @@ RULES = {
 
 _HEAD = """# Whose fault a contact is
 
-A contact with a person is the robot's fault if one of the first three lines holds. The numbers \
+A contact with a person is the robot's fault if one of the first four lines holds. The numbers \
 are parameters of [contacts_at_fault](metrics/contacts_at_fault.md); `contacts_per_km` and \
 `safe_efficiency` use the same rule. The touching point is the point of the robot's outline that \
 is nearest to the person: if a long robot turns on the spot, its end moves although its \

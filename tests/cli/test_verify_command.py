@@ -17,7 +17,9 @@ import crowdbot
 from crowdbot import cli
 from crowdbot.core.bundle import entries as entries_module
 from crowdbot.core.bundle.entries import load_entries
+from crowdbot.core.runs.record_parts import ExcusedPart
 from crowdbot.core.scenarios.library import open_spec
+from crowdbot.core.sim import simulate as simulating
 from crowdbot.core.support.json_digest import digest
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite, write_suite
 from tests.waiting import AT_MOST
@@ -128,6 +130,43 @@ def test_what_a_planner_may_take_is_part_of_an_honest_bundle(
     assert key in json.loads(record.read_text(encoding="utf-8"))
     code, found = verify(world / f"{name}.cbz", "--all")
     assert (code, found["outcome"], found["findings"]) == (0, "verified", [])
+
+
+def test_replaced_draws_are_made_again_and_not_believed(
+    world: Path, verify: Verify, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An honest one is verified; without its draw, and where nobody was struck, it is not."""
+
+    def excuse(_: object, __: object, realisation: str, draw: int) -> ExcusedPart | None:
+        part = ExcusedPart(draw=draw, person=3, struck_time=0.5, toppled_time=0.75,
+                           realisation=realisation, trajectory=f"cb1-sha256:{draw}")  # fmt: skip
+        return None if draw else part
+
+    with monkeypatch.context() as struck:
+        struck.setattr(simulating, "excuse_of", excuse)
+        run_and_bundle(world, "again.cbz", "again", "--replace-draws", "1")
+        code, found = verify(world / "again.cbz", "--all")
+        assert (code, found["outcome"], found["findings"]) == (0, "verified", [])
+
+        def hidden(content: bytes) -> bytes:
+            record = json.loads(content)
+            assert len(record.pop("excused")) == 1
+            return json.dumps(record).encode()
+
+        label = next((world / "again" / "tiny").glob("*/*")).name
+        assert cli.main(["bundle", str(world / "again"), "--suite", str(world / "tiny.yaml"),
+                         "--planner", label, "--out", str(world / "bare.cbz"),
+                         "--team", "Us"]) == 0  # fmt: skip
+        with zipfile.ZipFile(world / "bare.cbz") as archive:
+            name = next(n for n in archive.namelist() if n.endswith("seed-0/run.json"))
+        silent = rewrite(world / "bare.cbz", {name: hidden}, honest=True)
+        code, found = verify(silent, "--all")
+        assert (code, found["outcome"]) == (1, "suspicious"), found
+        assert any("excused is claimed to be None" in f for f in found["findings"])
+    # Here its robot was not struck.
+    code, found = verify(world / "again.cbz", "--all")
+    assert (code, found["outcome"]) == (1, "suspicious")
+    assert set(found["runs"].values()) == {"different"}
 
 
 def test_the_seed_names_the_sample(world: Path, verify: Verify) -> None:

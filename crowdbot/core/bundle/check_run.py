@@ -44,6 +44,7 @@ def run_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:
     """Yield contradictions between record, manifest and hashes."""
     yield from _identity_problems(run, manifest)
     yield from _ending_problems(run)
+    yield from _excused_problems(run.record)
     yield from _score_problems(run, manifest)
     yield from fleet_problems(run.record, run.scores)
 
@@ -125,6 +126,25 @@ def _ending_problems(run: ClaimedRun) -> Iterator[str]:
         if score.value != arrived[robot]:
             whose = f"success of {robot}" if robot else "success"
             yield f"its {whose} is {score.value:g}, which its time of arrival contradicts"
+
+
+def _excused_problems(record: RunRecord) -> Iterator[str]:
+    """Yield contradictions of the draws that are said to be replaced."""
+    excused, most = record.excused, record.replace_draws
+    people = [e.realisation for e in excused]
+    if len(excused) > most:
+        yield f"{len(excused)} of its draws were replaced, but at most {most} may be"
+    if [e.draw for e in excused] != list(range(len(excused))):
+        yield "its replaced draws are not numbered from 0 on"
+    if people[:1] not in ([], [record.hashes.realisation]):
+        yield "the first of its replaced draws does not have the people of the scenario"
+    if len(set(people)) < len(people):
+        yield "two of its replaced draws have the same people"
+    for one in excused:
+        if one.trajectory == record.hashes.trajectory:
+            yield "a draw that it says was replaced is the run itself"
+        if one.struck_time > one.toppled_time:
+            yield "in a replaced draw the robot toppled before it was struck"
 
 
 def _score_problems(run: ClaimedRun, manifest: Manifest) -> Iterator[str]:

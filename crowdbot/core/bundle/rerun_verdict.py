@@ -153,6 +153,7 @@ def same_platform(claimed: RunRecord, record: RunRecord) -> bool:
 #: Keys of run.json that follow from the trajectory and the planner.
 _ENDING = (
     "status", "goal_time", "toppled_time", "sim_time", "density", "privileged", "clamped_commands",
+    "excused",
 )  # fmt: skip
 #: Keys that follow from the trajectory to the last digit, on one platform only.
 _TO_THE_DIGIT = ("reference_hashes", "worst_moment")

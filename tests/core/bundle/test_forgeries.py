@@ -393,6 +393,36 @@ def test_records_that_contradict_suite_or_themselves_are_named(
     assert any(why in p for p in found), found
 
 
+def draw(number: int, **changes: Any) -> dict[str, Any]:
+    return {"draw": number, "person": 3, "struck_time": 0.5, "toppled_time": 0.75,
+            "realisation": f"cb1-sha256:{number}", "trajectory": f"cb1-sha256:t{number}",
+            **changes}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("excused", "why"),
+    [
+        ([draw(0)], "1 of its draws were replaced, but at most 0 may be"),
+        ([draw(1)], "not numbered from 0 on"),
+        ([draw(0)], "does not have the people of the scenario"),
+        ([draw(0), draw(1, realisation="cb1-sha256:0")], "have the same people"),
+        ([draw(0, trajectory="own")], "is the run itself"),
+        ([draw(0, struck_time=0.8)], "toppled before it was struck"),
+    ],
+)
+def test_draws_that_were_never_replaced_are_named(
+    bundle: Path, excused: list[dict[str, Any]], why: str
+) -> None:
+    def change(content: bytes) -> bytes:
+        record = json.loads(content)
+        own = record["hashes"]["trajectory"]
+        draws = [e | {"trajectory": own} if e["trajectory"] == "own" else e for e in excused]
+        return json.dumps(record | {"excused": draws}).encode()
+
+    found = problems(rewrite(bundle, {members(bundle, "run.json")[0]: change}, honest=True))
+    assert any(why in p for p in found), found
+
+
 def test_a_crowd_of_another_version_is_told_in_its_own_way(bundle: Path) -> None:
     """Its text may be made otherwise there, so that only making the run again tells."""
     name = members(bundle, "run.json")[0]

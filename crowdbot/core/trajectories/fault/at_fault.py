@@ -5,6 +5,7 @@ from __future__ import annotations
 from crowdbot.core.trajectories.fault.braking import FaultRule, braked_in_time
 from crowdbot.core.trajectories.fault.cutting_in import cut_in
 from crowdbot.core.trajectories.fault.pushing_on import pushed_on
+from crowdbot.core.trajectories.fault.swerving import swerved
 from crowdbot.core.trajectories.person_contacts import PersonContacts
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Mask
@@ -13,8 +14,9 @@ from crowdbot.core.types.arrays import Mask
 def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
     """Return a mask of contacts (K,) that the robot causes.
 
-    It moved towards the person with the touching point although it could have braked, it pushed on
-    while the contact lasted, or it cut in before a faster person. If the direction or the person is
+    It moved towards the person with the touching point although it could have braked, it came over
+    by a turn or a start, it pushed on while the contact lasted, or it cut in before a faster
+    person. If the direction or the person is
     unknown, a moving robot is at fault.
 
     Args:
@@ -31,4 +33,5 @@ def _at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_sp
     braked = braked_in_time(run, rule, found.time, found.sample, found.agent, jump_speed)
     driven = ~(found.closing <= rule.speed) & ~braked
     pushed = pushed_on(run, found, rule, jump_speed)
-    return driven | pushed | cut_in(run, found, rule, jump_speed)
+    came = swerved(run, found, rule, jump_speed)
+    return driven | came | pushed | cut_in(run, found, rule, jump_speed)

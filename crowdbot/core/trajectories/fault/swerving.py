@@ -1,0 +1,79 @@
+"""Contacts that only a change of the robot's own motion made, however late it was foreseeable."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.geometry.footprint import into_frame
+from crowdbot.core.trajectories.encounters import (
+    Encounter,
+    encounter,
+    people,
+    people_velocities,
+    robot_of,
+    robot_velocities,
+)
+from crowdbot.core.trajectories.fault.braking import FaultRule
+from crowdbot.core.trajectories.fault.touch_point import touch_point
+from crowdbot.core.trajectories.person_contacts import PersonContacts
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Array, Mask
+
+#: The motion before is that of so many reaction times before the contact.
+_BEFORE = 2.0
+
+
+def swerved(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
+    """Return a mask of contacts (K,) that the robot made by a turn or a start.
+
+    The touching point moves towards the person. Had the robot kept the velocity that it had twice
+    the reaction time before, it would have passed by more than the margin; and had the person kept
+    theirs, the robot would have come within the margin all the same. So the person did nothing, and
+    the robot came over. A robot that slows down does not come over.
+
+    Args:
+        run: the run of ``found``.
+        found: its contacts.
+        rule: the fault rule.
+        jump_speed: speed that detects teleports if none were recorded, m/s.
+    """
+    moves = (found.closing > rule.speed) & (found.agent >= 0)
+    made = [bool(m) and _came_over(run, found, k, rule, jump_speed) for k, m in enumerate(moves)]
+    return np.array(made, dtype=bool)
+
+
+def _came_over(
+    run: Trajectories, found: PersonContacts, k: int, rule: FaultRule, jump: float
+) -> bool:
+    agent, last = int(found.agent[k]), int(found.sample[k])
+    robot, crowd, pair = robot_of(run), people(run), encounter(run, jump)
+    first = int(np.searchsorted(run.t, found.time[k] - _BEFORE * rule.reaction - 1e-9))
+    span = np.arange(first, min(last + 2, len(run.t)))
+    span = span[np.isfinite(pair.gap[span, agent])]
+    if not len(span):
+        return False
+    since = run.t[span] - run.t[span[0]]
+    straight = [
+        p[span[0]] + v[span[0]] * since
+        for p, v in zip((robot.x, robot.y), robot_velocities(run, jump), strict=True)
+    ]
+    there = touch_point(run, np.array([last]), np.array([agent]), jump)
+    over = (robot.x[last] - np.interp(run.t[last] - run.t[span[0]], since, straight[0])) * there.nx
+    over += (robot.y[last] - np.interp(run.t[last] - run.t[span[0]], since, straight[1])) * there.ny
+    px, py = crowd.x[span, agent], crowd.y[span, agent]
+    theta = np.full(len(span), pair.theta[span[0]])
+    passed = _gap(pair, agent, px - straight[0], py - straight[1], theta)
+    walks = [v[span[0], agent] * since for v in people_velocities(run, jump)]
+    met = _gap(
+        pair, agent, px[0] + walks[0] - robot.x[span], py[0] + walks[1] - robot.y[span],
+        pair.theta[span],
+    )  # fmt: skip
+    turned = pair.footprint is not None or bool(over > 0.0)
+    return turned and passed > rule.margin and met <= rule.margin
+
+
+def _gap(pair: Encounter, agent: int, x: Array, y: Array, theta: Array) -> float:
+    """Return the smallest gap to a person at places (N,) from the robot, m; NaN: unknown."""
+    if pair.footprint is None:
+        return float(np.min(np.hypot(x, y) - pair.reach[agent]))
+    return float(np.min(pair.footprint.gap(*into_frame(theta, x, y)) - pair.reach[agent]))
