@@ -19,7 +19,7 @@ from crowdbot.core.trajectories.person_contacts import PersonContacts
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 
-#: The motion before is that of so many reaction times before the contact.
+#: The motion before is that of this many reaction times before the contact.
 _BEFORE = 2.0
 
 
