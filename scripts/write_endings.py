@@ -30,4 +30,5 @@ def _table() -> str:
 def _place(ending: Ending) -> str:
     if ending.complete:
         return "`run.json`, results, reports, recordings"
-    return "results, reports" if ending == Ending.NO_RUN else "recordings (`.partial`)"
+    beside = (Ending.NO_RUN, Ending.PEOPLE_ALONE)
+    return "results, reports" if ending in beside else "recordings (`.partial`)"

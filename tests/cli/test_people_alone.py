@@ -37,7 +37,10 @@ def test_people_walk_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert cli.main(["simulate", str(LANES), "--out", str(tmp_path), "--duration", "1"]) == 0
     assert "alone for 1.0 s" in capsys.readouterr().out, "another duration is another run"
     assert cli.main(["view", str(folder), "--out", str(tmp_path / "v.html")]) == 0
-    assert cli.main(["report", str(tmp_path), "--out", str(tmp_path / "r.html")]) == 0
+    capsys.readouterr()
+    assert cli.main(["report", str(tmp_path), "--out", str(tmp_path / "r.html"), "--json"]) == 0
+    counted = json.loads(capsys.readouterr().out)["runs"]
+    assert (counted["people_alone"], counted["timeout"]) == (1, 0)  # nothing ran out of time
     assert cli.main(["export", str(folder), "--to", "csv", "--out", str(tmp_path / "t")]) == 0
     assert (tmp_path / "t" / "people.csv").stat().st_size > 1000
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from crowdbot.cli.output.say import say
 from crowdbot.core.support.text import plural
-from crowdbot.core.types.ending import ATTEMPTED, has_failed
+from crowdbot.core.types.ending import has_failed, shown
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -92,14 +92,14 @@ def _table(state: State) -> RenderableType:
     from rich.text import Text
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in ("planner", "done", "", *ATTEMPTED):
+    for name in ("planner", "done", "", *shown({})):
         table.add_column(name)
     counts = _counts(state)
     for label in state.plan.labels:
         total = sum(r.label == label for r in state.plan.runs)
         done = sum(counts[label].values())
         bar = ProgressBar(total=total, completed=done, width=20)
-        cells = [Text(str(counts[label][c])) for c in ATTEMPTED]
+        cells = [Text(str(counts[label][c])) for c in shown({})]
         table.add_row(Text(label), f"{done}/{total}", bar, *cells)
     lines = [_busy(b.job, b.progress) for b in state.busy]
     return Group(table, *map(Text, lines), Text(_rate(state)))
@@ -137,7 +137,7 @@ def _counts(state: State) -> dict[str, Counter[str]]:
 def _summary(state: State) -> None:
     for label, counts in _counts(state).items():
         total = sum(r.label == label for r in state.plan.runs)
-        found = ", ".join(f"{counts[c]} {c}" for c in ATTEMPTED if counts[c])
+        found = ", ".join(f"{counts[c]} {c}" for c in shown({}) if counts[c])
         _say(f"{label}: {sum(counts.values())} of {total}: {found}")
 
 

@@ -31,7 +31,7 @@ from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.core.statistics.ladder import Ladder, ladders
 from crowdbot.core.statistics.pareto import ParetoPoint, label_heights, pareto
 from crowdbot.core.statistics.rules import Orders, orders
-from crowdbot.core.types.ending import ATTEMPTED
+from crowdbot.core.types.ending import shown
 from crowdbot.errors import InputError
 
 
@@ -115,6 +115,11 @@ class Contents:
         return sorted({a.seed for a in self.attempts})
 
     @cached_property
+    def statuses(self) -> Mapping[str, int]:
+        """Return how many attempts of all planners had each outcome."""
+        return Counter(map(status_of, self.attempts))
+
+    @cached_property
     def _by_planner(self) -> Mapping[str, list[Attempt]]:
         found: dict[str, list[Attempt]] = {}
         for attempt in self.attempts:
@@ -129,7 +134,7 @@ class Contents:
         """Return how many attempts had each outcome; default: all attempts."""
         chosen = self.attempts if attempts is None else attempts
         found = Counter(status_of(a) for a in chosen)
-        return {ending: found[ending] for ending in ATTEMPTED}
+        return {ending: found[ending] for ending in shown(self.statuses)}
 
     def is_privileged(self, planner: str) -> bool:
         """Return True if a planner got ground truth in any run."""

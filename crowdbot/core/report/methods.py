@@ -9,7 +9,7 @@ from crowdbot.core.report.contents import Contents
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.four_scores import is_main
 from crowdbot.core.support.text import plural
-from crowdbot.core.types.ending import ATTEMPTED, Ending
+from crowdbot.core.types.ending import Ending, shown
 
 _SOFTWARE = ("crowdbot", "drake", "numpy", "python")
 
@@ -56,7 +56,7 @@ def _seeds(seeds: Sequence[int]) -> str:
 
 def _ended(contents: Contents) -> str:
     counts = contents.counts()
-    others = [ending for ending in ATTEMPTED if ending != Ending.ARRIVED]
+    others = [ending for ending in shown(counts) if ending != Ending.ARRIVED]
     rest = [f"{counts[ending]} {ending.past}" for ending in others if counts[ending]]
     return f"The robot arrived in {counts[Ending.ARRIVED]} of them" + (
         f"; {_and(rest)}." if rest else "."

@@ -21,7 +21,7 @@ from crowdbot.core.statistics.estimate_text import estimate_text, joined_text
 from crowdbot.core.support.atomic_write import atomic_parts, atomic_write
 from crowdbot.core.support.html_page import Allowed, render_page
 from crowdbot.core.support.text import plural
-from crowdbot.core.types.ending import ATTEMPTED, ending_style
+from crowdbot.core.types.ending import ending_style, shown
 
 _SCRIPTS = (
     "element", "words", "data", "filters", "scale", "table", "cards", "dots", "save",
@@ -61,7 +61,7 @@ def render(contents: Contents) -> str:
     return render_page(
         __package__,
         more_style=ending_style(),
-        endings=ATTEMPTED,
+        endings=shown(contents.statuses),
         scripts=[f"{name}.js" for name in _SCRIPTS],
         allowed=Allowed(images="blob:"),  # saving as PNG draws the picture once more
         heading=contents.heading,

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from crowdbot.core.runs.run_record import RunRecord
+from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.suite.suite_entry import altered_digest, altered_suffix
 
 #: Known scores of an attempt without a run: its robot did not arrive.
@@ -72,8 +73,8 @@ class RunRow:
 
     @property
     def status(self) -> str:
-        """The word of its `Ending`."""
-        return str(self.record.status)
+        """The word of its `Ending`; a run without a robot cannot run out of time."""
+        return str(Ending.PEOPLE_ALONE if self.record.people_alone else self.record.status)
 
     @property
     def reason(self) -> str:

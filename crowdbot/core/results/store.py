@@ -28,7 +28,7 @@ from crowdbot.errors import InputError
 _LOG = logging.getLogger("crowdbot")
 INDEX, LOCK = "results.sqlite", "results.lock"
 #: Version of the tables; an index of another version is rebuilt.
-VERSION = 6
+VERSION = 7
 
 #: Number of new or changed runs from which on a reader renews the index, if it may.
 RENEWED_FROM = 200

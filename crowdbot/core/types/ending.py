@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 
 
@@ -17,7 +18,8 @@ class Ending(StrEnum):
         colour: in pages, as CSS.
         failed: statistics rank such a run below all others, commands end with exit code 3, and
             ``campaign --retry-failed`` repeats it.
-        complete: such a run has a ``run.json``.
+        complete: a ``run.json`` may have this status; one of a scenario without a robot has
+            ``timeout``, which results and pages call ``people_alone``.
     """
 
     past: str
@@ -56,6 +58,10 @@ class Ending(StrEnum):
         "planner_failed", "ended because the planner failed", "planner failed at {t:.1f} s",
         "light-dark(#b3261e, #ff7a6e)", True,
     )  # fmt: skip
+    PEOPLE_ALONE = (
+        "people_alone", "showed people alone", "people walked alone for {t:.1f} s",
+        "light-dark(#3a6ea5, #7db4e6)", False, False,
+    )  # fmt: skip
     INTERRUPTED = (
         "interrupted", "were interrupted", "interrupted at {t:.1f} s",
         "light-dark(#62676e, #a0a7af)", False, False,
@@ -74,7 +80,12 @@ class Ending(StrEnum):
 #: Endings of complete runs.
 COMPLETE = tuple(ending for ending in Ending if ending.complete)
 #: Endings of complete runs and of attempts that left no run, for tables of attempts.
-ATTEMPTED = (*COMPLETE, Ending.NO_RUN)
+ATTEMPTED = (*COMPLETE, Ending.PEOPLE_ALONE, Ending.NO_RUN)
+
+
+def shown(counts: Mapping[str, int]) -> tuple[Ending, ...]:
+    """Return the endings of a table of attempts: people alone only where there are such runs."""
+    return tuple(e for e in ATTEMPTED if e != Ending.PEOPLE_ALONE or counts.get(e, 0))
 
 
 _FAILED = frozenset(ending for ending in Ending if ending.failed)

@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from crowdbot.core.types.ending import ATTEMPTED, COMPLETE, Ending, ending_style, has_failed
+from crowdbot.core.types.ending import ATTEMPTED, COMPLETE, Ending, ending_style, has_failed, shown
 
 
 def test_an_ending_is_the_word_that_files_have() -> None:
@@ -20,7 +20,12 @@ def test_an_ending_is_the_word_that_files_have() -> None:
 
 def test_the_words_of_files_that_exist_stay() -> None:
     assert COMPLETE == ("arrived", "timeout", "toppled", "planner_failed")
-    assert (*COMPLETE, "failed") == ATTEMPTED
+    assert (*COMPLETE, "people_alone", "failed") == ATTEMPTED
+
+
+def test_people_alone_have_a_column_only_where_there_are_such_runs() -> None:
+    assert shown({"arrived": 3}) == (*COMPLETE, "failed")
+    assert shown({"people_alone": 1}) == ATTEMPTED
 
 
 @pytest.mark.parametrize(
