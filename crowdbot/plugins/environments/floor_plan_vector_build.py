@@ -165,16 +165,32 @@ def _features(content: Any, name: str, aside: Counter[str]) -> Iterator[_Found]:
 
 
 def _geometry(content: dict[str, Any], name: str) -> Any:
-    """Return a geometry; members of a collection that are null are left out."""
+    """Return a geometry; members of a collection that are null are left out, heights unknown."""
     kind = content["type"]
     members = content.get("geometries")
     if kind == "GeometryCollection" and isinstance(members, list):
-        content = {**content, "geometries": [m for m in members if m is not None]}
+        content = {**content, "geometries": [_placed(m) for m in members if m is not None]}
+    content = _placed(content)
     try:
         with np.errstate(invalid="ignore"):  # NaN is reported separately
             return shape_of(content)
     except Exception as error:  # shapely raises many types for wrong nesting
         raise InputError(f"{name}: a {kind} is damaged: {error}") from error
+
+
+def _placed(content: Any) -> Any:
+    """Return a geometry in which heights that are null are NaN."""
+    if not isinstance(content, dict) or "coordinates" not in content:
+        return content
+    return {**content, "coordinates": _with_heights(content["coordinates"])}
+
+
+def _with_heights(value: Any) -> Any:
+    if not isinstance(value, list):
+        return value
+    if len(value) > 2 and isinstance(value[0], (int, float)):
+        return [*value[:2], *(math.nan if height is None else height for height in value[2:])]
+    return [_with_heights(part) for part in value]
 
 
 def _is_of_place(shape: Any, properties: dict[str, Any], name: str, aside: Counter[str]) -> bool:

@@ -286,3 +286,20 @@ def test_a_coloured_and_a_deep_image(tmp_path: Path) -> None:
         text = f"image: map.png\nresolution: 0.1\norigin: [0, 0, 0]\n# {image.mode}\n"
         (tmp_path / "map.yaml").write_text(text)
         assert len(_plan(file=str(tmp_path / "map.yaml")).walls) == 4, image.mode
+
+
+def test_corners_whose_heights_are_null(tmp_path: Path) -> None:
+    ring: list[list[float | None]] = [
+        [0, 0, None],
+        [10, 0, None],
+        [10, 6, 1],
+        [0, 6, None],
+        [0, 0, None],
+    ]
+    file = tmp_path / "plan.json"
+    file.write_text(json.dumps({"type": "Polygon", "coordinates": [ring]}))
+    assert len(_plan(file=str(file)).walls) == 4
+    ring[1][0] = None
+    file.write_text(json.dumps({"type": "Polygon", "coordinates": [ring]}))
+    with pytest.raises(InputError, match="a Polygon is damaged"):
+        _plan(file=str(file))
