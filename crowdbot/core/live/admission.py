@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import ipaddress
+import re
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from urllib.parse import urlsplit
 
 from crowdbot.errors import printable
 
 #: Largest number of refused websites that are named on stderr.
 _NAMED = 20
+#: Scheme, host and port, as browsers write an origin: no user, path or query.
+_ORIGIN = re.compile(
+    r"(?:[a-z][a-z0-9+.-]*:)?//(\[[0-9a-f:.]+\]|[a-z0-9.-]+)(?::[0-9]{1,5})?/?", re.I
+)
 #: Headers of a page of our own: no other site may frame it, guess its kind, learn its address or
 #: keep it.
 PAGE_HEADERS: Mapping[str, str] = {
@@ -85,8 +89,6 @@ class Admission:
 
 
 def _name(url: str) -> str:
-    """Return the host's name in a URL; empty if there is none."""
-    try:
-        return urlsplit(url).hostname or ""
-    except ValueError:
-        return ""
+    """Return the host's name in an origin or after ``//``; empty if it has more than a port."""
+    found = _ORIGIN.fullmatch(url)
+    return found[1] if found else ""
