@@ -20,6 +20,7 @@ LONG = (
     "tests/core/campaign/test_judge.py::test_judged_from_hand_in_to_the_leaderboard",
     "tests/core/statistics/test_summary.py::test_taking_runs_for_draws_would_find_differences",
     "tests/cli/test_study_page.py",
+    "tests/cli/test_verify_command.py::test_replaced_draws_are_made_again_and_not_believed",
     "tests/cli/test_verify_command.py::test_what_a_planner_may_take_is_part_of_an_honest_bundle",
     "tests/cli/test_simulate_failures.py::test_a_planner_that_swallows_every_interruption",
     "tests/core/realism/near_robots/test_fit.py::test_a_fit_is_written_as_a_part_that_realism_reads",
