@@ -16,6 +16,8 @@ _MIDDLE, APART = 0.2, 0.5
 #: A cluster is as wide as both legs side by side from here, m.
 _BOTH = c.LEG
 NONE = -1
+#: A number that is less by a leg's is that leg before it is given; `NONE` remains `NONE`.
+_CANDIDATE = -2
 
 
 @kernel
@@ -36,7 +38,7 @@ def assign(
     for j in range(found):
         owner[j] = NONE
     for person in (1.0, 0.0):
-        _nearest_legs(tracks, count, legs, found, person, first, owner)
+        _nearest_legs(tracks, count, legs, found, person, first, second, owner)
         _other_legs(tracks, count, legs, found, person, first, second, owner)
 
 
@@ -49,25 +51,48 @@ def gate_of(track: Array) -> float:
 @kernel
 def _nearest_legs(
     tracks: Array, count: int, legs: Array, found: int,
-    person: float, first: Indices, owner: Indices,
+    person: float, first: Indices, second: Indices, owner: Indices,
 ) -> None:  # fmt: skip
-    """Give each track its nearest leg, in the order of distances."""
+    """Give each track its nearest leg, in the order of distances.
+
+    Meanwhile ``second`` holds the nearest free leg of tracks that have none.
+    """
+    for i in range(count):
+        if first[i] == NONE and tracks[i, k.PERSON] == person:
+            second[i] = _nearest_leg(tracks[i], legs, found, person, owner)
     while True:
-        best, at, leg = math.inf, NONE, NONE
+        best, at = math.inf, NONE
         for i in range(count):
-            if first[i] != NONE or tracks[i, k.PERSON] != person:
-                continue
-            gate = gate_of(tracks[i])
-            for j in range(found):
-                if owner[j] != NONE or (legs[j, c.STILL] != 0.0 and person == 0.0):
-                    continue
-                dx, dy = legs[j, c.X] - tracks[i, k.X], legs[j, c.Y] - tracks[i, k.Y]
-                away = math.sqrt(dx * dx + dy * dy)
-                if away < gate and away < best:
-                    best, at, leg = away, i, j
+            if first[i] == NONE and tracks[i, k.PERSON] == person and second[i] != NONE:
+                away = _away(tracks[i], legs[second[i]])
+                if away < best:
+                    best, at = away, i
         if at == NONE:
             return
-        first[at], owner[leg] = leg, at
+        leg = second[at]
+        first[at], second[at], owner[leg] = leg, NONE, at
+        for i in range(count):
+            if first[i] == NONE and tracks[i, k.PERSON] == person and second[i] == leg:
+                second[i] = _nearest_leg(tracks[i], legs, found, person, owner)
+
+
+@kernel
+def _nearest_leg(track: Array, legs: Array, found: int, person: float, owner: Indices) -> int:
+    """Return the nearest free leg within the gate of a track, or `NONE`."""
+    best, leg = gate_of(track), NONE
+    for j in range(found):
+        if owner[j] != NONE or (legs[j, c.STILL] != 0.0 and person == 0.0):
+            continue
+        away = _away(track, legs[j])
+        if away < best:
+            best, leg = away, j
+    return leg
+
+
+@kernel
+def _away(track: Array, leg: Array) -> float:
+    dx, dy = leg[c.X] - track[k.X], leg[c.Y] - track[k.Y]
+    return math.sqrt(dx * dx + dy * dy)
 
 
 @kernel
@@ -75,28 +100,47 @@ def _other_legs(
     tracks: Array, count: int, legs: Array, found: int,
     person: float, first: Indices, second: Indices, owner: Indices,
 ) -> None:  # fmt: skip
-    """Give tracks a second leg if the middle of both lies where the person is expected."""
+    """Give tracks a second leg if the middle of both lies where the person is expected.
+
+    Meanwhile ``second`` holds the best free leg of tracks that have no second one, as `_CANDIDATE`
+    less its number.
+    """
+    for i in range(count):
+        if second[i] == NONE and tracks[i, k.PERSON] == person:
+            second[i] = _CANDIDATE - _other_leg(tracks[i], legs, found, first[i], owner)
     while True:
-        best, at, leg = math.inf, NONE, NONE
+        best, at = math.inf, NONE
         for i in range(count):
-            j = first[i]
-            if j == NONE or second[i] != NONE or tracks[i, k.PERSON] != person:
-                continue
-            if legs[j, c.WIDTH] > _BOTH:
-                continue
-            for m in range(found):
-                if owner[m] != NONE or legs[m, c.WIDTH] > _BOTH:
-                    continue
-                apart = math.hypot(legs[m, c.X] - legs[j, c.X], legs[m, c.Y] - legs[j, c.Y])
-                if apart > APART:
-                    continue
-                off = _middle_off(tracks[i], legs[j], legs[m])
-                most = _MIDDLE + math.sqrt(max(tracks[i, k.PP], 0.0))
-                if off < most and off < best:
-                    best, at, leg = off, i, m
+            if second[i] <= _CANDIDATE and tracks[i, k.PERSON] == person:
+                off = _middle_off(tracks[i], legs[first[i]], legs[_CANDIDATE - second[i]])
+                if off < best:
+                    best, at = off, i
         if at == NONE:
             return
-        second[at], owner[leg] = leg, at
+        taken = second[at]
+        second[at] = _CANDIDATE - taken
+        owner[second[at]] = at
+        for i in range(count):
+            if second[i] == taken and tracks[i, k.PERSON] == person:
+                second[i] = _CANDIDATE - _other_leg(tracks[i], legs, found, first[i], owner)
+
+
+@kernel
+def _other_leg(track: Array, legs: Array, found: int, first: int, owner: Indices) -> int:
+    """Return the best free leg beside the first of a track, or `NONE`."""
+    if first == NONE or legs[first, c.WIDTH] > _BOTH:
+        return NONE
+    best, leg = _MIDDLE + math.sqrt(max(track[k.PP], 0.0)), NONE
+    for m in range(found):
+        if owner[m] != NONE or legs[m, c.WIDTH] > _BOTH:
+            continue
+        apart = math.hypot(legs[m, c.X] - legs[first, c.X], legs[m, c.Y] - legs[first, c.Y])
+        if apart > APART:
+            continue
+        off = _middle_off(track, legs[first], legs[m])
+        if off < best:
+            best, leg = off, m
+    return leg
 
 
 @kernel
