@@ -14,7 +14,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.plugin import Array, Command, Observation, Pose, RobotBody, SensorInfo, kernel
+from crowdbot.plugin import Array, Command, Mask, Observation, Pose, RobotBody, SensorInfo, kernel
 from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius
 
 #: The wheels roll this far between two scans that are compared (m), in this time at most (s).
@@ -25,6 +25,10 @@ _SAMPLE, _REACH = 150, 10.0
 _CLEAR, _CLEAR_SHARE = 0.06, 0.02
 #: Least number of points that say that the robot stands, per point that says that it moves.
 _STILL, _MOST = 12, 3
+#: At least so many of them are of surfaces wider than people, who may walk beside the robot.
+_STILL_WIDE, _WIDE = 8, 1.0
+#: Neighbouring points nearer than this plus a share of their distance are of one surface, m.
+_GAP, _GAP_SHARE = 0.1, 0.03
 #: Commanded way (m) on which stalled wheels roll no farther than the second number.
 _TOLD, _STALLED = 0.5, 0.05
 #: A jolt: horizontal specific force above any command's, m/s^2; how long it counts, s.
@@ -74,7 +78,7 @@ class Stuck:
         self._slips, self._slip = slips, (0.0, 0.0)
         self._told = 0.0
         self._back_from: tuple[float, Pose, float] | None = None
-        self._start: tuple[Observation, Pose, Array] | None = None
+        self._start: tuple[Observation, Pose, Array, Mask] | None = None
         self._held: Pose | None = None
 
     def see(self, obs: Observation, pose: Pose, points: Array) -> tuple[Pose, Array]:
@@ -144,7 +148,7 @@ class Stuck:
         """Compare what the wheels say with what the scan says; return the pose without slip."""
         if self._start is None:
             return self._restart(obs, pose, points)
-        then, at, before = self._start
+        then, at, before, wide = self._start
         ahead, aside = _moved(then.pose, obs.pose)
         rolled = math.hypot(ahead, aside)
         pressed = self._felt.pressed_for(obs.t) >= _PRESSED and abs(obs.twist[0]) > 0.0
@@ -158,10 +162,11 @@ class Stuck:
         clear = not self._blocked(points, way, (self._front if way > 0.0 else self._back) + _SEEN)
         stands = stalls or pressed
         if clear and not stands:
-            still, moves = _votes(
-                before, points, ahead, aside, math.remainder(pose.yaw - at.yaw, 2.0 * math.pi)
-            )
-            stands = still >= _STILL and still >= _MOST * moves
+            still, moves, fixed = _votes(
+                before, wide, points, ahead, aside,
+                math.remainder(pose.yaw - at.yaw, 2.0 * math.pi),
+            )  # fmt: skip
+            stands = still >= _STILL and still >= _MOST * moves and fixed >= _STILL_WIDE
         if not (clear and stands):
             self._held = None
             return self._restart(obs, pose, points)
@@ -173,7 +178,9 @@ class Stuck:
 
     def _restart(self, obs: Observation, pose: Pose, points: Array) -> Pose:
         stride = max(1, len(points) // _SAMPLE)
-        self._start, self._told = (obs, pose, points[::stride].copy()), 0.0
+        wide = np.zeros(len(points), np.bool_)
+        _mark_wide(points, wide)
+        self._start, self._told = (obs, pose, points[::stride].copy(), wide[::stride]), 0.0
         return pose
 
     def _remember(self, obs: Observation, pose: Pose, held: Pose, way: float) -> Pose:
@@ -230,20 +237,41 @@ def _moved(then: Pose, now: Pose) -> tuple[float, float]:
 
 
 @kernel
-def _votes(before: Array, now: Array, ahead: float, aside: float, turn: float) -> tuple[int, int]:
+def _mark_wide(points: Array, wide: Mask) -> None:
+    """Mark the points (P, 2), in the order of beams, of surfaces wider than people."""
+    first, count = 0, points.shape[0]
+    for i in range(1, count + 1):
+        if i < count:
+            dx, dy = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
+            gap = _GAP + _GAP_SHARE * math.sqrt(points[i, 0] ** 2 + points[i, 1] ** 2)
+            if dx * dx + dy * dy < gap * gap:
+                continue
+        dx, dy = points[i - 1, 0] - points[first, 0], points[i - 1, 1] - points[first, 1]
+        if dx * dx + dy * dy > _WIDE * _WIDE:
+            for k in range(first, i):
+                wide[k] = True
+        first = i
+
+
+@kernel
+def _votes(
+    before: Array, wide: Mask, now: Array, ahead: float, aside: float, turn: float
+) -> tuple[int, int, int]:
     """Count points of an earlier scan by whether they say that the robot stands or has moved.
 
     Args:
         before: (K, 2) base frame of then, m.
+        wide: (K,) True for points of surfaces wider than people.
         now: (P, 2) base frame of now, m.
         ahead, aside: way of the robot since as the wheels rolled, base frame of then, m.
         turn: of the robot since, rad.
 
     Returns:
-        number of points that fit only if it stands, and only if it moved.
+        number of points that fit only if it stands, and only if it moved; of the former those of
+        wide surfaces.
     """
     c, s = math.cos(turn), math.sin(turn)
-    still = moves = 0
+    still = moves = fixed = 0
     for k in range(before.shape[0]):
         x, y = before[k, 0], before[k, 1]
         away = math.sqrt(x * x + y * y)
@@ -260,11 +288,14 @@ def _votes(before: Array, now: Array, ahead: float, aside: float, turn: float) -
         stood, moved = math.sqrt(stood), math.sqrt(moved)
         if stood + clear < moved:
             still += stood < clear
+            fixed += wide[k] and stood < clear
         elif moved + clear < stood:
             moves += moved < clear
-    return still, moves
+    return still, moves, fixed
 
 
 def compile_stuck() -> None:
     """Compile what is not compiled yet."""
-    _votes(np.ones((1, 2)), np.ones((1, 2)), 0.1, 0.0, 0.0)
+    wide = np.zeros(1, np.bool_)
+    _mark_wide(np.ones((1, 2)), wide)
+    _votes(np.ones((1, 2)), wide, np.ones((1, 2)), 0.1, 0.0, 0.0)

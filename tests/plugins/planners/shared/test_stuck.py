@@ -74,6 +74,22 @@ def test_a_robot_that_drives_sees_and_remembers_nothing_new() -> None:
     assert stuck.count == 0
 
 
+def test_people_who_walk_beside_it_do_not_make_it_stand() -> None:
+    """In a long corridor nothing else changes in the scan."""
+    walls = np.array([(x, y) for y in (-3.0, 3.0) for x in np.arange(-40.0, 40.0, 0.05)])
+    turn = np.linspace(0.0, 2.0 * math.pi, 12, endpoint=False)
+    body = 0.15 * np.column_stack([np.cos(turn), np.sin(turn)])
+    places = [(1.5, 0.8), (2.5, -0.9), (-1.2, 1.1), (3.5, 0.3), (-2.0, -0.6), (0.4, -1.6)]
+    people = np.concatenate([body + place for place in places])
+    stuck = Stuck(_RADIUS)
+    for k in range(96):
+        t = k * _PERIOD
+        pose = Pose(0.65 * t, 0.0, 0.0)
+        points = np.concatenate([people, walls[abs(walls[:, 0] - pose.x) < 9.0] - (pose.x, 0.0)])
+        stuck.see(_observation(t, pose, 0.65), pose, points)
+    assert stuck.count == 0
+
+
 def test_stalled_wheels_are_noticed() -> None:
     stuck = Stuck(_RADIUS)
     _, command = _drive(stuck, 3.0, wheels=0.0, real=0.0)
