@@ -25,7 +25,7 @@ _SAMPLE, _REACH = 150, 10.0
 _CLEAR, _CLEAR_SHARE = 0.06, 0.02
 #: Least number of points that say that the robot stands, per point that says that it moves.
 _STILL, _MOST = 12, 3
-#: At least so many of them are of surfaces wider than people, who may walk beside the robot.
+#: The least number of them on surfaces wider than people, who may walk beside the robot; m.
 _STILL_WIDE, _WIDE = 8, 1.0
 #: Neighbouring points nearer than this plus a share of their distance are of one surface, m.
 _GAP, _GAP_SHARE = 0.1, 0.03
