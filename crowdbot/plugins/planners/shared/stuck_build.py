@@ -180,7 +180,7 @@ class Stuck:
         stride = max(1, len(points) // _SAMPLE)
         wide = np.zeros(len(points), np.bool_)
         _mark_wide(points, wide)
-        self._start, self._told = (obs, pose, points[::stride].copy(), wide[::stride]), 0.0
+        self._start, self._told = (obs, pose, points[::stride].copy(), wide[::stride].copy()), 0.0
         return pose
 
     def _remember(self, obs: Observation, pose: Pose, held: Pose, way: float) -> Pose:
