@@ -28,7 +28,7 @@ def with_signals(component: Component[Any], world: World) -> World:
     metric about the person of a task has such a task: to follow the first of its people.
     """
     if getattr(component, "about_person", False):
-        world = replace(world, run=_about_someone(world.run))
+        world = replace(world, run=_with_person_task(world.run))
     names = getattr(component, "signals", ())
     if not names or not len(world.run.t):
         return world
@@ -40,7 +40,7 @@ def with_signals(component: Component[Any], world: World) -> World:
     return replace(world, run=replace(world.run, signals={**world.run.signals, **signals}))
 
 
-def _about_someone(run: Trajectories) -> Trajectories:
+def _with_person_task(run: Trajectories) -> Trajectories:
     """Return a run whose task is to follow one of its people; without people the same run."""
     if run.agents is None or not len(run.agents.id):
         return run

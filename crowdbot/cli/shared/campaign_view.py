@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
     from crowdbot.core.campaign.run import Listener, State
 
+#: Endings that have a column; a campaign has no people alone.
+_ENDINGS = shown({})
+
 
 @contextmanager
 def show(plan: Plan) -> Iterator[Listener]:
@@ -92,14 +95,14 @@ def _table(state: State) -> RenderableType:
     from rich.text import Text
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in ("planner", "done", "", *shown({})):
+    for name in ("planner", "done", "", *_ENDINGS):
         table.add_column(name)
     counts = _counts(state)
     for label in state.plan.labels:
         total = sum(r.label == label for r in state.plan.runs)
         done = sum(counts[label].values())
         bar = ProgressBar(total=total, completed=done, width=20)
-        cells = [Text(str(counts[label][c])) for c in shown({})]
+        cells = [Text(str(counts[label][c])) for c in _ENDINGS]
         table.add_row(Text(label), f"{done}/{total}", bar, *cells)
     lines = [_busy(b.job, b.progress) for b in state.busy]
     return Group(table, *map(Text, lines), Text(_rate(state)))
@@ -137,7 +140,7 @@ def _counts(state: State) -> dict[str, Counter[str]]:
 def _summary(state: State) -> None:
     for label, counts in _counts(state).items():
         total = sum(r.label == label for r in state.plan.runs)
-        found = ", ".join(f"{counts[c]} {c}" for c in shown({}) if counts[c])
+        found = ", ".join(f"{counts[c]} {c}" for c in _ENDINGS if counts[c])
         _say(f"{label}: {sum(counts.values())} of {total}: {found}")
 
 

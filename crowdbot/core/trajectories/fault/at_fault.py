@@ -16,8 +16,7 @@ def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_spe
 
     It moved towards the person with the touching point although it could have braked, it came over
     by a turn or a start, it pushed on while the contact lasted, or it cut in before a faster
-    person. If the direction or the person is
-    unknown, a moving robot is at fault.
+    person. If the direction or the person is unknown, a moving robot is at fault.
 
     Args:
         run: the run of ``found``.
