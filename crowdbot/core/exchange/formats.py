@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 
-from crowdbot.core.exchange.opened import OpenedScene
+from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import RowTable
 from crowdbot.core.exchange.scene import Draft
@@ -20,11 +21,24 @@ class Context:
         report: where each part is recorded.
         registry: the installed components.
         name: name of the document.
+        opened: the files that were opened, by their resolved paths.
     """
 
     report: Report
     registry: Registry
     name: str
+    opened: dict[Path, OpenedScene] = field(default_factory=dict)
+
+    def open(self, path: Path) -> OpenedScene:
+        """Open a file; one that is given and named by another is read once.
+
+        Raises:
+            SpecError: E401, it cannot be read or parsed.
+        """
+        where = path.resolve()
+        if where not in self.opened:
+            self.opened[where] = open_file_of_others(path, self.report)
+        return self.opened[where]
 
 
 Reader = Callable[[Sequence[OpenedScene], Context], list[Draft]]

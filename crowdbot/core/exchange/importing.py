@@ -10,7 +10,7 @@ from crowdbot.core.exchange.all_formats import FORMATS
 from crowdbot.core.exchange.checked import check
 from crowdbot.core.exchange.clearing import step_out
 from crowdbot.core.exchange.formats import Context, SceneFormat
-from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.overlaps import enter_in_turn
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.scene import Draft, id_of
@@ -53,8 +53,8 @@ def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Import
             valid scenario; with positions in the files.
     """
     report = Report()
-    opened = [open_file_of_others(path, report) for path in dict.fromkeys(paths)]
     context = Context(report, registry, id_of(name))
+    opened = list({id(file): file for file in map(context.open, paths)}.values())
     scenes: list[Draft] = []
     read: list[str] = []
     for found, files in _by_format(opened).items():

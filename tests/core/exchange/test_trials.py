@@ -20,6 +20,14 @@ def test_a_config_names_trials_which_become_a_suite() -> None:
     assert list(trials) == ["every", "small"]
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_files_that_are_given_and_named_are_read_once(order: int) -> None:
+    files = ["config.xml", "trials/FileOrder.csv", "trials/every.xml", "trials/small.xml"]
+    together, alone = imported(*files[::order]), imported("config.xml")
+    assert sorted(together.ids) == sorted(alone.ids)
+    assert together.report.counts() == alone.report.counts()
+
+
 def test_left_and_right_are_kept() -> None:
     """Their x, y and clockwise degrees are our y, x and counter-clockwise radians."""
     scenario = document_of(imported("trials/small.xml"))["scenario"]

@@ -36,6 +36,14 @@ def test_a_simulation_reads_the_files_that_it_names() -> None:
     assert scenario["environment"]["walls"]["obstacle"]["thickness"] == 0.02
 
 
+@pytest.mark.parametrize("files", [("world.xml", "agents.xml"), ("policies.xml", "world.xml")])
+def test_files_that_are_given_and_named_are_read_once(files: tuple[str, str]) -> None:
+    together, alone = imported(*files), imported("world.xml")
+    assert len(together.ids) == 1
+    assert document_of(together)["scenario"]["crowd"] == document_of(alone)["scenario"]["crowd"]
+    assert together.report.counts() == alone.report.counts()
+
+
 def test_mass_divides_contact_and_forces() -> None:
     policies = document_of(imported("world.xml"))["scenario"]["crowd"]["policies"]
     assert policies["policy_2"]["policy"]["contact_stiffness"] == 50

@@ -9,7 +9,7 @@ from pathlib import Path
 from crowdbot.core.exchange.companions import companion
 from crowdbot.core.exchange.formats import Context
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.dsl.text.diagnostics import Mark
@@ -62,9 +62,9 @@ def find_trials(files: Sequence[OpenedScene], context: Context) -> Trials:
             if named is not None:
                 path = companion(named, file.path, _replaced(named.text(), found))
                 if path.resolve() not in {f.path.resolve() for f in orders}:
-                    orders.append(open_file_of_others(path, context.report))
+                    orders.append(context.open(path))
     for file in orders:
-        _order(file, found, context.report)
+        _order(file, found, context)
     for file in files:
         if "Trial" in file.tags:
             found.add(file)
@@ -96,18 +96,18 @@ def _config(root: Item, found: Trials, report: Report) -> Item | None:
     return named
 
 
-def _order(file: OpenedScene, found: Trials, report: Report) -> None:
+def _order(file: OpenedScene, found: Trials, context: Context) -> None:
     for number, line in enumerate(file.text.split("\n")):
         if not line.strip():
             continue
         item = Item("FileOrder", Mark(file.source, number, 0, max(1, len(line))), line)
         path: Path = companion(item, file.path, _replaced(line, found))
-        report.carried(item, "suite.matrix.trial")
+        context.report.carried(item, "suite.matrix.trial")
         if found.has(path):
             continue
         if len(found.files) == _MOST:
             item.refuse(f"more than {_MOST} trials")
-        trial = open_file_of_others(path, report)
+        trial = context.open(path)
         if "Trial" not in trial.tags:
             item.refuse(f"{path.name} is not a trial")
         found.add(trial)

@@ -9,7 +9,7 @@ from pathlib import Path
 from crowdbot.core.exchange.companions import companion
 from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.opened import OpenedScene, open_file_of_others
+from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, positive
 from crowdbot.core.exchange.scene import Data, Draft, id_of
@@ -62,7 +62,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     report, found = context.report, _Found()
     for file in files:
         for root in file.roots:
-            _collect(root, file.path, found, report)
+            _collect(root, file.path, found, context)
     sets: list[tuple[Policies, Path | None]] = [
         (read_policies(item, report), path) for item, path in found.of("Policies")
     ]
@@ -85,18 +85,20 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     return scenes
 
 
-def _collect(item: Item, path: Path, found: _Found, report: Report) -> None:
-    """Collect an element, those within it and those of the files that it names."""
-    item.used = True
+def _collect(item: Item, path: Path, found: _Found, context: Context) -> None:
+    """Collect an element once, those within it and those of the files that it names."""
+    if any(item is known for known, _ in found.of(item.name)):
+        return
+    report, item.used = context.report, True
     named = item.find("@file")
     if named is not None:
-        other = open_file_of_others(companion(named, path), report)
+        other = context.open(companion(named, path))
         report.carried(named, "(read)")
         for root in other.roots:
             if root.name != item.name:
                 root.refuse(f"'{root.name}' where the file that names it expects '{item.name}'")
             found.named.append(root)
-            _collect(root, other.path, found, report)
+            _collect(root, other.path, found, context)
         return
     found.elements.setdefault(item.name, []).append((item, path))
     if item.name == "Simulation":
@@ -106,7 +108,7 @@ def _collect(item: Item, path: Path, found: _Found, report: Report) -> None:
             if part.name == "Obstacles" and item.name == "Simulation":
                 report.left_out(part, "UMANS itself ignores Obstacles beside World")
             else:
-                _collect(part, path, found, report)
+                _collect(part, path, found, context)
 
 
 def _world(found: _Found, scene: Draft, report: Report) -> None:
