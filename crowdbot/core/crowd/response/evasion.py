@@ -11,6 +11,7 @@ from crowdbot.core.crowd.contact.robot_contact import (
     ROBOT,
     RobotRecord,
     corners_of,
+    extent_of,
     overlap,
 )
 from crowdbot.core.crowd.response.notice import reacts
@@ -24,6 +25,8 @@ from crowdbot.core.types.arrays import Array, Mask
 
 #: No person expects to be clear in less than this, s: one step.
 _SOONEST = 0.25
+#: Share of a distance by which rounding may change its sign.
+_ROUNDING = 1e-9
 #: Relative speed below which nothing happens, m/s.
 _STILL = 1e-3
 #: No person wants less than this, m.
@@ -31,6 +34,10 @@ _LEAST = 0.02
 #: People who hurry to pass first walk at most this much faster than they prefer: 90 % of those
 #: recorded who crossed before a robot of 1 m/s (NavWareSet).
 _HURRY = 1.3
+#: People wait in full for vehicles that are faster than `Human.waiting_speed` by this, m/s.
+_FULLY = 0.3
+#: From 45 degrees between both ways on people wait, from 60 degrees on in full.
+_CROSSING = 2.0
 #: The gap in which a person has to stop is never taken for less than this, m.
 _ROOM = 0.05
 
@@ -149,6 +156,8 @@ def _sidestep(
     if forward > 0.0:
         wx += forward * agents[i].dir_x
         wy += forward * agents[i].dir_y
+    if _recedes(agents, i, robot, outline, wx, wy):
+        return 0.0, 0.0
     speed = math.hypot(wx, wy)
     if speed < _STILL:
         return 0.0, 0.0
@@ -156,8 +165,9 @@ def _sidestep(
     gap, extra = clearance(room, robot, response)
     wanted = robot.body + radius + gap
     give_way, behind = _give_way(robot, ux, uy, extra, response)
+    waits = math.copysign(_waits(agents, i, robot, response), give_way)
     shift, along, first, last, left = _way_round(
-        agents, i, robot, outline, ux, uy, wanted, give_way, behind
+        agents, i, robot, outline, ux, uy, wanted, give_way, behind, waits
     )
     if shift <= 0.0 or last <= 0.0 or first >= response.horizon * speed:
         return 0.0, 0.0
@@ -170,6 +180,20 @@ def _sidestep(
         ex += bx
         ey += by
     return ex, ey
+
+
+@kernel
+def _recedes(
+    agents: People, i: int, robot: RobotRecord, outline: Array, wx: float, wy: float
+) -> bool:
+    """Return True if all of a robot is behind agent i on its relative way: a test without roots.
+
+    Args:
+        wx, wy: velocity relative to the robot, m/s.
+    """
+    dx, dy = robot.x - agents[i].x, robot.y - agents[i].y
+    behind = extent_of(outline) + _ROUNDING * (abs(dx) + abs(dy))
+    return dx * wx + dy * wy < -behind * (abs(wx) + abs(wy))
 
 
 @kernel
@@ -214,6 +238,21 @@ def _give_way(
 
 
 @kernel
+def _waits(agents: People, i: int, robot: RobotRecord, response: DecisionResponse) -> float:
+    """Return the share of a robot's extent that is no longer way to agent i, who waits for it.
+
+    From 0 to 1: 0 for slow robots, and where both go the same or opposite way within 45 degrees.
+    """
+    speed2 = robot.vx * robot.vx + robot.vy * robot.vy
+    if speed2 <= response.waiting_speed * response.waiting_speed:
+        return 0.0
+    along = robot.vx * agents[i].dir_x + robot.vy * agents[i].dir_y
+    crossing = 1.0 - 2.0 * along * along / speed2
+    fast = (math.sqrt(speed2) - response.waiting_speed) / _FULLY
+    return min(1.0, fast) * min(1.0, max(0.0, _CROSSING * crossing))
+
+
+@kernel
 def _way_round(
     agents: People,
     i: int,
@@ -224,6 +263,7 @@ def _way_round(
     wanted: float,
     give_way: float,
     behind: float,
+    waits: float,
 ) -> tuple[float, float, float, float, bool]:
     """Place of an outline beside the ray of agent i.
 
@@ -232,6 +272,7 @@ def _way_round(
         wanted: required distance of the outline's corners from the ray, m.
         give_way: extra way, m, that the agent accepts to pass on the left; negative: on the right.
         behind: extra distance if it passes on the side where it gives way, m.
+        waits: share of the outline's extent that is added to ``give_way``, with its sign.
 
     Returns:
         required shift; position along the ray of the decisive corner; start of the expanded outline
@@ -254,7 +295,7 @@ def _way_round(
             right, abreast_right = -across, along
         first = min(first, along - math.sqrt(max(0.0, wanted * wanted - across * across)))
         last = max(last, along)
-    if left < right + give_way:
+    if left < right + give_way + waits * (left + right):
         return left + wanted + (behind if give_way > 0.0 else 0.0), abreast_left, first, last, True
     return right + wanted + (behind if give_way < 0.0 else 0.0), abreast_right, first, last, False
 

@@ -42,6 +42,7 @@ class DecisionResponse:
     clearance_speed: float
     most_clearance: float
     yield_time: float
+    waiting_speed: float
     speeding_up: float
     intent: float
 
@@ -93,6 +94,8 @@ class Human:
         most_clearance: largest desired gap by growth, m.
         yield_time: people pass behind a crossing robot, even by a longer way, if it is longer by
             less than the robot drives in this time, s.
+        waiting_speed: people wait for a faster robot that crosses their way, however long it is,
+            m/s.
         speeding_up: largest acceleration in one's own direction by which people evade, m/s^2.
         intent: time over which people's desired acceleration counts in their prediction, s: who
             waits expects to walk on.
@@ -123,6 +126,7 @@ class Human:
     clearance_speed: float = 1.0
     most_clearance: float = 0.0
     yield_time: float = 0.0
+    waiting_speed: float = math.inf
     speeding_up: float = math.inf
     intent: float = 0.0
 
@@ -153,6 +157,7 @@ class Human:
             clearance_speed=self.clearance_speed,
             most_clearance=self.most_clearance,
             yield_time=self.yield_time,
+            waiting_speed=self.waiting_speed,
             speeding_up=self.speeding_up,
             intent=self.intent,
         )

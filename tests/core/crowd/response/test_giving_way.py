@@ -93,6 +93,39 @@ def test_before_who_gives_way_passed_first() -> None:
     assert _crossing(-0.2, 3.0, Human()).people[0, s.X] > -1.1
 
 
+def _passes_first(speed: float, heading: float, early: float, response: Human) -> bool:
+    """Cross the way of a car of 4.4 m whose front is ``early`` nearer than where both meet."""
+    ahead = np.array([math.cos(heading), math.sin(heading)])
+    at = -(4.0 * speed + early) * ahead
+    car = robot(*at, *(speed * ahead), 0.0, heading, 0.0)
+    meeting = Meeting([(-5.2, 0.0)], [(1.3, 0.0)], [car], outline=2.0 * CART, response=response)
+
+    def before() -> bool:
+        away = meeting.people[0, :2] - meeting.robots[0, :2]
+        return bool(ahead[0] * away[1] - ahead[1] * away[0] > 0.0)  # to the left of its way
+
+    meeting.run(9.0, until=lambda: not before())
+    return float((meeting.people[0, :2] - meeting.robots[0, :2]) @ ahead) > 0.0
+
+
+@pytest.mark.parametrize("heading", [60.0, 90.0, 120.0])
+def test_people_wait_for_all_of_a_vehicle_and_not_for_a_robot(heading: float) -> None:
+    at, never = math.radians(heading), replace(WAY, waiting_speed=math.inf)
+    assert not any(_passes_first(v, at, 2.0, WAY) for v in (1.8, 3.0, 4.5))
+    assert _passes_first(1.8, at, 2.0, never)
+    assert _passes_first(1.8, at, 5.0, WAY)  # well before it
+    assert _passes_first(1.2, at, 2.0, WAY)
+
+
+def test_below_the_speed_of_vehicles_nothing_is_waited_for() -> None:
+    def state(speed: float, response: Human) -> bytes:
+        return _crossing(-0.9, speed, response, 4.0).state
+
+    never = replace(WAY, waiting_speed=math.inf)
+    assert state(1.2, WAY) == state(1.2, never)
+    assert state(1.6, WAY) != state(1.6, never)
+
+
 def test_a_person_far_ahead_of_a_vehicle_is_not_stopped() -> None:
     meeting = _crossing(-3.0, 3.0, WAY)
     assert meeting.people[0, s.X] > 1.5
