@@ -38,13 +38,13 @@ GROUP_FIELDS = (
     "members", "choices", "numbers", "traits", "settings", "random", "near", "found", "deciding",
     "discs", "table", "functions", "weights", "candidates", "regular", "ranked", "indices", "first",
     "frame", "world", "active", "tried", "grid_frame", "grid_first", "grid_near", "chosen", "who",
-    "shown",
+    "shown", "starts", "order", "box",
 )  # fmt: skip
 (
     G_MEMBERS, G_CHOICES, G_NUMBERS, G_TRAITS, G_SETTINGS, G_RANDOM, G_NEAR, G_FOUND, G_DECIDING,
     G_DISCS, G_TABLE, G_FUNCTIONS, G_WEIGHTS, G_CANDIDATES, G_REGULAR, G_RANKED, G_INDICES, G_FIRST,
     G_FRAME, G_WORLD, G_ACTIVE, G_TRIED, G_GRID_FRAME, G_GRID_FIRST, G_GRID_NEAR, G_CHOSEN, G_WHO,
-    G_SHOWN,
+    G_SHOWN, G_STARTS, G_ORDER, G_BOX,
 ) = range(len(GROUP_FIELDS))  # fmt: skip
 
 #: Entries of a group's ``choices``, integers, and of its ``numbers``.
@@ -166,7 +166,7 @@ def _group_table(
         functions=functions, weights=costs.weights,
         candidates=search.candidates, regular=search.regular,
         ranked=search.ranked, indices=search.indices, first=search.first,
-        grid_frame=grid.frame, grid_first=grid.first, grid_near=grid.near,
+        grid_frame=grid.frame, grid_first=grid.first, grid_near=grid.near, box=np.zeros(4),
     )  # fmt: skip
     pool.put(
         own, **scratch, frame=search.frame, world=search.world, active=search.active,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from crowdbot.core.batch import crowd_tables as c
 from crowdbot.core.batch.array_tables import floats1, floats2, floats3, ints1, ints2, mask1
 from crowdbot.core.crowd.contact.robot_contact import R_SEEN, R_W, RVX, RVY
@@ -15,12 +13,12 @@ from crowdbot.core.crowd.velocity_search.neighbours import DISC
 from crowdbot.core.crowd.velocity_search.records import AGENT, NEIGHBOUR, WALL
 from crowdbot.core.crowd.velocity_search.sampling import choose_velocities
 from crowdbot.core.crowd.velocity_search.surroundings import SETTINGS, TRAITS, sort_surroundings
-from crowdbot.core.support.compiling.compile import array_kernel, kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import as_rows
 from crowdbot.core.types.arrays import Array, Indices
 
 
-@array_kernel
+@kernel
 def decide(crowd: Indices, groups: Indices, now: float) -> bool:
     """Set the desired accelerations of all people, as `CrowdEngine` does.
 
@@ -65,7 +63,7 @@ def _look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
             seen[r, k] = 0.0 if hidden else robots[r, k]
 
 
-@array_kernel
+@kernel
 def _decide_group(people: People, crowd: Indices, group: Indices, seen: Array) -> bool:
     """Set the accelerations of one group; return False if a cost function returned NaN."""
     choices, numbers = ints1(group, c.G_CHOICES), floats1(group, c.G_NUMBERS)
@@ -88,12 +86,14 @@ def _decide_group(people: People, crowd: Indices, group: Indices, seen: Array) -
     deciding = as_rows(floats1(group, c.G_DECIDING), AGENT)
     deciding[0].broken = 0.0
     reach = numbers[c.REACH]
-    count, height, low, starts = sort_surroundings(
+    starts = ints2(group, c.G_STARTS)
+    count, height, low, strips = sort_surroundings(
         position, velocity, goal, floats1(crowd, c.AVOIDED), floats1(crowd, c.PREFERRED), present,
-        shown, pillars, np.zeros(4), True, reach, as_rows(floats1(group, c.G_DISCS), DISC), table,
+        shown, pillars, floats1(group, c.G_BOX), True, reach,
+        as_rows(floats1(group, c.G_DISCS), DISC), table, starts, ints2(group, c.G_ORDER),
     )  # fmt: skip
     choose_velocities(
-        table[:count], starts, low, height, who, goal, floats2(crowd, c.WALLS),
+        table[:count], starts[: strips + 1], low, height, who, goal, floats2(crowd, c.WALLS),
         floats1(group, c.G_GRID_FRAME), ints1(group, c.G_GRID_FIRST), ints1(group, c.G_GRID_NEAR),
         reach, as_rows(floats1(group, c.G_TRAITS), TRAITS),
         as_rows(floats1(group, c.G_SETTINGS), SETTINGS), floats1(group, c.G_RANDOM),

@@ -23,7 +23,7 @@ from crowdbot.core.crowd.contact.robot_contact import RobotRecord
 from crowdbot.core.geometry.polygon import entry_fraction, inside
 from crowdbot.core.sim.contacts.outline_gap import outline_gap
 from crowdbot.core.sim.control.kinematic import free_share
-from crowdbot.core.support.compiling.compile import array_kernel, inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import as_record
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Indices
@@ -59,7 +59,7 @@ def follow(drive: DriveStateRecord, limits: DriveLimitsRecord) -> None:
     drive.w = _slew(drive.w, drive.wanted_w, limits.dw)
 
 
-@array_kernel
+@kernel
 def move(robot: RobotRecord, drive: DriveStateRecord, own: Indices) -> None:
     """Move a robot for one tick at the command of the tick before; walls stop it.
 
@@ -93,7 +93,7 @@ def move(robot: RobotRecord, drive: DriveStateRecord, own: Indices) -> None:
     follow(drive, limits)
 
 
-@array_kernel
+@kernel
 def _share(
     drive: DriveStateRecord, limits: DriveLimitsRecord, own: Indices,
     x: float, y: float, yaw: float, crab: float, way: float, turn: float,
@@ -123,7 +123,7 @@ def _arc(robot: RobotRecord, heading: float, way: float, turn: float) -> None:
     robot.y += chord * math.sin(heading + half)
 
 
-@array_kernel
+@kernel
 def watch_goal(
     robot: RobotRecord, drive: DriveStateRecord, own: Indices, x0: float, y0: float
 ) -> None:

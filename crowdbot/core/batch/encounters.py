@@ -26,6 +26,8 @@ _SOONEST, _MOST = 0.5, 3.0
 _STILL = 1e-3
 #: People farther off than this have no part in a step, m.
 _SIGHT = 8.0
+#: More than rounding.
+_CLEARLY = 1.0 + 1e-9
 
 
 @kernel
@@ -45,6 +47,8 @@ def meet(
         if people[i].waiting != PRESENT:
             continue
         px, py = people[i].x - robot.x, people[i].y - robot.y
+        if px * px + py * py > _CLEARLY * max(_SIGHT, drive.gap) ** 2:
+            continue  # roots are expensive
         away = math.hypot(px, py)
         if away > _SIGHT or away == 0.0:
             drive.gap = min(drive.gap, away)

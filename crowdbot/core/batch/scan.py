@@ -19,7 +19,7 @@ from crowdbot.core.crowd.velocity_search.counter_rng import uniform
 from crowdbot.core.sensing.appearance_model import place_looks, place_things
 from crowdbot.core.sensing.body_model import place_people
 from crowdbot.core.sensing.raycast_columns import cast_columns
-from crowdbot.core.support.compiling.compile import array_kernel, kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows, as_record
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array, Indices
@@ -36,7 +36,7 @@ def is_due(tick: int, rate: float) -> bool:
     return bool(now > math.floor((tick - 1) * rate / TICKS_PER_SECOND + _SLACK))
 
 
-@array_kernel
+@kernel
 def scan(
     own: Indices, people: People, robots: Rows[RobotRecord], tick: int, key: np.uint64
 ) -> None:

@@ -23,7 +23,7 @@ from crowdbot.core.crowd.state import (
 )
 from crowdbot.core.crowd.step import tick
 from crowdbot.core.crowd.traits import TRAITS
-from crowdbot.core.support.compiling.compile import array_kernel, free_kernel
+from crowdbot.core.support.compiling.compile import free_kernel, kernel
 from crowdbot.core.support.records import as_record, as_rows
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array, Indices, Mask
@@ -96,7 +96,7 @@ def meet_people(w: int, worlds: Indices, crowds: Indices, drives: Array) -> None
         meet(drive, rows[r], outlines, r, people, traits, worlds[w, PERIOD] * TICK)
 
 
-@array_kernel
+@kernel
 def _advance_people(world: Indices, crowd: Indices, groups: Indices) -> bool:
     """Decide if that is due, then advance people and contacts by a tick."""
     counts, now, sound = ints1(crowd, c.COUNTS), world[NOW], True
@@ -116,7 +116,7 @@ def _advance_people(world: Indices, crowd: Indices, groups: Indices) -> bool:
     return sound
 
 
-@array_kernel
+@kernel
 def _advance_robots(world: Indices, crowd: Indices, robots: Indices, drives: Array) -> None:
     """Move all robots by a tick; note who was touched, who was stopped and who arrived."""
     flat, people = floats1(crowd, c.FLAT), world[PEOPLE]
@@ -135,7 +135,7 @@ def _advance_robots(world: Indices, crowd: Indices, robots: Indices, drives: Arr
         watch_goal(rows[r], drive, robots[r], x, y)
 
 
-@array_kernel
+@kernel
 def _read(world: Indices, crowd: Indices, scanners: Indices) -> None:
     """Read a world's scanners that are due."""
     people = as_rows(

@@ -137,13 +137,14 @@ def _advance(
         ax, ay = stop_short(agents, i, traits.radius, robots, outlines, world.response[0])
     ax += agents[i].push_x + reaction[i, 0] / traits.mass
     ay += agents[i].push_y + reaction[i, 1] / traits.mass
-    step = _move(agents, i, traits.max_speed, ax, ay, dt)
-    if min(room, traits.radius) < traits.limit + step and traits.limit > 0.0:
+    speed = _move(agents, i, traits.max_speed, ax, ay, dt)
+    if min(room, traits.radius) < traits.limit + speed * dt and traits.limit > 0.0:
         keep_out(
             agents, i, x, y, traits.limit, world.walls, world.frame, world.first, world.near,
             discs, int(world.rules[0].pillars),
         )  # fmt: skip
-    _look_ahead(agents, i, dt)
+        speed = math.hypot(agents[i].vx, agents[i].vy)
+    _look_ahead(agents, i, speed, dt)
     if traits.at_goal == PORTAL:
         _through(agents, i, x, y, world.out[int(traits.flow)], now, dt)
     elif agents[i].on_trip != 0.0:
@@ -205,7 +206,7 @@ def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: floa
     """Apply the desired acceleration up to the largest speed; pushes (ax, ay) may exceed it.
 
     Returns:
-        length of the step, m.
+        speed, m/s.
     """
     vx = agents[i].vx + agents[i].ax * dt
     vy = agents[i].vy + agents[i].ay * dt
@@ -216,13 +217,12 @@ def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: floa
     agents[i].vx, agents[i].vy = vx + ax * dt, vy + ay * dt
     agents[i].x += agents[i].vx * dt
     agents[i].y += agents[i].vy * dt
-    return math.hypot(agents[i].vx, agents[i].vy) * dt
+    return math.hypot(agents[i].vx, agents[i].vy)
 
 
 @kernel
-def _look_ahead(agents: People, i: int, dt: float) -> None:
-    """Count the distance walked, and turn to where agent i walks."""
-    speed = math.hypot(agents[i].vx, agents[i].vy)
+def _look_ahead(agents: People, i: int, speed: float, dt: float) -> None:
+    """Count the distance walked, and turn to where agent i walks with some speed."""
     agents[i].walked += speed * dt
     if speed > _TURNS_ABOVE:
         agents[i].dir_x, agents[i].dir_y = agents[i].vx / speed, agents[i].vy / speed

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.support.compiling.compile import array_kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 
-@array_kernel
+@kernel
 def inside(zone: Array, x: float, y: float) -> bool:
     """Return True if a point lies in a polygon; even-odd rule."""
     odd = False
@@ -20,7 +20,7 @@ def inside(zone: Array, x: float, y: float) -> bool:
     return odd
 
 
-@array_kernel
+@kernel
 def entry_fraction(zone: Array, x0: float, y0: float, x1: float, y1: float) -> float:
     """Fraction of the way from p0 to p1 at which it first crosses the border.
 
@@ -39,7 +39,7 @@ def entry_fraction(zone: Array, x0: float, y0: float, x1: float, y1: float) -> f
     return first
 
 
-@array_kernel
+@kernel
 def distance_to(zone: Array, x: float, y: float) -> float:
     """Distance from a point to a polygon, zero inside, m."""
     if inside(zone, x, y):

@@ -28,17 +28,26 @@ def stable_order(values: Array) -> Order:
         (N,) indices, from the least to the greatest.
     """
     count = values.shape[0]
-    order, merged = np.empty(count, np.int64), np.empty(count, np.int64)
+    order = np.empty(count, np.int64)
+    write_stable_order(values, order, np.empty(count, np.int64))
+    return order
+
+
+@kernel
+def write_stable_order(values: Array, order: Order, scratch: Order) -> None:
+    """Write the `stable_order` of ``values`` (N,) to ``order`` (N,); ``scratch`` is as large."""
+    count, rounds = values.shape[0], 0
+    while _SHORT << rounds < count:
+        rounds += 1
+    source, target = (order, scratch) if rounds % 2 == 0 else (scratch, order)
     for first in range(0, count, _SHORT):
-        _sort_short(values, order, first, min(first + _SHORT, count))
-    width = _SHORT
-    while width < count:
+        _sort_short(values, source, first, min(first + _SHORT, count))
+    for k in range(rounds):
+        width = _SHORT << k
         for first in range(0, count, 2 * width):
             middle = min(first + width, count)
-            _merge(values, order, merged, first, middle, min(middle + width, count))
-        order, merged = merged, order
-        width *= 2
-    return order
+            _merge(values, source, target, first, middle, min(middle + width, count))
+        source, target = target, source
 
 
 @kernel
@@ -70,4 +79,4 @@ def _merge(values: Array, order: Order, merged: Order, first: int, middle: int, 
             j += 1
 
 
-__all__ = ["stable_order"]
+__all__ = ["stable_order", "write_stable_order"]

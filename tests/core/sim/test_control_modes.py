@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.crowd import state as s
+from crowdbot.core.sim.contacts.outline_gap import outline_gap
 from crowdbot.core.sim.control.kinematic import arc, free_share
 from crowdbot.core.support.ticks import TICK
 from tests.core.sim.sim_worlds import Drive, alone, constant, person, rig, scenario
@@ -129,6 +131,7 @@ def test_a_patient_driver_goes_on() -> None:
 
 
 SMALL = st.floats(-3.0, 3.0)
+NO_OUTLINE = np.zeros((0, 2))
 
 
 @given(x=SMALL, y=SMALL, yaw=SMALL, v=SMALL, w=SMALL, first=st.floats(0.1, 2.0))
@@ -157,6 +160,44 @@ def test_nobody_enters_a_wall(yaw: float, way: float, turn: float, gap: float) -
     assert (share < 1.0) == blocked or abs(arc(x, y, yaw, way, turn, 1.0)[0] - 4.8) < 1e-7
     if blocked:
         assert new_x == pytest.approx(4.8, abs=1e-6)
+
+
+def _plainly_free(
+    walls: Any, pillars: Any, outline: Any, radius: float, motion: tuple[float, ...]
+) -> float:
+    """`free_share` with sines in each step, and the whole gap."""
+    x, y, yaw, crab, way, turn = motion
+
+    def gap_after(share: float) -> float:
+        half = 0.5 * (share * turn)
+        chord = share * way * (math.sin(half) / half if half != 0.0 else 1.0)
+        at = x + chord * math.cos(yaw + crab + half), y + chord * math.sin(yaw + crab + half)
+        return float(outline_gap(walls, pillars, outline, *at, yaw + share * turn))
+
+    least = min(radius - 1e-9, outline_gap(walls, pillars, outline, x, y, yaw) - 1e-13)
+    if gap_after(1.0) >= least:
+        return 1.0
+    free, blocked = 0.0, 1.0
+    for _ in range(40):
+        share = 0.5 * (free + blocked)
+        free, blocked = (share, blocked) if gap_after(share) >= least else (free, share)
+    return free
+
+
+@given(
+    yaw=SMALL, crab=st.sampled_from([0.0, 0.4]), way=st.floats(0.0, 0.01),
+    turn=st.floats(-0.04, 0.04), gap=st.floats(-0.001, 0.01), box=st.booleans(),
+    x=st.sampled_from([0.0, 17.3, -400.0]),
+)  # fmt: skip
+def test_the_free_share_has_the_bits_of_a_plain_search(
+    yaw: float, crab: float, way: float, turn: float, gap: float, box: bool, x: float
+) -> None:
+    outline = np.array([[0.2, 0.1], [-0.2, 0.1], [-0.2, -0.1], [0.2, -0.1]]) if box else NO_OUTLINE
+    radius = 1e-6 if box else 0.2
+    walls = np.array([[x + 0.2 + gap, -9.0, x + 0.25 + gap, 9.0], [x - 9.0, 0.5, x + 9.0, 0.5]])
+    place = walls, np.array([[x, -0.4, 0.1]]), outline, radius
+    motion = x, 0.0, yaw, crab, way, turn
+    assert free_share(*place, *motion) == _plainly_free(*place, motion)
 
 
 def test_modes_see_the_same_and_repeat_bit_by_bit() -> None:

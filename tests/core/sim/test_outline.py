@@ -14,7 +14,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import ROBOT, from_outline, robot_contact
 from crowdbot.core.crowd.traits import TRAITS
 from crowdbot.core.geometry.footprint import Footprint, body_side
-from crowdbot.core.sim.contacts.outline_gap import outline_gap, touched_at
+from crowdbot.core.sim.contacts.outline_gap import is_clear, outline_gap, touched_at
 from crowdbot.core.support.records import rows_in, rows_of
 from tests.core.sim.sim_worlds import Array, Drive, alone, constant, person, rig, scenario
 
@@ -153,6 +153,22 @@ def test_walls_within_and_pillars_beside_an_outline() -> None:
         pytest.approx((0.8, 0.0))
     )
     assert outline_gap(none, NO_PILLARS, BOX, 0.0, 0.0, 0.0) == math.inf
+
+
+@given(shape=SHAPES, x=PLACE, y=PLACE, yaw=st.floats(-3.0, 3.0), seed=st.integers(0, 99))
+def test_far_walls_are_left_out_without_a_difference(
+    shape: str, x: float, y: float, yaw: float, seed: int
+) -> None:
+    corners, rng = OUTLINES[shape][0], np.random.default_rng(seed)
+    walls, pillars = rng.uniform(-3.0, 3.0, (8, 4)), rng.uniform(0.1, 3.0, (2, 3))
+    each = [outline_gap(walls[k : k + 1], NO_PILLARS, corners, x, y, yaw) for k in range(8)]
+    each.append(outline_gap(walls[:0], pillars, corners, x, y, yaw))
+    gap = outline_gap(walls, pillars, corners, x, y, yaw)
+    assert gap == min(each)
+    extent = max(map(math.hypot, *corners.T), default=0.0)
+    for least in (gap, np.nextafter(gap, math.inf), gap - 0.3, gap + 0.3):
+        c, s = math.cos(yaw), math.sin(yaw)
+        assert is_clear(walls, pillars, corners, extent, x, y, c, s, least) == (gap >= least)
 
 
 def _body(shape: str) -> dict[str, Any]:

@@ -60,11 +60,8 @@ def push_apart(
         placed: (N,) scratch.
         room: (N,) output: as of `crowdbot.core.crowd.parameters.Scratch`.
     """
-    largest = 0.0
-    for i in range(agents.shape[0]):
-        largest = max(largest, traits[i].radius)
     _sort_along_x(agents, order)
-    count = _place(agents, traits, order, placed)
+    count, largest = _place(agents, traits, order, placed)
     for a in range(count):
         cell = cell_of(frame, placed[a].x, placed[a].y)
         gap = math.inf
@@ -115,9 +112,13 @@ def _place(
     traits: Rows[TraitsRecord],
     order: NDArray[np.int64],
     placed: Rows[PlacedRecord],
-) -> int:
-    """Write those present to ``placed``, in order, not pushed yet. Returns how many."""
-    count = 0
+) -> tuple[int, float]:
+    """Write those present to ``placed``, in order, not pushed yet.
+
+    Returns:
+        how many, and the largest radius among them, m.
+    """
+    count, largest = 0, 0.0
     for i in order:
         if agents[i].waiting != 0.0:
             agents[i].push_x = agents[i].push_y = 0.0
@@ -125,8 +126,9 @@ def _place(
         placed[count].x, placed[count].y = agents[i].x, agents[i].y
         placed[count].radius, placed[count].stiffness = traits[i].radius, traits[i].push
         placed[count].push_x, placed[count].push_y, placed[count].row = 0.0, 0.0, i
+        largest = max(largest, traits[i].radius)
         count += 1
-    return count
+    return count, largest
 
 
 @kernel

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
-from crowdbot.core.support.compiling.compile import array_kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array
 
@@ -18,7 +18,7 @@ def most_discs(people: int, others: int, periodic: bool) -> int:
     return people * (9 if periodic else 1) + others
 
 
-@array_kernel
+@kernel
 def write_discs(
     position: Array,
     velocity: Array,
@@ -78,7 +78,7 @@ def write_discs(
     return count
 
 
-@array_kernel
+@kernel
 def _write_images(
     discs: Rows[DiscRecord], people: int, count: int, box: Array, diagonal: bool, reach: float
 ) -> int:

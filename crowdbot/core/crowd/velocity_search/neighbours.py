@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.velocity_search.records import NeighbourRecord, WallRecord
 from crowdbot.core.geometry.segment_grid import cell_of
-from crowdbot.core.support.compiling.compile import array_kernel, inline_kernel, kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows, record_type
-from crowdbot.core.support.stable_order import stable_order
+from crowdbot.core.support.stable_order import write_stable_order
 from crowdbot.core.types.arrays import Array, Indices
 
 
@@ -38,6 +38,8 @@ class DiscRecord:
 DISC = record_type(DiscRecord)
 _NARROWEST = 1.0  # strip, m
 _MOST_STRIPS = 512
+#: Rows of scratch for `Starts`.
+START_ROWS = _MOST_STRIPS + 2
 
 Starts = NDArray[np.int64]
 
@@ -52,32 +54,38 @@ def strip_height(discs: Rows[DiscRecord], count: int, reach: float) -> float:
     return max(height, (high - low) / (_MOST_STRIPS - 1))
 
 
-@array_kernel
+@kernel
 def sort_discs(
-    discs: Rows[DiscRecord], count: int, height: float, table: Rows[DiscRecord]
-) -> tuple[float, Starts]:
+    discs: Rows[DiscRecord], count: int, height: float, table: Rows[DiscRecord], starts: Starts,
+    order: Indices,
+) -> tuple[float, int]:  # fmt: skip
     """Write the first ``count`` discs to ``table``, strip by strip, each sorted by x.
 
     The order depends on the discs' positions, not on their order in ``discs``.
 
+    Args:
+        starts: (>= `START_ROWS`, 2) output: per strip and once after the last, its first row and
+            the start of the last search in it, which speeds up the next one.
+        order: (2, >= B) scratch.
+
     Returns:
-        lower border of the first strip (m); then, per strip and once after the last, its first row
-        and the start of the last search in it, which speeds up the next one.
+        lower border of the first strip (m), and number of strips.
     """
     low, high = np.inf, -np.inf
     for b in range(count):
         low, high = min(low, discs[b].y), max(high, discs[b].y)
     strips = int((high - low) / height) + 1 if count else 0
-    starts = np.zeros((strips + 1, 2), np.int64)
-    order = stable_order(discs[:count]["x"])
+    starts[: strips + 1] = 0
+    by_x = order[0]
+    write_stable_order(discs[:count]["x"], by_x, order[1])
     for b in range(1, count):  # equal x: by y
         a = b
         while (
             a > 0
-            and discs[order[a - 1]].x == discs[order[a]].x
-            and discs[order[a - 1]].y > discs[order[a]].y
+            and discs[by_x[a - 1]].x == discs[by_x[a]].x
+            and discs[by_x[a - 1]].y > discs[by_x[a]].y
         ):
-            order[a - 1], order[a] = order[a], order[a - 1]
+            by_x[a - 1], by_x[a] = by_x[a], by_x[a - 1]
             a -= 1
     for b in range(count):
         starts[int((discs[b].y - low) / height) + 1, 0] += 1
@@ -85,13 +93,14 @@ def sort_discs(
         starts[s + 1, 0] += starts[s, 0]
     for s in range(strips + 1):
         starts[s, 1] = starts[s, 0]
-    place = starts[:, 0].copy()
     for a in range(count):
-        b = order[a]
+        b = by_x[a]
         strip = int((discs[b].y - low) / height)
-        table[place[strip]] = discs[b]
-        place[strip] += 1
-    return low, starts
+        table[starts[strip, 1]] = discs[b]
+        starts[strip, 1] += 1
+    for s in range(strips + 1):
+        starts[s, 1] = starts[s, 0]
+    return low, strips
 
 
 @inline_kernel
@@ -170,6 +179,7 @@ def gather_walls(
 
 __all__ = [
     "DISC",
+    "START_ROWS",
     "DiscRecord",
     "Starts",
     "gather",

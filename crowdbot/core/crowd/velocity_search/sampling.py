@@ -55,7 +55,8 @@ from crowdbot.core.crowd.velocity_search.surroundings import (
     describe,
 )
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
-from crowdbot.core.support.compiling.compile import kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
+from crowdbot.core.support.prefetch import prefetch
 from crowdbot.core.support.records import Rows, rows_of
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
@@ -230,6 +231,8 @@ def choose_velocities(
     options = FanOptions(base, direction, radius, half, drawn)
     unit = candidates
     for b in range(table.shape[0]):
+        if tabulated and b + 1 < table.shape[0]:
+            _fetch_table(int(table[b + 1].index), ranked, indices, first)
         i = describe(around, b)
         if i < 0:
             continue
@@ -266,6 +269,23 @@ def choose_velocities(
             c = indices[i, place] if tabulated and not ordered else place
             first[i] = place
         chosen[i, 0], chosen[i, 1] = in_world(frame, unit, c)
+
+
+@inline_kernel
+def _fetch_table(i: int, ranked: Array, indices: Indices, first: Indices) -> None:
+    """Load what the search of agent i reads first, while the one before it decides."""
+    if i < 0:
+        return
+    bound, x, y, start = ranked[i, 0], ranked[i, 1], ranked[i, 2], first[i]
+    for k in (0, 8, 16):
+        prefetch(bound, k)
+        prefetch(x, k)
+        prefetch(y, k)
+    prefetch(bound, 32)
+    prefetch(bound, start)
+    prefetch(x, start)
+    prefetch(y, start)
+    prefetch(indices[i], start)
 
 
 @kernel

@@ -19,7 +19,7 @@ from crowdbot.core.crowd.velocity_search.neighbours import (
     strip_height,
 )
 from crowdbot.core.crowd.velocity_search.records import AgentRecord, NeighbourRecord, WallRecord
-from crowdbot.core.support.compiling.compile import array_kernel, inline_kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows, record_type
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
@@ -92,17 +92,18 @@ class Surroundings(NamedTuple):
     deciding: Rows[AgentRecord]
 
 
-@array_kernel
+@kernel
 def sort_surroundings(
     position: Array, velocity: Array, goal: Array, radius: Array, preferred: Array, present: Mask,
     robots: Array, pillars: Array, box: Array, diagonal: bool, reach: float,
-    discs: Rows[DiscRecord], table: Rows[DiscRecord],
-) -> tuple[int, float, float, Starts]:  # fmt: skip
+    discs: Rows[DiscRecord], table: Rows[DiscRecord], starts: Starts, order: Indices,
+) -> tuple[int, float, float, int]:  # fmt: skip
     """Write all discs to ``table``, sorted into strips.
 
     Args:
         position to discs: as in `neighbour_discs.write_discs`.
         table: as ``discs``.
+        starts, order: as in `neighbours.sort_discs`.
 
     Returns:
         number of discs, the strips' height, and the result of `neighbours.sort_discs`.
@@ -112,15 +113,17 @@ def sort_surroundings(
         discs,
     )  # fmt: skip
     height = strip_height(discs, count, reach)
-    low, starts = sort_discs(discs, count, height, table)
-    return count, height, low, starts
+    low, strips = sort_discs(discs, count, height, table, starts, order)
+    return count, height, low, strips
 
 
 @inline_kernel
 def wall_distance(around: Surroundings) -> float:
     """Return the centre distance beyond which no wall matters to the agent that decides, m."""
     settings, agent = around.settings[0], around.deciding[0]
-    speed = max(agent.fastest, agent.preferred, math.hypot(agent.vx, agent.vy))
+    speed = max(agent.fastest, agent.preferred)
+    if not is_clearly_shorter(agent.vx, agent.vy, speed):
+        speed = max(speed, math.hypot(agent.vx, agent.vy))
     return min(around.reach, settings.wall_metres + settings.wall_seconds * speed)
 
 

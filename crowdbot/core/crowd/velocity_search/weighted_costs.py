@@ -36,7 +36,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
 from crowdbot.core.crowd.velocity_search.minstd import seeds
 from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs
-from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
+from crowdbot.core.crowd.velocity_search.neighbours import DISC, START_ROWS, DiscRecord, Starts
 from crowdbot.core.crowd.velocity_search.records import (
     AGENT,
     NEIGHBOUR,
@@ -55,7 +55,7 @@ from crowdbot.core.crowd.velocity_search.surroundings import (
 )
 from crowdbot.core.geometry.segment_grid import SegmentGrid, grid_of
 from crowdbot.core.support.records import Rows, rows_of
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Indices
 
 _Addresses = NDArray[np.intp]
 _NO_BOX = np.zeros(4)
@@ -81,6 +81,7 @@ class DecisionTables(NamedTuple):
     Attributes:
         discs, table, near, found, deciding, settings: as of `Surroundings`; ``discs`` are those of
             ``table`` before sorting.
+        starts, order: for `neighbours.sort_discs`.
     """
 
     discs: Rows[DiscRecord]
@@ -89,6 +90,8 @@ class DecisionTables(NamedTuple):
     found: Rows[WallRecord]
     deciding: Rows[AgentRecord]
     settings: Rows[SettingsRecord]
+    starts: Starts
+    order: Indices
 
 
 class WeightedCosts:
@@ -144,6 +147,7 @@ class WeightedCosts:
         self._largest_seen, self._reach = math.nan, 0.0
         self._grid: tuple[Array, float, SegmentGrid] | None = None
         self._discs, self._found = rows_of(0, DISC), rows_of(0, WALL)
+        self._starts = np.zeros((START_ROWS, 2), np.int64)
         self._make_room(1, 0)
 
     def reach(self, view: CrowdView) -> float:
@@ -201,8 +205,9 @@ class WeightedCosts:
         self._make_room(discs, walls)
         self._time_step[0] = dt
         return DecisionTables(
-            self._discs, self._table, self._near, self._found, self._deciding, self._settings
-        )
+            self._discs, self._table, self._near, self._found, self._deciding, self._settings,
+            self._starts, self._order,
+        )  # fmt: skip
 
     def surroundings(self, view: CrowdView) -> Surroundings:
         """Sort all discs of a view, and return the data for compiled loops.
@@ -216,16 +221,16 @@ class WeightedCosts:
             ),
             walls,
         )
-        count, height, low, starts = sort_surroundings(
+        count, height, low, strips = sort_surroundings(
             view.position, view.velocity, view.goal, view.agents.avoided_radius,
             view.agents.preferred_speed, view.present, view.robot, view.pillars,
             _NO_BOX if boundary is None else np.array(boundary), view.diagonal, reach,
-            self._discs, self._table,
+            self._discs, self._table, self._starts, self._order,
         )  # fmt: skip
         self._time_step[0], self._broken[0] = view.dt, 0.0
         grid = self.wall_grid(view.walls, self._largest_seen)
         return Surroundings(
-            self._table[:count], starts, low, height,
+            self._table[:count], self._starts[: strips + 1], low, height,
             view.present if view.decides is None else view.present & view.decides,
             view.goal, view.walls, *grid, reach, self.traits,
             self._settings, self.random, self._near, self._found, self._deciding,
@@ -235,6 +240,7 @@ class WeightedCosts:
         if self._discs.shape[0] < discs or self._found.shape[0] < walls:
             self._discs, self._table = rows_of(discs, DISC), rows_of(discs, DISC)
             self._near, self._found = rows_of(discs, NEIGHBOUR), rows_of(walls, WALL)
+            self._order = np.zeros((2, discs), np.int64)
             self.work = np.zeros((len(self.compiled), work_rows(discs + walls), WORK_COLUMNS))
             self.functions[:, WORK] = layers(self.work)
 

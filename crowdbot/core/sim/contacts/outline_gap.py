@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
-from crowdbot.core.crowd.contact.robot_contact import from_outline
-from crowdbot.core.support.compiling.compile import array_kernel
+from crowdbot.core.crowd.contact.robot_contact import extent_of, from_outline
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
 #: Points that touch within this distance are one contact, such as a box side along a wall, m.
 _AT_ONCE = 1e-3
+#: Relative and absolute (m) differences of distances that are more than rounding.
+_CLEARLY, _SLACK = 1.0 + 1e-9, 1e-9
 
 
-@array_kernel
+@kernel
 def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
     """Return the distance from a point to the nearest wall or pillar surface, m.
 
@@ -21,19 +23,15 @@ def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
     """
     nearest = math.inf
     for i in range(walls.shape[0]):
-        ex, ey = walls[i, 2] - walls[i, 0], walls[i, 3] - walls[i, 1]
-        px, py = x - walls[i, 0], y - walls[i, 1]
-        square = ex * ex + ey * ey
-        s = 0.0
-        if square > 0.0:
-            s = min(1.0, max(0.0, (px * ex + py * ey) / square))
-        nearest = min(nearest, math.hypot(px - s * ex, py - s * ey))
+        dx, dy = _from_wall(walls, i, x, y)
+        if dx * dx + dy * dy <= nearest * nearest * _CLEARLY:  # roots are expensive
+            nearest = min(nearest, math.hypot(dx, dy))
     for i in range(pillars.shape[0]):
         nearest = min(nearest, math.hypot(x - pillars[i, 0], y - pillars[i, 1]) - pillars[i, 2])
     return nearest
 
 
-@array_kernel
+@kernel
 def outline_gap(
     walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
 ) -> float:
@@ -47,18 +45,70 @@ def outline_gap(
     """
     if outline.shape[0] == 0:
         return float(gap_to_walls(walls, pillars, x, y))
-    nearest = math.inf
+    return _gap(walls, pillars, outline, x, y, math.cos(yaw), math.sin(yaw))
+
+
+@kernel
+def _gap(
+    walls: Array, pillars: Array, outline: Array, x: float, y: float, c: float, s: float
+) -> float:
+    """As `outline_gap`, of an outline with corners; c, s: cosine and sine of the heading."""
+    nearest, extent = math.inf, extent_of(outline)
     for i in range(walls.shape[0]):
-        ax, ay = _into(walls[i, 0], walls[i, 1], x, y, yaw)
-        bx, by = _into(walls[i, 2], walls[i, 3], x, y, yaw)
+        dx, dy = _from_wall(walls, i, x, y)
+        if dx * dx + dy * dy > (nearest + extent + _SLACK) ** 2:
+            continue
+        ax, ay = _into(walls[i, 0], walls[i, 1], x, y, c, s)
+        bx, by = _into(walls[i, 2], walls[i, 3], x, y, c, s)
         nearest = min(nearest, _to_segment(outline, ax, ay, bx, by))
     for i in range(pillars.shape[0]):
-        px, py = _into(pillars[i, 0], pillars[i, 1], x, y, yaw)
+        px, py = _into(pillars[i, 0], pillars[i, 1], x, y, c, s)
         nearest = min(nearest, from_outline(outline, px, py)[0] - pillars[i, 2])
     return nearest
 
 
-@array_kernel
+@kernel
+def is_clear(
+    walls: Array, pillars: Array, outline: Array, extent: float, x: float, y: float, c: float,
+    s: float, least: float,
+) -> bool:  # fmt: skip
+    """Return True if `outline_gap` is at least ``least``, m, without computing most of it.
+
+    Args:
+        walls to y: as in `outline_gap`.
+        extent: distance of the outline's farthest corner from its origin, m.
+        c, s: cosine and sine of the heading; not used for a disc.
+    """
+    for i in range(walls.shape[0]):
+        dx, dy = _from_wall(walls, i, x, y)
+        if dx * dx + dy * dy > (max(0.0, least) + extent + _SLACK) ** 2:
+            continue
+        if outline.shape[0] == 0:
+            if math.hypot(dx, dy) < least:
+                return False
+            continue
+        ax, ay = _into(walls[i, 0], walls[i, 1], x, y, c, s)
+        bx, by = _into(walls[i, 2], walls[i, 3], x, y, c, s)
+        if _to_segment(outline, ax, ay, bx, by) < least:
+            return False
+    if outline.shape[0] == 0:
+        return gap_to_walls(walls[:0], pillars, x, y) >= least
+    return _gap(walls[:0], pillars, outline, x, y, c, s) >= least
+
+
+@kernel
+def _from_wall(walls: Array, i: int, x: float, y: float) -> tuple[float, float]:
+    """Return the vector from the nearest point of a wall to a point, m."""
+    ex, ey = walls[i, 2] - walls[i, 0], walls[i, 3] - walls[i, 1]
+    px, py = x - walls[i, 0], y - walls[i, 1]
+    square = ex * ex + ey * ey
+    s = 0.0
+    if square > 0.0:
+        s = min(1.0, max(0.0, (px * ex + py * ey) / square))
+    return px - s * ex, py - s * ey
+
+
+@kernel
 def touched_at(
     walls: Array, pillars: Array, outline: Array, x: float, y: float, yaw: float
 ) -> tuple[float, float]:
@@ -69,9 +119,10 @@ def touched_at(
     """
     limit = outline_gap(walls, pillars, outline, x, y, yaw) + _AT_ONCE
     sum_x, sum_y, count = 0.0, 0.0, 0
+    c, s = math.cos(yaw), math.sin(yaw)
     for i in range(walls.shape[0]):
-        ax, ay = _into(walls[i, 0], walls[i, 1], x, y, yaw)
-        bx, by = _into(walls[i, 2], walls[i, 3], x, y, yaw)
+        ax, ay = _into(walls[i, 0], walls[i, 1], x, y, c, s)
+        bx, by = _into(walls[i, 2], walls[i, 3], x, y, c, s)
         for k in range(max(1, outline.shape[0])):
             cx, cy = (outline[k, 0], outline[k, 1]) if outline.shape[0] else (0.0, 0.0)
             px, py = nearest_on_segment(cx, cy, ax, ay, bx, by)
@@ -81,7 +132,7 @@ def touched_at(
             if outline.shape[0] and from_outline(outline, ex, ey)[0] <= limit:
                 sum_x, sum_y, count = sum_x + ex, sum_y + ey, count + 1
     for i in range(pillars.shape[0]):
-        px, py = _into(pillars[i, 0], pillars[i, 1], x, y, yaw)
+        px, py = _into(pillars[i, 0], pillars[i, 1], x, y, c, s)
         away, ux, uy = math.hypot(px, py), 1.0, 0.0
         if outline.shape[0]:
             away, ux, uy, _, _ = from_outline(outline, px, py)
@@ -93,14 +144,13 @@ def touched_at(
     return (sum_x / count, sum_y / count) if count else (math.nan, math.nan)
 
 
-@array_kernel
-def _into(px: float, py: float, x: float, y: float, yaw: float) -> tuple[float, float]:
-    """Return a world point in the frame of a pose."""
-    c, s = math.cos(yaw), math.sin(yaw)
+@kernel
+def _into(px: float, py: float, x: float, y: float, c: float, s: float) -> tuple[float, float]:
+    """Return a world point in the frame at (x, y) whose heading has cosine c and sine s."""
     return c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
 
 
-@array_kernel
+@kernel
 def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> float:
     """Return the distance from an outline with at least two points to segment a-b, m.
 
@@ -118,7 +168,7 @@ def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> f
     return max(0.0, nearest)
 
 
-@array_kernel
+@kernel
 def _cross(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> bool:

@@ -18,12 +18,13 @@ from pydrake.systems.framework import (
     LeafSystem,
 )
 
+from crowdbot.core.crowd.contact.robot_contact import extent_of
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
-from crowdbot.core.sim.contacts.outline_gap import outline_gap
+from crowdbot.core.sim.contacts.outline_gap import is_clear, outline_gap
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
-from crowdbot.core.support.compiling.compile import array_kernel
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
@@ -33,6 +34,8 @@ _HALVINGS = 40  # limits an arc of 5 mm at a wall to less than a picometre
 _TOUCHING = 1e-9  # m; overlap of a robot that touches a wall
 _SKIN = 1e-6  # m; distance kept by corners, since a wall inside a polygon has distance 0
 _ROUNDING = 1e-13  # m; must not stop a robot that drives along a wall
+_SMALL = 0.03  # rad; turns of a tick for which a short series is exact
+_UNSURE = 1e-13  # share of coordinates; larger than the rounding of distances
 
 
 class KinematicBase(LeafSystem):
@@ -130,30 +133,46 @@ def arc(
     )
 
 
-@array_kernel
-def _gap_on_arc(
-    walls: Array,
-    pillars: Array,
-    outline: Array,
-    x: float,
-    y: float,
-    yaw: float,
-    crab: float,
-    way: float,
-    turn: float,
-) -> float:
-    """Return the outline's gap after an arc of length ``way`` (m) that turns by ``turn`` (rad).
+@kernel
+def _is_clear_after(
+    walls: Array, pillars: Array, outline: Array, extent: float,
+    x: float, y: float, yaw: float, crab: float, way: float, turn: float, least: float,
+) -> bool:  # fmt: skip
+    """Return True if an arc of length ``way`` (m) that turns by ``turn`` (rad) leaves a gap.
 
     The robot moves in the direction ``yaw`` + ``crab`` and faces along ``yaw``.
+
+    Args:
+        least: the gap, m; the others as in `is_clear`.
     """
     half = 0.5 * turn
     chord = way * (math.sin(half) / half if half != 0.0 else 1.0)
     middle = yaw + crab + half
     x, y = x + chord * math.cos(middle), y + chord * math.sin(middle)
-    return float(outline_gap(walls, pillars, outline, x, y, yaw + turn))
+    c, s = 1.0, 0.0
+    if outline.shape[0] > 0:
+        c, s = math.cos(yaw + turn), math.sin(yaw + turn)
+    return is_clear(walls, pillars, outline, extent, x, y, c, s, least)
 
 
-@array_kernel
+@kernel
+def _small_turn(angle: float) -> tuple[float, float]:
+    """Return cosine and sine of at most `_SMALL`, exact but for rounding (Taylor series)."""
+    z = angle * angle
+    return (
+        1.0 - z * (0.5 - z * (1.0 / 24.0 - z / 720.0)),
+        angle * (1.0 - z * (1.0 / 6.0 - z * (1.0 / 120.0 - z / 5040.0))),
+    )
+
+
+@kernel
+def _turned(c: float, s: float, angle: float) -> tuple[float, float]:
+    """Return a unit vector turned by a small angle."""
+    dc, ds = _small_turn(angle)
+    return c * dc - s * ds, s * dc + c * ds
+
+
+@kernel
 def free_share(
     walls: Array,
     pillars: Array,
@@ -172,14 +191,27 @@ def free_share(
     ``radius`` its rounding, m.
     """
     gap = outline_gap(walls, pillars, outline, x, y, yaw)
-    least = min(radius - _TOUCHING, gap - _ROUNDING)
-    if _gap_on_arc(walls, pillars, outline, x, y, yaw, crab, way, turn) >= least:
+    least, extent = min(radius - _TOUCHING, gap - _ROUNDING), extent_of(outline)
+    if _is_clear_after(walls, pillars, outline, extent, x, y, yaw, crab, way, turn, least):
         return 1.0
+    mx, my = math.cos(yaw + crab), math.sin(yaw + crab)
+    fx, fy = math.cos(yaw), math.sin(yaw)
+    unsure = _UNSURE * (1.0 + extent + abs(x) + abs(y)) if abs(turn) <= _SMALL else math.inf
     free, blocked = 0.0, 1.0
     for _ in range(_HALVINGS):
         share = 0.5 * (free + blocked)
         gone, turned = share * way, share * turn
-        if _gap_on_arc(walls, pillars, outline, x, y, yaw, crab, gone, turned) >= least:
+        # Most decisions need no more than a series: sines are expensive.
+        chord = gone * _small_turn(0.5 * turned)[1] / (0.5 * turned) if turned != 0.0 else gone
+        ux, uy = _turned(mx, my, 0.5 * turned)
+        c, s = _turned(fx, fy, turned)
+        px, py = x + chord * ux, y + chord * uy
+        clear = is_clear(walls, pillars, outline, extent, px, py, c, s, least + unsure)
+        if not clear and is_clear(walls, pillars, outline, extent, px, py, c, s, least - unsure):
+            clear = _is_clear_after(
+                walls, pillars, outline, extent, x, y, yaw, crab, gone, turned, least
+            )
+        if clear:
             free = share
         else:
             blocked = share

@@ -36,8 +36,8 @@ def array_kernel(function: F) -> F:
 
 
 def free_kernel(function: F) -> F:
-    """As `array_kernel`, for long work on the caller's own arrays: threads may do it at once."""
-    return cast(F, _compiled(function, {"nogil": True, **_OPTIONS}))
+    """As `kernel`, for long work on the caller's own arrays: threads may do it at once."""
+    return cast(F, _compiled(function, {"nogil": True, **_OPTIONS, "_nrt": False}))
 
 
 def inline_kernel(function: F) -> F:

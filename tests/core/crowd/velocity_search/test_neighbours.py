@@ -9,6 +9,7 @@ import pytest
 
 from crowdbot.core.crowd.velocity_search.neighbours import (
     DISC,
+    START_ROWS,
     gather,
     sort_discs,
     strip_height,
@@ -30,7 +31,9 @@ def test_neighbours_are_those_of_a_plain_search(seed: int) -> None:
     for distance in (0.5, 3.0, 1e7):
         table = rows_of(count, DISC)
         height = strip_height(discs, count, distance)
-        low, starts = sort_discs(discs, count, height, table)
+        rows, order = np.zeros((START_ROWS, 2), np.int64), np.zeros((2, count), np.int64)
+        low, strips = sort_discs(discs, count, height, table, rows, order)
+        starts = rows[: strips + 1]
         assert np.array_equal(np.sort(table["index"]), np.arange(count))
         near = rows_of(count, NEIGHBOUR)
         placed = np.column_stack([table["x"], table["y"]])
