@@ -213,8 +213,8 @@ class GivingWay(RobotResponse):
         "robot drives in this time, s; behind a vehicle they leave more room.",
     )
     waiting_speed: NonNegativeSpeed = Field(
-        default=1.25,
-        exclude_if=lambda speed: speed == 1.25,  # scenarios from before it keep their hashes
+        default=1.55,
+        exclude_if=lambda speed: speed == 1.55,  # scenarios from before it keep their hashes
         description="People wait for a faster robot that crosses their way, however long it is, "
         "unless they expect to be clear of it in time, m/s. Recorded: 6 % (VCI-DUT) and 12 % "
         "(VCI-CITR) pass before a vehicle that they would meet.",

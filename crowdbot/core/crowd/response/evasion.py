@@ -35,7 +35,7 @@ _LEAST = 0.02
 #: recorded who crossed before a robot of 1 m/s (NavWareSet).
 _HURRY = 1.3
 #: People wait in full for vehicles that are faster than `Human.waiting_speed` by this, m/s.
-_FULLY = 0.3
+_FULLY = 0.1
 #: From 45 degrees between both ways on people wait, from 60 degrees on in full.
 _CROSSING = 2.0
 #: The gap in which a person has to stop is never taken for less than this, m.
