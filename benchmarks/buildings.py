@@ -6,6 +6,7 @@ doors along corridors, as many segments as asked for; both floors have the same 
 The sensors' empty hall is of 8 m x 6 m, so that its rays hit walls, too.
 
     python benchmarks/buildings.py --segments 2000
+    python benchmarks/buildings.py --segments 2000 --crowds
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ import json
 import math
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
+import yaml
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
@@ -25,7 +28,7 @@ from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
 from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.core.sensing.scene import Scene
-from crowdbot.plugin import Pinhole
+from crowdbot.plugin import Pinhole, PolicyFactory
 
 Array = NDArray[np.float64]
 ROOM, DEPTH, AISLE, DOOR, WALL = 3.5, 5.0, 2.5, 1.0, 0.1  # m
@@ -83,10 +86,11 @@ def least(function: Callable[[], object], rounds: int) -> float:
 
 
 def crowd(
-    walls: Array, agents: Agents, routing: WayFinding | None
+    walls: Array, agents: Agents, routing: WayFinding | None, policy: PolicyFactory | None = None
 ) -> dict[str, Callable[[], object]]:
     """What to measure of a crowd: whole steps with and without a decision."""
-    engine = CrowdEngine(agents, CrowdWorld(walls=walls, routing=routing), policy_of(POLICY, COSTS))
+    world = CrowdWorld(walls=walls, routing=routing)
+    engine = CrowdEngine(agents, world, policy or policy_of(POLICY, COSTS))
     first = engine.initial_state()
     for _ in range(32):
         engine.advance(first)
@@ -142,6 +146,25 @@ def measured(
     return found | {name: least(run, rounds) for name, run in rays(*seen).items()}
 
 
+def packaged() -> dict[str, PolicyFactory]:
+    """The policies of the crowds that come along, by name."""
+    parts = sorted((Path(__file__).parent.parent / "scenario_specs/parts/crowds").glob("*.yaml"))
+    read = {part.stem: yaml.safe_load(part.read_text("utf-8"))["crowd"] for part in parts}
+    return {name: policy_of(crowd["policy"], crowd["costs"]) for name, crowd in read.items()}
+
+
+def print_crowds(walls: Array, middles: Array, side: float, count: int, rounds: int) -> None:
+    """Print a decision of each packaged crowd in both places, measured in turn."""
+    print(f"{'a decision':26}{'empty':>10}{len(walls):>10} segments   ratio")
+    for name, policy in packaged().items():
+        found = []
+        both = [crowd(at, people(middles, count), None, policy) for at in (hall(side), walls)]
+        for steps in both:
+            whole, tick = (least(steps[kind], rounds) for kind in ("with", "without"))
+            found.append(whole - tick)
+        print(f"{name:26}{found[0]:10.1f}{found[1]:10.1f} us {found[1] / found[0]:15.2f}")
+
+
 def main() -> None:
     """Print microseconds and ratios."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
@@ -149,8 +172,12 @@ def main() -> None:
     parser.add_argument("--people", type=int, default=200)
     parser.add_argument("--rounds", type=int, default=30)
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--crowds", action="store_true", help="decisions of all packaged crowds")
     given = parser.parse_args()
     walls, middles, side = building(given.segments)
+    if given.crowds:
+        print_crowds(walls, middles, side, given.people, given.rounds)
+        return
     empty = measured(hall(side), middles, room(middles), given.people, given.rounds)
     full = measured(walls, middles, (walls, middles), given.people, given.rounds)
     if given.json:

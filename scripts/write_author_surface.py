@@ -86,6 +86,8 @@ _TOGETHER: Mapping[str, str] = {
         "Of `Sampling`: no velocity as base, the preferred direction as axis, the preferred speed "
         "as radius."
     ),
+    "MORE_WALLS": "Result of `prepare` where walls that were not given may matter.",
+    "NEAR_WALLS": "`wall_reach` of functions whose farther walls `first_collision` looks up, m.",
 }
 #: Heading -> beginnings of the modules, below crowdbot.core, from which its names come.
 _GROUPS: Mapping[str, tuple[str, ...]] = {

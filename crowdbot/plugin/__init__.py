@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     )
     from crowdbot.core.crowd.recorded import RecordedCrowd, read_record
     from crowdbot.core.crowd.velocity_search.collision import (
-        CollisionHeader,
         first_collision,
         first_contact,
         list_approaching,
         list_obstacles,
         soonest_disc,
     )
+    from crowdbot.core.crowd.velocity_search.collision_rows import CollisionHeader
     from crowdbot.core.crowd.velocity_search.cost import (
         BASE,
         EXCESS,

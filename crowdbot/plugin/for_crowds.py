@@ -15,6 +15,9 @@ from crowdbot.core.crowd.velocity_search.candidates import (
     ZERO,
     Sampling,
 )
+from crowdbot.core.crowd.velocity_search.collision_walls import is_passed, swept_width
+from crowdbot.core.crowd.velocity_search.cost import MORE_WALLS, NEAR_WALLS
+from crowdbot.core.crowd.velocity_search.farther_walls import walls_closer_than
 from crowdbot.core.crowd.velocity_search.gradient import Descent
 from crowdbot.core.crowd.velocity_search.minstd import draw
 from crowdbot.core.crowd.velocity_search.optimum import Optimum
@@ -24,6 +27,8 @@ from crowdbot.core.types.candidates import VelocityCandidates
 
 __all__ = [
     "ALONG_PREFERRED",
+    "MORE_WALLS",
+    "NEAR_WALLS",
     "PREFERRED_SPEED",
     "ZERO",
     "Descent",
@@ -36,6 +41,9 @@ __all__ = [
     "draw",
     "is_clearly_longer",
     "is_clearly_shorter",
+    "is_passed",
     "opposite_taken_for_parallel",
     "single_angle",
+    "swept_width",
+    "walls_closer_than",
 ]

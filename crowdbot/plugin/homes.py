@@ -13,8 +13,9 @@ HOMES = {
     ),
     "crowdbot.core.crowd.recorded": "RecordedCrowd read_record",
     "crowdbot.core.crowd.velocity_search.collision": (
-        "CollisionHeader first_collision first_contact list_approaching list_obstacles soonest_disc"
+        "first_collision first_contact list_approaching list_obstacles soonest_disc"
     ),
+    "crowdbot.core.crowd.velocity_search.collision_rows": "CollisionHeader",
     "crowdbot.core.crowd.velocity_search.cost": (
         "BASE EXCESS GRADIENT LOWER_BOUND OPTIMUM PREPARE AgentView CompiledCost Neighbours "
         "NumpyCost Pointer in_range work_rows"

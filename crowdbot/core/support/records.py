@@ -182,6 +182,26 @@ def _as_rows(_: Any, source: Any, record: Any) -> tuple[Any, Any]:
     return rows(source, record), generate
 
 
+def _at(made: Any) -> Any:
+    """The code that makes a pointer of an address."""
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
+        number = builder.fptosi(values[0], context.get_value_type(types.int64))
+        return builder.inttoptr(number, context.get_value_type(made))
+
+    return generate
+
+
+def _rows_at(_: Any, address: Any, record: Any) -> tuple[Any, Any]:
+    made = RecordPointer(record.dtype)  # type: ignore[no-untyped-call]
+    return made(address, record), _at(made)
+
+
+def _integers_at(_: Any, address: Any) -> tuple[Any, Any]:
+    made = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
+    return made(address), _at(made)
+
+
 if TYPE_CHECKING:
 
     def as_record(source: Any, record: RecordType[T]) -> T:
@@ -192,5 +212,12 @@ if TYPE_CHECKING:
 
         The memory is the caller's, and has to outlive them.
         """
+
+    def rows_at(address: float, record: RecordType[T]) -> Rows[T]:
+        """The records at an address, which is a whole number below 2^53, as all are."""
+
+    def integers_at(address: float) -> NDArray[np.int64]:
+        """The 64-bit integers at an address."""
 else:
     as_record, as_rows = intrinsic(_as_record), intrinsic(_as_rows)
+    rows_at, integers_at = intrinsic(_rows_at), intrinsic(_integers_at)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.crowd.velocity_search.cost import MORE_WALLS
 from crowdbot.core.crowd.velocity_search.cost_calls import call_base, call_excess, call_prepare
 from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
@@ -51,20 +52,38 @@ def prepare(
     near_count = gather(
         around.table, around.starts, around.low, around.height, b, around.reach, near
     )
-    wall_count = gather_walls(
-        around.walls, around.grid_frame, around.grid_first, around.grid_cells,
-        around.settings[0].wall_grid, agent.px, agent.py, wall_distance(around), found,
-    )  # fmt: skip
-    terms = 0
+    distance = wall_distance(around)
+    wall_count, terms = _walls_within(around, distance), 0
     for k in range(weights.shape[0]):
         items = call_prepare(
             functions[k, PREPARES], agent, near, near_count, found, wall_count,
             functions[k, PARAMS], functions[k, WORK],
         )  # fmt: skip
+        if items == MORE_WALLS:
+            every = _walls_within(around, around.reach)
+            items = call_prepare(
+                functions[k, PREPARES], agent, near, near_count, found, every,
+                functions[k, PARAMS], functions[k, WORK],
+            )  # fmt: skip
+            wall_count = _walls_within(around, distance)
         if items > 0 and weights[k] != 0.0:
             active[terms] = k
             terms += 1
     return terms
+
+
+@inline_kernel
+def _walls_within(around: Surroundings, distance: float) -> int:
+    """Write the walls within a distance (m) of the agent that decides; return their number."""
+    settings, agent = around.settings[0], around.deciding[0]
+    all_given = settings.wall_more == 0.0 or distance >= around.reach
+    agent.walls_within = 0.0 if all_given else distance
+    return int(
+        gather_walls(
+            around.walls, around.grid_frame, around.grid_first, around.grid_cells,
+            settings.wall_grid, agent.px, agent.py, distance, around.found,
+        )
+    )  # fmt: skip
 
 
 @kernel

@@ -5,70 +5,32 @@ from __future__ import annotations
 import math
 
 from crowdbot.core.crowd.contact.geometry import crossing_time, time_to_disc, time_to_segment
+from crowdbot.core.crowd.velocity_search.collision_rows import (
+    DISC_ROW,
+    HEADER,
+    SAFE,
+    SEGMENT_ROW,
+)
+from crowdbot.core.crowd.velocity_search.collision_walls import (
+    SORTED_SEGMENTS,
+    is_passed,
+    list_segments,
+    swept_width,
+)
 from crowdbot.core.crowd.velocity_search.cost import Pointer
+from crowdbot.core.crowd.velocity_search.farther_walls import first_farther
 from crowdbot.core.crowd.velocity_search.records import (
     COST_PARAMS,
-    WORK_COLUMNS,
     AgentRecord,
     NeighbourRecord,
     WallRecord,
 )
 from crowdbot.core.support.compiling.compile import array_kernel
-from crowdbot.core.support.records import Rows, as_record, as_rows, record_type
+from crowdbot.core.support.records import Rows, as_record, as_rows
 
-
-class CollisionHeader:
-    """Row 0 of ``work``: number of discs, of wall segments after them, and of those in contact.
-
-    Discs and walls in contact with the agent are not listed.
-    """
-
-    discs: float
-    segments: float
-    touched: float
-
-
-class DiscRow:
-    """A disc in ``work``: relative position, velocity, gap and time.
-
-    Attributes:
-        gap2: squared distance minus squared sum of radii, m^2.
-        earliest: time before which there is no contact, s.
-    """
-
-    x: float
-    y: float
-    vx: float
-    vy: float
-    gap2: float
-    earliest: float
-
-
-class SegmentRow:
-    """A wall segment in ``work``, after the discs: both ends.
-
-    Attributes:
-        later: in the last sorted row, the least ``earliest`` of the rows after it, s.
-        earliest: as in `DiscRow`.
-    """
-
-    ax: float
-    ay: float
-    bx: float
-    by: float
-    later: float
-    earliest: float
-
-
-_HEADER = record_type(CollisionHeader)
-_DISC = record_type(DiscRow, WORK_COLUMNS)
-_SEGMENT = record_type(SegmentRow, WORK_COLUMNS)
-_SAFE = 1.0 - 1e-12
 #: Number of discs sorted by that time; all others come later. Sorting hundreds would take longer
 #: than skipping them.
 _SORTED = 12
-#: The same for segments.
-_SORTED_SEGMENTS = 32
 #: Number of discs in lower bounds: later ones are seldom the first.
 _FEW = 3
 
@@ -86,8 +48,8 @@ def list_obstacles(
 ) -> int:
     """Write everything within range to ``work``; return the number of rows.
 
-    Uses the first six columns and the first three entries of row 0; the others belong to the
-    caller.
+    One more if walls that were not given may count. Uses the first six columns, and in row 0 the
+    fields of `CollisionHeader`; the others belong to the caller.
 
     Args:
         fastest: largest speed in later calls of `first_collision`, m/s.
@@ -119,10 +81,10 @@ def list_approaching(
     Args:
         ux, uy, spread: disc with all velocities in later calls of `first_collision`, m/s.
     """
-    own, header = as_record(params, COST_PARAMS), as_record(work, _HEADER)
-    rows = as_rows(work, _DISC)
+    own, header = as_record(params, COST_PARAMS), as_record(work, HEADER)
+    rows = as_rows(work, DISC_ROW)
     range_, surface, touched, discs = own.range, own.from_surface, 0, 0
-    most = horizon if agent.parity == 0.0 else math.inf
+    most, later = horizon if agent.parity == 0.0 else math.inf, math.inf
     for j in range(near_count):
         d2, reach = near[j].d2, near[j].reach
         limit = range_ + surface * reach
@@ -135,14 +97,16 @@ def list_approaching(
         vx, vy, distance = near[j].nvx, near[j].nvy, math.sqrt(d2)
         # The distance decreases at most at this speed; the factor covers rounding.
         closing = spread + ((ux - vx) * near[j].rx + (uy - vy) * near[j].ry) / distance
-        earliest = _SAFE * (distance - reach) / closing if closing > 0.0 else math.inf
+        earliest = SAFE * (distance - reach) / closing if closing > 0.0 else math.inf
         if earliest > most:
             continue
         discs += 1
         row = discs
-        if row > _SORTED and rows[_SORTED].earliest > earliest:  # that one goes to the end
-            rows[row] = rows[_SORTED]
-            row = _SORTED
+        if row > _SORTED:
+            later = min(later, max(earliest, rows[_SORTED].earliest))
+            if rows[_SORTED].earliest > earliest:  # that one goes to the end
+                rows[row] = rows[_SORTED]
+                row = _SORTED
         while 1 < row <= _SORTED and rows[row - 1].earliest > earliest:
             rows[row] = rows[row - 1]
             row -= 1
@@ -150,85 +114,54 @@ def list_approaching(
         disc.x, disc.y, disc.vx, disc.vy = near[j].rx, near[j].ry, vx, vy
         disc.gap2, disc.earliest = gap2, earliest
     limit, fastest = range_ + surface * agent.radius, spread + math.hypot(ux, uy)
-    count, touching = _list_segments(discs, agent, walls, wall_count, limit, fastest, most, work)
+    count, touching = list_segments(discs, agent, walls, wall_count, limit, fastest, most, work)
     header.discs, header.segments, header.touched = discs, count, touched + touching
-    return discs + count
-
-
-@array_kernel
-def _list_segments(
-    discs: int,
-    agent: AgentRecord,
-    walls: Rows[WallRecord],
-    wall_count: int,
-    limit: float,
-    fastest: float,
-    most: float,
-    work: Pointer,
-) -> tuple[int, int]:
-    """Write the segments after the discs, the soonest ones sorted; return how many, and touched.
-
-    Args:
-        limit: largest distance, m.
-        fastest: largest speed, m/s.
-        most: time after which no contact counts, s.
-    """
-    segments, count, touched, later = as_rows(work, _SEGMENT), 0, 0, math.inf
-    last = discs + _SORTED_SEGMENTS
-    for s in range(wall_count):
-        d2 = walls[s].d2
-        if d2 > limit * limit:
-            continue
-        if d2 <= agent.radius**2:
-            touched += 1
-            continue
-        gap = math.sqrt(d2) - agent.radius
-        earliest = _SAFE * gap / fastest if fastest > 0.0 else math.inf
-        if earliest > most:
-            continue
-        count += 1
-        row = discs + count
-        if row > last:
-            later = min(later, max(earliest, segments[last].earliest))
-            if segments[last].earliest > earliest:  # that one goes to the end
-                segments[row] = segments[last]
-                row = last
-        while discs + 1 < row <= last and segments[row - 1].earliest > earliest:
-            segments[row] = segments[row - 1]
-            row -= 1
-        segment = segments[row]
-        segment.ax, segment.ay, segment.bx, segment.by = (
-            walls[s].ax, walls[s].ay, walls[s].bx, walls[s].by,
-        )  # fmt: skip
-        segment.earliest = earliest
-    if count >= _SORTED_SEGMENTS:
-        segments[last].later = later
-    return count, touched
+    header.later = later
+    return discs + count + int(header.unlisted > 0.0)
 
 
 @array_kernel
 def first_collision(ux: float, uy: float, until: float, agent: AgentRecord, work: Pointer) -> float:
     """Return the time until a collision with a row of `list_obstacles`, s; ``inf`` if none.
 
-    Existing contacts do not count, see `first_contact`.
+    Existing contacts do not count, see `first_contact`. Walls that were not given are looked up
+    where one of them may be the first.
 
     Args:
         until: a time below which any value is accepted; the search stops there.
     """
-    header, rows, segments = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _SEGMENT)
-    first, discs = math.inf, int(header.discs)
-    for j in range(1, discs + 1):
+    header, first = as_record(work, HEADER), _first_segment(ux, uy, until, agent, work)
+    # Many walls are near, and then few discs come before.
+    if not first < until:
+        first = _first_disc(ux, uy, until, first, work)
+    if header.unlisted > 0.0 and not first < until:
+        first = first_farther(ux, uy, until, first, header.unlisted, agent)
+    return first
+
+
+@array_kernel
+def _first_disc(ux: float, uy: float, until: float, first: float, work: Pointer) -> float:
+    """Return the time until a disc is touched, s, or any below ``until``; or ``first``."""
+    header, rows = as_record(work, HEADER), as_rows(work, DISC_ROW)
+    for j in range(1, int(header.discs) + 1):
         disc = rows[j]
         if disc.earliest >= first:
             if j <= _SORTED:
                 break
             continue
         t = time_to_disc(disc.x, disc.y, ux - disc.vx, uy - disc.vy, disc.gap2)
-        if t < first:
-            first = t
-            if first < until:
-                return first
-    last = discs + _SORTED_SEGMENTS
+        first = min(first, t)
+        if first < until or (j == _SORTED and header.later >= first):
+            break
+    return first
+
+
+@array_kernel
+def _first_segment(ux: float, uy: float, until: float, agent: AgentRecord, work: Pointer) -> float:
+    """Return the time until a listed segment is touched, s, or any below ``until``."""
+    header, segments, first = as_record(work, HEADER), as_rows(work, SEGMENT_ROW), math.inf
+    discs, width = int(header.discs), swept_width(ux, uy, agent.radius)
+    last = discs + SORTED_SEGMENTS
     for j in range(discs + 1, discs + 1 + int(header.segments)):
         segment = segments[j]
         if segment.earliest >= first:
@@ -236,13 +169,14 @@ def first_collision(ux: float, uy: float, until: float, agent: AgentRecord, work
                 break
             continue
         ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
-        if agent.parity != 0.0:
-            t = crossing_time(ux, uy, agent.radius, ax, ay, bx, by)
-            if t <= 0.0:  # from the centre, this may be 0 just before contact
-                continue
-        else:
-            t = time_to_segment(ux, uy, agent.radius, ax, ay, bx, by)
-        first = min(first, t)
+        if not is_passed(ux, uy, width, ax, ay, bx, by):
+            if agent.parity != 0.0:
+                t = crossing_time(ux, uy, agent.radius, ax, ay, bx, by)
+                if t <= 0.0:  # from the centre, this may be 0 just before contact
+                    continue
+            else:
+                t = time_to_segment(ux, uy, agent.radius, ax, ay, bx, by)
+            first = min(first, t)
         if first < until or (j == last and segment.later >= first):
             break
     return first
@@ -267,7 +201,7 @@ def soonest_disc(
     Args:
         count, ux, uy: velocities; ``factor * u - v`` is kept, m/s.
     """
-    header, rows = as_record(work, _HEADER), as_rows(work, _DISC)
+    header, rows = as_record(work, HEADER), as_rows(work, DISC_ROW)
     for c in range(count):
         out[c] = 0.0
     for j in range(1, min(_FEW, int(header.discs)) + 1):
@@ -290,7 +224,8 @@ def first_contact(ux: float, uy: float, agent: AgentRecord, work: Pointer) -> fl
     Under parity also 0 beside a disc with exactly the velocity u: the original takes a
     vanishing discriminant for a touch.
     """
-    header, rows, segments = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _SEGMENT)
+    header, rows = as_record(work, HEADER), as_rows(work, DISC_ROW)
+    segments = as_rows(work, SEGMENT_ROW)
     if header.touched > 0.0:
         return 0.0
     if agent.parity != 0.0:

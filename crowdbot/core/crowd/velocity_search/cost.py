@@ -13,7 +13,8 @@ error_model="numpy")``; float64 everywhere, SI units, world frame unless said ot
   which the preferred velocity is ``(preferred, 0)``, preferred > 0.
 - ``prepare(agent, near, near_count, walls, wall_count, params, work) -> items``: once per agent and
   decision; writes data for the functions below to ``work``, whose row 0 is for counts and is not
-  cleared between agents: write it always. If it returns 0 the excess is zero and not called.
+  cleared between agents: write it always. If it returns 0 the excess is zero and not called. If
+  it returns `MORE_WALLS` it is called again with all walls in range; see `CompiledCost.wall_reach`.
 - ``excess(ux, uy, budget, agent, work, params) -> cost``: may stop and return anything above
   ``budget`` as soon as the cost exceeds it. Called for many candidates, in any order.
 - ``lower_bound(count, ux, uy, agent, work, params, out) -> 1``: optional; into ``out`` a lower
@@ -65,6 +66,12 @@ OPTIMUM = types.int64(_AGENT, _P, _P, _P)
 LOWER_BOUND = types.int64(_I, _P, _P, _AGENT, _P, _P, _P)
 
 
+#: Result of ``prepare`` where walls that were not given may matter.
+MORE_WALLS = -1
+#: ``wall_reach`` that suits functions whose farther walls are looked up by `first_collision`, m.
+NEAR_WALLS = 4.0
+
+
 def work_rows(others: int) -> int:
     """Return the rows of ``work`` for this many neighbours and walls.
 
@@ -88,6 +95,8 @@ class CompiledCost:
         wall_reach: metres, and seconds at the fastest speed of a decision: a wall whose distance
             from the agent's surface is larger than the sum of both never changes a result. None:
             every wall in range may.
+        looks_farther: True if farther walls may change a result, and the functions look for them
+            where they do: by `first_collision`, or by `MORE_WALLS`.
     """
 
     base: Callable[..., Any]
@@ -101,6 +110,7 @@ class CompiledCost:
     ordered: bool = False
     call: PluginCall | None = None
     wall_reach: tuple[float, float] | None = None
+    looks_farther: bool = False
 
     def reach(self, radius: float, largest_radius: float) -> float:
         """Return the centre distance beyond which no neighbour counts, m."""

@@ -26,6 +26,8 @@ class AgentRecord:
         descends: 1 if gradients are followed.
         broken: 1 after a function has returned NaN; for internal use.
         asked_x, asked_y, asked_radius: disc with all velocities of the search.
+        walls_within: only the walls at most so far away are given; 0: all in range.
+        floor: address of the `FloorRecord`.
     """
 
     px: float
@@ -51,6 +53,8 @@ class AgentRecord:
     asked_x: float
     asked_y: float
     asked_radius: float
+    walls_within: float
+    floor: float
 
 
 class NeighbourRecord:
@@ -94,6 +98,40 @@ class WallRecord:
     d2: float
 
 
+class WallEnds:
+    """Both ends of a wall segment of the floor, m."""
+
+    ax: float
+    ay: float
+    bx: float
+    by: float
+
+
+class FloorRecord:
+    """All walls of the floor, and cells that say which of them a person there may touch.
+
+    Attributes:
+        walls, number: address of their `WallEnds`, and how many there are.
+        x0, y0, x1, y1: box around them, m.
+        left, bottom, per_metre, columns, rows: as in the frame of a `SegmentGrid`.
+        first, near: addresses of its other arrays.
+    """
+
+    walls: float
+    number: float
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+    left: float
+    bottom: float
+    per_metre: float
+    columns: float
+    rows: float
+    first: float
+    near: float
+
+
 class CostParams:
     """The first fields of every ``params``; a cost function's own record adds fields.
 
@@ -108,7 +146,8 @@ class CostParams:
 
 AGENT = record_type(AgentRecord)
 NEIGHBOUR = record_type(NeighbourRecord)
-WALL = record_type(WallRecord)
+WALL, WALL_ENDS = record_type(WallRecord), record_type(WallEnds)
+FLOOR = record_type(FloorRecord)
 COST_PARAMS = record_type(CostParams)
 #: Number of float64 in a row of ``work``.
 WORK_COLUMNS = 8

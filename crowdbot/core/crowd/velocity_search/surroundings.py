@@ -40,6 +40,8 @@ class SettingsRecord:
         wall_metres, wall_seconds: centre distance beyond which no wall matters is the first plus
             the second times the fastest speed of a decision.
         wall_grid: the reach of the `SegmentGrid`, m.
+        wall_more: 1 if functions look for walls that are farther away, where these matter.
+        floor: address of the `FloorRecord`.
     """
 
     time_step: float
@@ -48,6 +50,8 @@ class SettingsRecord:
     wall_metres: float
     wall_seconds: float
     wall_grid: float
+    wall_more: float
+    floor: float
 
 
 TRAITS = record_type(DecisionTraitsRecord)
@@ -148,7 +152,7 @@ def describe(around: Surroundings, b: int) -> int:
     agent.max_speed, agent.weight = traits.max_speed, traits.weight
     agent.max_acceleration = traits.max_acceleration
     agent.parity, agent.random = settings.parity, around.random[i]
-    agent.descends = 0.0
+    agent.descends, agent.floor = 0.0, settings.floor
     agent.fastest = agent.max_speed
     if not is_clearly_shorter(agent.vx, agent.vy, agent.max_speed):
         agent.fastest = max(agent.max_speed, math.hypot(agent.vx, agent.vy))

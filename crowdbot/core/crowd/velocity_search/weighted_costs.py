@@ -34,6 +34,7 @@ from crowdbot.core.crowd.velocity_search.cost import (
     work_rows,
 )
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
+from crowdbot.core.crowd.velocity_search.floor import floor_of
 from crowdbot.core.crowd.velocity_search.minstd import seeds
 from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs
 from crowdbot.core.crowd.velocity_search.neighbours import DISC, START_ROWS, DiscRecord, Starts
@@ -63,6 +64,8 @@ _NO_BOX = np.zeros(4)
 _PUSHED = 1.25
 #: Added against rounding.
 _SLACK = 1e-6
+#: Fields of `SettingsRecord` that depend on the walls.
+_WALL_SETTINGS = ("wall_metres", "wall_seconds", "wall_grid", "wall_more", "floor")
 
 # Columns of the table of addresses: part of a cost function and its signature.
 _PARTS = (
@@ -180,14 +183,13 @@ class WeightedCosts:
         reach, (metres, seconds) = self.reach_of(largest), self._walls_matter(largest)
         quick = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
         covered = min(reach, metres + seconds * quick)
+        more = any(c.looks_farther for c in self.compiled)
         if self.parity or self.vectorised:
-            metres, seconds, covered = reach, 0.0, reach
-        own = self._settings
-        own["wall_metres"][:], own["wall_seconds"][:], own["wall_grid"][:] = (
-            metres,
-            seconds,
-            covered,
-        )
+            metres, seconds, covered, more = reach, 0.0, reach, False
+        self._floor, floor = floor_of(walls, self.largest)
+        values = metres, seconds, covered, more, floor
+        for name, value in zip(_WALL_SETTINGS, values, strict=True):
+            self._settings[name][:] = value
         return grid_of(walls, covered)
 
     def _walls_matter(self, largest: float) -> tuple[float, float]:

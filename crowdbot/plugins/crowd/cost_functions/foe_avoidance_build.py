@@ -26,6 +26,7 @@ from crowdbot.plugin import (
     record_values,
     time_to_segment,
 )
+from crowdbot.plugin.for_crowds import is_passed, swept_width
 from crowdbot.plugins.crowd.cost_functions.foe_avoidance import FoeAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.force_build import no_base
 
@@ -106,7 +107,9 @@ def _obstacle(row: int, ux: float, uy: float, radius: float, work: Pointer) -> t
         return disc.x, disc.y, disc.vx - ux, disc.vy - uy, disc.reach
     wall = as_rows(work, _WALL)[row]
     ax, ay, bx, by = wall.ax, wall.ay, wall.bx, wall.by
-    t = time_to_segment(ux, uy, radius, ax, ay, bx, by)
+    t = math.inf
+    if not is_passed(ux, uy, swept_width(ux, uy, radius), ax, ay, bx, by):
+        t = time_to_segment(ux, uy, radius, ax, ay, bx, by)
     if t == math.inf:
         return 0.0, 0.0, 0.0, 0.0, radius  # not ahead: not seen
     x, y = nearest_on_segment(t * ux, t * uy, ax, ay, bx, by)

@@ -26,7 +26,7 @@ from crowdbot.plugin import (
     record_type,
     record_values,
 )
-from crowdbot.plugin.for_crowds import single_angle
+from crowdbot.plugin.for_crowds import NEAR_WALLS, single_angle
 from crowdbot.plugins.crowd.cost_functions.karamouzas import KaramouzasSpec
 
 _SOON, _MEDIUM, _LATE = 2.5, 6.0, 8.0  # s, fixed by the model
@@ -152,5 +152,6 @@ def build(spec: KaramouzasSpec) -> CompiledCost:
             t_max=spec.t_max,
         ),
         weight=spec.weight,
-        wall_reach=(0.0, max(spec.t_max, _LATE)),
+        wall_reach=(NEAR_WALLS, 0.0),
+        looks_farther=True,
     )

@@ -28,6 +28,7 @@ from crowdbot.plugin import (
     record_type,
     record_values,
 )
+from crowdbot.plugin.for_crowds import NEAR_WALLS
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
 
@@ -106,5 +107,6 @@ def build(spec: MoussaidSpec) -> CompiledCost:
             _PARAMS, range=spec.range.value, from_surface=surface, d_max=spec.d_max
         ),
         weight=spec.weight,
-        wall_reach=(spec.d_max * (1.0 + 1e-6), 0.0),
+        wall_reach=(min(NEAR_WALLS, spec.d_max * (1.0 + 1e-6)), 0.0),
+        looks_farther=spec.d_max > NEAR_WALLS,
     )

@@ -88,6 +88,16 @@ def _change(
 
 
 @array_kernel
+def _least(agent: AgentRecord) -> float:
+    """Return the c of half-planes n . u >= c below which all velocities in question are inside.
+
+    Such half-planes change nothing, and most of those of walls are such ones.
+    """
+    asked = math.hypot(agent.asked_x, agent.asked_y) + agent.asked_radius
+    return -(1.0 + 1e-6) * max(agent.max_speed, agent.fastest, asked)
+
+
+@array_kernel
 def _put_walls(
     agent: AgentRecord,
     walls: Rows[WallRecord],
@@ -98,18 +108,22 @@ def _put_walls(
 ) -> int:
     """Write two half-planes per wall: for braking, and for passing its nearest point."""
     own = as_record(params, _PARAMS)
-    vx, vy, radius = agent.vx, agent.vy, agent.radius
+    vx, vy, radius, least = agent.vx, agent.vy, agent.radius, _least(agent)
     for s in range(wall_count):
         d2, rx, ry = walls[s].d2, walls[s].nx, walls[s].ny
         if d2 == 0.0 or not in_range(d2, radius, params):
             continue
         distance = math.sqrt(d2)
-        put(work, count, -rx / distance, -ry / distance, (radius - distance) / _BRAKING)
-        count += 1
+        c = (radius - distance) / _BRAKING
+        if c >= least:
+            put(work, count, -rx / distance, -ry / distance, c)
+            count += 1
         if distance > radius:
             nx, ny, way = _change(rx, ry, vx, vy, radius, own.horizon, 1.0, False)
-            put(work, count, nx, ny, nx * vx + ny * vy + way)
-            count += 1
+            c = nx * vx + ny * vy + way
+            if c >= least:
+                put(work, count, nx, ny, c)
+                count += 1
     return count
 
 

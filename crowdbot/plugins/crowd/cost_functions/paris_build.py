@@ -29,6 +29,7 @@ from crowdbot.plugin import (
     time_to_disc,
     time_to_segment,
 )
+from crowdbot.plugin.for_crowds import MORE_WALLS, is_passed, swept_width, walls_closer_than
 from crowdbot.plugins.crowd.cost_functions.paris import ParisSpec
 
 _BRAKING = 0.5  # s of free distance required before a wall or a pillar
@@ -47,11 +48,12 @@ class _Params(CostParams):
 
 
 class _Header:
-    """Row 0 of ``work``: how many rows of each follow."""
+    """Row 0 of ``work``: how many rows of each follow, and how many walls are in range at all."""
 
     people: float
     pillars: float
     walls: float
+    all_walls: float
 
 
 class _Disc:
@@ -87,6 +89,21 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
     return float(course + 0.001 * math.hypot(ux - preferred, uy))
 
 
+@array_kernel
+def _walls_in_range(
+    agent: AgentRecord, walls: Rows[WallRecord], wall_count: int, params: Pointer
+) -> float:
+    """Return the number of walls in range, or -1 if it depends on walls that were not given."""
+    own, count = as_record(params, _PARAMS), 0
+    if agent.parity != 0.0:
+        return 0.0
+    if agent.walls_within > 0.0:
+        return float(walls_closer_than(agent, own.range + own.from_surface * agent.radius))
+    for s in range(wall_count):
+        count += int(in_range(walls[s].d2, agent.radius, params))
+    return float(count)
+
+
 @declared_kernel(PREPARE)
 def _prepare(
     agent: AgentRecord,
@@ -99,7 +116,7 @@ def _prepare(
 ) -> int:
     """Write people, then pillars: offset, velocity, reach.
 
-    Then walls (the original has none): ends.
+    Then walls (the original has none): ends of those that are near enough for a cost.
     """
     header, discs, found = as_record(work, _HEADER), as_rows(work, _DISC), as_rows(work, _WALL)
     row = 0
@@ -114,9 +131,14 @@ def _prepare(
         if fixed == 0:
             header.people = row
     header.pillars = row - header.people
-    before = row
+    own, before = as_record(params, _PARAMS), row
+    header.all_walls = _walls_in_range(agent, walls, wall_count, params)
+    if header.all_walls < 0.0:
+        return MORE_WALLS
+    far = max(agent.preferred * own.t_max, _BRAKING * max(agent.fastest, agent.asked_radius))
+    far = agent.radius + (1.0 + 1e-6) * far
     for s in range(0 if agent.parity != 0.0 else wall_count):
-        if in_range(walls[s].d2, agent.radius, params):
+        if walls[s].d2 <= far * far and in_range(walls[s].d2, agent.radius, params):
             row += 1
             wall, near_by = found[row], walls[s]
             wall.ax, wall.ay, wall.bx, wall.by = near_by.ax, near_by.ay, near_by.bx, near_by.by
@@ -174,6 +196,8 @@ def _free_way(row: int, ex: float, ey: float, agent: AgentRecord, work: Pointer)
     wall = as_rows(work, _WALL)[row]
     if wall.d2 <= radius * radius:
         return 0.0
+    if is_passed(ex, ey, swept_width(ex, ey, radius), wall.ax, wall.ay, wall.bx, wall.by):
+        return math.inf
     return float(time_to_segment(ex, ey, radius, wall.ax, wall.ay, wall.bx, wall.by))
 
 
@@ -220,8 +244,9 @@ def _excess(
     if agent.parity != 0.0 and preferred > 0.0:
         misfit = _OFFSET + 500.0 * (1.0 - own.w_a) * _rounding(ux, uy, agent)
         ex, ey = _single_unit(ux, uy)
-    total = people + int(header.pillars + header.walls)
-    for row in range(1, total + 1):
+    listed = people + int(header.pillars + header.walls)
+    total = people + int(header.pillars + header.all_walls)
+    for row in range(1, listed + 1):
         if row <= people:
             t1, s1, s2 = _window(row, ex, ey, agent, work, t_max)
             slower = max(0.0, 1.0 - _ratio(s1, preferred))
@@ -256,4 +281,7 @@ def build(spec: ParisSpec) -> CompiledCost:
             t_max=spec.t_max,
         ),
         weight=spec.weight,
+        # Walls that are farther away are only counted.
+        wall_reach=(0.0, (1.0 + 1e-6) * max(spec.t_max, _BRAKING)),
+        looks_farther=True,
     )

@@ -20,6 +20,7 @@ from crowdbot.plugin import (
     record_type,
     record_values,
 )
+from crowdbot.plugin.for_crowds import is_passed, swept_width
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,
@@ -28,7 +29,11 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
     to_target,
 )
 from crowdbot.plugins.crowd.cost_functions.power_law import PowerLawSpec
-from crowdbot.plugins.crowd.cost_functions.wall_points_build import counts, mark_repeated
+from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
+    choose,
+    chosen,
+    leave_out_repeated,
+)
 
 _SOONEST = 0.001  # s; collisions sooner than this exert no force
 
@@ -65,6 +70,21 @@ def _repulsion(
     return fx, fy
 
 
+@array_kernel
+def _pushing_walls(
+    agent: AgentRecord, walls: Rows[WallRecord], wall_count: int, params: Pointer, work: Pointer
+) -> int:
+    """Choose walls as points, without those clearly beside the way or too late; return how many."""
+    vx, vy, tau0 = agent.vx, agent.vy, as_record(params, _PARAMS).tau0
+    width = swept_width(vx, vy, agent.radius)
+    far, count = agent.radius + (1.0 + 1e-6) * tau0 * math.sqrt(vx * vx + vy * vy) + 1e-6, 0
+    for s in range(0 if agent.parity != 0.0 else wall_count):
+        x, y = walls[s].nx, walls[s].ny
+        if walls[s].d2 <= far * far and not is_passed(vx, vy, width, x, y, x, y):
+            count = choose(count, s, work)
+    return int(leave_out_repeated(walls, count, work))
+
+
 @declared_kernel(PREPARE)
 def _prepare(
     agent: AgentRecord,
@@ -82,11 +102,10 @@ def _prepare(
             wx, wy = vx - near[j].nvx, vy - near[j].nvy
             ax, ay = _repulsion(near[j].rx, near[j].ry, wx, wy, near[j].reach, params)
             fx, fy = fx + ax, fy + ay
-    if agent.parity == 0.0:
-        mark_repeated(walls, wall_count, work)
-    for s in range(0 if agent.parity != 0.0 else wall_count):
-        if counts(s, agent, walls, params, work):
-            ax, ay = _repulsion(walls[s].nx, walls[s].ny, vx, vy, agent.radius, params)
+    for k in range(_pushing_walls(agent, walls, wall_count, params, work)):
+        wall = walls[chosen(k, work)]
+        if in_range(wall.d2, agent.radius, params):
+            ax, ay = _repulsion(wall.nx, wall.ny, vx, vy, agent.radius, params)
             fx, fy = fx + ax, fy + ay
     return int(aim(fx, fy, agent, work))
 
@@ -104,4 +123,6 @@ def build(spec: PowerLawSpec) -> CompiledCost:
             _PARAMS, range=spec.range.value, from_surface=surface, k=spec.k, tau0=spec.tau0
         ),
         weight=spec.weight,
+        # Later collisions exert no force.
+        wall_reach=(0.0, spec.tau0),
     )

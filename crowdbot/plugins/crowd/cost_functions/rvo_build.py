@@ -27,6 +27,7 @@ from crowdbot.plugin import (
     record_values,
     soonest_disc,
 )
+from crowdbot.plugin.for_crowds import NEAR_WALLS
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 
 #: Later than any finite collision time, s.
@@ -119,4 +120,6 @@ def build(spec: RvoSpec) -> CompiledCost:
         lower_bound=_lower_bound,
         params=record_values(_PARAMS, range=spec.range.value, from_surface=surface, w=spec.w),
         weight=spec.weight,
+        wall_reach=(min(NEAR_WALLS, spec.range.value), 0.0),
+        looks_farther=True,
     )

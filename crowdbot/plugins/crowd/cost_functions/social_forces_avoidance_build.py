@@ -23,7 +23,7 @@ from crowdbot.plugin import (
     record_type,
     record_values,
 )
-from crowdbot.plugin.for_crowds import opposite_taken_for_parallel
+from crowdbot.plugin.for_crowds import MORE_WALLS, opposite_taken_for_parallel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
     aim,
     from_target,
@@ -32,9 +32,19 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
     to_target,
 )
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
-from crowdbot.plugins.crowd.cost_functions.wall_points_build import SAME, counts, mark_repeated
+from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
+    SAME,
+    choose,
+    chosen,
+    leave_out_repeated,
+)
 
 _CLOSEST = 0.001  # m; nothing nearer exerts a force
+#: A force exp(_LOST) times weaker than a sum is lost when it is added, although the sum may shrink
+#: to _LESS of itself: 2^-60 is below 2^-55 times 2^-4.
+_LOST, _LESS = 60.0 * math.log(2.0), 2.0**-4
+#: Walls are first looked at up to this many times their reach r.
+_REACHES = 60.0
 _SEEN = math.cos(math.radians(100.0))  # half the field of view
 
 
@@ -118,6 +128,40 @@ def _faces(s: int, agent: AgentRecord, walls: Rows[WallRecord], params: Pointer)
     return bool(outside and not second and in_range(wall.d2, agent.radius, params))
 
 
+@array_kernel
+def _lost_beyond(least: float, params: Pointer) -> float:
+    """Return the distance (m) beyond which walls are lost in rounding a sum near ``least``."""
+    own = as_record(params, _PARAMS)
+    if least <= 0.0 or own.u0 <= 0.0:
+        return math.inf
+    return float(max(0.0, own.r * (math.log(own.u0 / own.r / least) + _LOST)))
+
+
+@array_kernel
+def _add_walls(
+    fx: float, fy: float, far: float, least: float, agent: AgentRecord, walls: Rows[WallRecord],
+    wall_count: int, params: Pointer, work: Pointer,
+) -> tuple[bool, float, float]:  # fmt: skip
+    """Add the forces of walls up to ``far``; not True if others might have changed the sum's bits.
+
+    Args:
+        least: as of `_lost_beyond`; 0: all walls are added.
+    """
+    count, least = 0, _LESS * least
+    for s in range(wall_count):
+        if walls[s].d2 <= far * far:
+            count = choose(count, s, work)
+    for k in range(leave_out_repeated(walls, count, work)):
+        wall = walls[chosen(k, work)]
+        if not in_range(wall.d2, agent.radius, params):
+            continue
+        push = _wall(-wall.nx, -wall.ny, math.sqrt(wall.d2), False, params)
+        fx, fy = fx + push[0], fy + push[1]
+        if abs(fx) < least or abs(fy) < least:
+            return False, 0.0, 0.0
+    return True, fx, fy
+
+
 @declared_kernel(PREPARE)
 def _prepare(
     agent: AgentRecord,
@@ -141,14 +185,24 @@ def _prepare(
         else:
             push = _people(agent, near, j, params)
         fx, fy = fx + push[0], fy + push[1]
-    if not parity:
-        mark_repeated(walls, wall_count, work)
-    for s in range(wall_count):
-        if _faces(s, agent, walls, params) if parity else counts(s, agent, walls, params, work):
-            distance = math.sqrt(walls[s].d2)
-            push = _wall(-walls[s].nx, -walls[s].ny, distance, parity, params)
-            fx, fy = fx + push[0], fy + push[1]
-    return int(aim(fx, fy, agent, work))
+    if parity:
+        for s in range(wall_count):
+            if _faces(s, agent, walls, params):
+                push = _wall(-walls[s].nx, -walls[s].ny, math.sqrt(walls[s].d2), True, params)
+                fx, fy = fx + push[0], fy + push[1]
+        return int(aim(fx, fy, agent, work))
+    # The weaker, the smaller the sum has to be that it can change.
+    least = min(abs(fx), abs(fy))
+    own, far = as_record(params, _PARAMS), _lost_beyond(least, params)
+    given = not 0.0 < agent.walls_within < own.range + own.from_surface * agent.radius
+    if given or far <= agent.walls_within:
+        done, gx, gy = _add_walls(fx, fy, far, least, agent, walls, wall_count, params, work)
+        if done:
+            return int(aim(gx, gy, agent, work))
+    if not given:
+        return MORE_WALLS
+    _, gx, gy = _add_walls(fx, fy, math.inf, 0.0, agent, walls, wall_count, params, work)
+    return int(aim(gx, gy, agent, work))
 
 
 def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
@@ -172,4 +226,6 @@ def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
             relative=float(spec.stride == "relative"),
         ),
         weight=spec.weight,
+        wall_reach=(min(_REACHES * spec.r, spec.range.value), 0.0),
+        looks_farther=True,
     )

@@ -26,6 +26,7 @@ from crowdbot.plugin import (
     record_type,
     record_values,
 )
+from crowdbot.plugin.for_crowds import NEAR_WALLS
 from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 
 
@@ -93,5 +94,6 @@ def build(spec: VanTollSpec) -> CompiledCost:
             max_distance=spec.max_distance,
         ),
         weight=spec.weight,
-        wall_reach=(spec.max_distance * (1.0 + 1e-6), 0.0),
+        wall_reach=(min(NEAR_WALLS, spec.max_distance * (1.0 + 1e-6)), 0.0),
+        looks_farther=spec.max_distance > NEAR_WALLS,
     )

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 from crowdbot.plugin import (
-    AgentRecord,
     Pointer,
     Rows,
     WallRecord,
     array_kernel,
-    in_range,
 )
 
 #: Points nearer to each other than this are one, m.
@@ -19,44 +17,48 @@ SAME = 1e-9
 _CELL = 1e-6
 #: With fewer walls all pairs are tried.
 _FEW = 16
-#: Entries of ``work`` before the marks; forces need fewer.
+#: Entries of ``work`` before the chosen walls; forces need fewer.
 _FIRST = 8
 
 
 @array_kernel
-def mark_repeated(walls: Rows[WallRecord], count: int, work: Pointer) -> None:
-    """Note in ``work`` which walls have the nearest point of a wall before them; see `counts`.
+def choose(k: int, s: int, work: Pointer) -> int:
+    """Note wall s as number k of those chosen; return the number of these."""
+    work[_FIRST + k] = s
+    return k + 1
+
+
+@array_kernel
+def chosen(k: int, work: Pointer) -> int:
+    """Return the index of wall number k of those chosen."""
+    return int(work[_FIRST + k])
+
+
+@array_kernel
+def leave_out_repeated(walls: Rows[WallRecord], count: int, work: Pointer) -> int:
+    """Leave out chosen walls with the nearest point of a wall chosen before; return how many stay.
 
     A table of cells finds equal points, so that the time grows as the number of walls does.
     """
-    size = 2
+    size, stay = 2, 0
     while size < 2 * count:
         size *= 2
     table = _FIRST + count
     if count > _FEW:
         for k in range(size):
             work[table + k] = -1.0
-    for s in range(count):
+    for k in range(count):
+        s, known = chosen(k, work), False
         if count > _FEW:
-            work[_FIRST + s] = 1.0 if _is_known(walls, s, table, size, work) else 0.0
+            known = _is_known(walls, s, table, size, work)
             _remember(walls, s, table, size, work)
         else:
-            work[_FIRST + s] = 0.0
-            for earlier in range(s):
-                if _are_one(walls, s, earlier):
-                    work[_FIRST + s] = 1.0
-
-
-@array_kernel
-def counts(
-    s: int, agent: AgentRecord, walls: Rows[WallRecord], params: Pointer, work: Pointer
-) -> bool:
-    """Return True if wall s is in range, and its nearest point not that of a wall before it.
-
-    Args:
-        work: as `mark_repeated` left it.
-    """
-    return bool(in_range(walls[s].d2, agent.radius, params) and work[_FIRST + s] == 0.0)
+            for earlier in range(k):
+                known = known or _are_one(walls, s, int(work[table + earlier]))
+            work[table + k] = s
+        if not known:
+            stay = choose(stay, s, work)
+    return stay
 
 
 @array_kernel

@@ -14,20 +14,29 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.build import build_cost
 from crowdbot.core.crowd.policy import CrowdPolicy
 from crowdbot.core.crowd.velocity_search.cost import CompiledCost
-from crowdbot.core.crowd.velocity_search.records import AGENT, COST_PARAMS, WALL, WORK_COLUMNS
-from crowdbot.core.support.records import record_values, rows_of
+from crowdbot.core.crowd.velocity_search.records import WALL, WORK_COLUMNS
+from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.plugin import Pointer
-from crowdbot.plugins.crowd.cost_functions.wall_points_build import SAME, counts, mark_repeated
+from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
+    SAME,
+    choose,
+    chosen,
+    leave_out_repeated,
+)
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 from crowdbot.plugins.crowd.policies.velocity_space_build import VelocitySpace
 
 FAR = {"range": {"value": 100.0, "measure": "surface"}}
 BOUNDED = [
-    "foe_avoidance", "goal_reaching_force", "karamouzas", "moussaid", "orca", "pledestrians",
-    "random_function", "ttca_dca", "van_toll",
+    "foe_avoidance", "goal_reaching_force", "karamouzas", "moussaid", "orca", "paris",
+    "pledestrians", "power_law", "random_function", "rvo", "social_forces_avoidance", "ttca_dca",
+    "van_toll",
 ]  # fmt: skip
-METHODS = {"orca": "global", "foe_avoidance": "gradient"}
+METHODS = {
+    "orca": "global", "foe_avoidance": "gradient", "power_law": "gradient",
+    "social_forces_avoidance": "gradient",
+}  # fmt: skip
 
 
 def _rooms(rng: np.random.Generator) -> Array:
@@ -45,13 +54,21 @@ def _rooms(rng: np.random.Generator) -> Array:
 
 def _choices(kind: str, whole: bool) -> Array:
     """States after 0.3 s with the wall reach of a function, or with all walls."""
-    known, rng = registry(), np.random.default_rng(4)
+    rng, count = np.random.default_rng(4), 40
+    walls, at = _rooms(rng), rng.uniform(-25.0, 25.0, (2, count))
+    return _states(kind, whole, walls, (at[0], at[1]), rng.normal(0.0, 1.5, (count, 2)))
+
+
+def _states(
+    kind: str, whole: bool, walls: Array, at: tuple[Array, Array], velocity: Array
+) -> Array:
+    known, rng, count = registry(), np.random.default_rng(5), len(velocity)
     function: Any = build_cost(
         known, known.find("cost function", kind).spec.model_validate({"kind": kind} | FAR)
     )
     assert isinstance(function, CompiledCost)
     assert function.wall_reach is not None
-    shown = replace(function, wall_reach=None) if whole else function
+    shown = replace(function, wall_reach=None, looks_farther=False) if whole else function
     spec = VelocitySpaceSpec.model_validate(
         {"kind": "velocity_space", "relaxation_time": 0.4, "method": METHODS.get(kind, "sampling")}
     )
@@ -59,17 +76,14 @@ def _choices(kind: str, whole: bool) -> Array:
     def make(agents: Agents) -> CrowdPolicy:
         return VelocitySpace(spec, [shown], agents)
 
-    walls, count = _rooms(rng), 40
-    x, y = rng.uniform(-25.0, 25.0, (2, count))
     goals = rng.uniform(-25.0, 25.0, (count, 2))
     agents = Agents.of(
-        x=x, y=y, radius=0.25, preferred_speed=rng.uniform(0.5, 1.6, count),
+        x=at[0], y=at[1], radius=0.25, preferred_speed=rng.uniform(0.5, 1.6, count),
         routes=[[(float(a), float(b))] for a, b in goals],
     )  # fmt: skip
     engine = CrowdEngine(agents, CrowdWorld(walls=walls), make)
     flat = engine.initial_state()
-    people = s.view(flat)[1]
-    people[:, s.VX : s.VY + 1] = rng.normal(0.0, 1.5, (count, 2))
+    s.view(flat)[1][:, s.VX : s.VY + 1] = velocity
     for _ in range(24):
         engine.advance(flat)
     return flat
@@ -92,13 +106,23 @@ def test_walls_are_points_that_count_once() -> None:
     expected = ~np.any(np.tril(gap <= SAME, -1), axis=1)
     assert 30 < np.count_nonzero(expected) < 200
     work = np.zeros(1 + 7 * WORK_COLUMNS * 300)
-    params = record_values(COST_PARAMS, range=5.0, from_surface=0.0)
     for number in (300, 12):
-        assert _counted(walls, number, params, work) == list(expected[:number])
+        assert _left(walls, number, work) == list(np.flatnonzero(expected[:number]))
 
 
-def _counted(walls: Any, number: int, params: Array, work: Array) -> list[bool]:
-    agent: Any = rows_of(1, AGENT)[0]
-    pointers: tuple[Pointer, Pointer] = (params, work)
-    mark_repeated(walls, number, pointers[1])
-    return [counts(k, agent, walls, *pointers) for k in range(number)]
+def _left(walls: Any, number: int, work: Pointer) -> list[int]:
+    """Indices of the walls that are left of the first ones."""
+    for k in range(number):
+        choose(k, k, work)
+    return [chosen(k, work) for k in range(leave_out_repeated(walls, number, work))]
+
+
+@pytest.mark.parametrize("kind", ["moussaid", "rvo", "social_forces_avoidance"])
+def test_walls_are_looked_up_by_someone_outside_of_their_box_and_by_someone_who_creeps(
+    kind: str,
+) -> None:
+    walls = _rooms(np.random.default_rng(7))
+    at = (np.array([-60.0, 0.2, 0.2]), np.array([3.0, 0.1, 55.0]))
+    velocity = np.array([[1.2, 0.1], [1e-6, 2e-7], [0.0, -1.3]])
+    given, whole = (_states(kind, whole, walls, at, velocity) for whole in (False, True))
+    assert np.array_equal(given, whole)

@@ -1,0 +1,34 @@
+"""All walls of a floor for decisions that look farther than the walls they are given."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.crowd.velocity_search.records import FLOOR, FloorRecord
+from crowdbot.core.geometry.segment_grid import SegmentGrid, grid_of
+from crowdbot.core.support.records import Rows, rows_of
+from crowdbot.core.types.arrays import Array
+
+#: Arrays that have to live as long as their address is used.
+Kept = tuple[Rows[FloorRecord], Array, SegmentGrid]
+
+
+def floor_of(walls: Array, radius: float) -> tuple[Kept, int]:
+    """Return arrays that the caller keeps, and the address of their `FloorRecord`.
+
+    Args:
+        walls: (S, 4), m.
+        radius: of the widest person, m: cells list the walls that this one may touch.
+    """
+    walls = np.ascontiguousarray(walls, np.float64)
+    grid, floor = grid_of(walls, radius), rows_of(1, FLOOR)
+    ends = walls.reshape(-1, 2) if len(walls) else np.zeros((1, 2))
+    values = (
+        walls.ctypes.data, len(walls), *ends.min(axis=0), *ends.max(axis=0), *grid.frame,
+        grid.first.ctypes.data, grid.near.ctypes.data,
+    )  # fmt: skip
+    own: Any = floor
+    own.view(np.float64)[:] = values
+    return (floor, walls, grid), int(own.ctypes.data)
