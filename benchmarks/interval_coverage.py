@@ -29,7 +29,7 @@ from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.effect_size import effect_size
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.sign_flip import p_value
-from crowdbot.core.statistics.signed_rank import signed_ranks
+from crowdbot.core.statistics.signed_rank import double_ranks, signed_ranks
 
 DRAWS, SCENARIOS, CONDITIONS = 18, 9, 18
 #: Means of the conditions, in standard deviations of people.
@@ -75,7 +75,7 @@ def intervals(values: Floats, groups: Clusters) -> Iterator[tuple[str, str, Esti
     yield "mean t", "mean", c.mean(values, groups)
     yield "d", "d", effect_size(values, groups)
     yield "P(better) t", "P", c.mean(0.5 + np.sign(values) / 2, groups)
-    ranks = signed_ranks(values).astype(float)
+    ranks = signed_ranks(values, double_ranks(values)).astype(float)
     yield "rank r t", "rank", c.ratio(ranks, np.abs(ranks), groups)
 
 

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 KEPT_BITS = 16
 _BITS = 52
 _PLANES = 4
+#: Numbers that are rounded together: what they need stays in the processor's cache.
+_AT_ONCE = 65_536
 
 
 def pack(numbers: NDArray[np.float64]) -> str:
@@ -22,18 +24,20 @@ def pack(numbers: NDArray[np.float64]) -> str:
     The kept part of a double is its four highest bytes. All first bytes are stored first, then all
     second ones and so on, since similar bytes compress well together.
     """
-    words = _rounded(np.asarray(numbers, float)) >> np.uint64(8 * _PLANES)
-    return _in_planes(words.astype(">u4"))
+    flat = np.asarray(numbers, float).ravel()
+    planes = np.empty((_PLANES, len(flat)), np.uint8)
+    for start in range(0, len(flat), _AT_ONCE):
+        part = slice(start, start + _AT_ONCE)
+        words = (_rounded(flat[part]) >> np.uint64(8 * _PLANES)).astype(">u4")
+        planes[:, part] = words.reshape(-1, 1).view(np.uint8).T
+    return deflate(planes.tobytes(), zlib.Z_RLE)
 
 
 def pack_whole(numbers: NDArray[np.float64]) -> str:
     """Pack numbers with all digits, eight bytes each."""
-    return _in_planes(np.ascontiguousarray(numbers, dtype=np.float64).astype(">f8"))
-
-
-def _in_planes(words: NDArray[Any]) -> str:
+    words = np.ascontiguousarray(numbers, dtype=np.float64).astype(">f8")
     planes = words.reshape(-1, 1).view(np.uint8)
-    return deflate(np.ascontiguousarray(planes.T).tobytes())
+    return deflate(np.ascontiguousarray(planes.T).tobytes(), zlib.Z_RLE)
 
 
 def _rounded(numbers: NDArray[np.float64]) -> NDArray[np.uint64]:
@@ -52,6 +56,13 @@ def pack_document(document: Any) -> str:
     return deflate(text.encode())
 
 
-def deflate(data: bytes) -> str:
-    """Compress bytes with zlib and base64."""
-    return base64.b64encode(zlib.compress(data, 6)).decode("ascii")
+def deflate(data: bytes, strategy: int = zlib.Z_DEFAULT_STRATEGY) -> str:
+    """Compress bytes with zlib and base64.
+
+    Args:
+        data: the bytes.
+        strategy: of zlib. In planes of numbers only runs of equal bytes repeat: `zlib.Z_RLE` takes
+            a tenth of the time of a search for longer repetitions, and leaves no more.
+    """
+    packer = zlib.compressobj(6, strategy=strategy)
+    return base64.b64encode(packer.compress(data) + packer.flush()).decode("ascii")

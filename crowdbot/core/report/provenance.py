@@ -75,13 +75,11 @@ def _merged(
         documents: many of which are the same object.
         part: the part of each that is wanted.
     """
-    alike: dict[int, tuple[Mapping[str, str], int]] = {}
-    for document in documents:
-        _, times = alike.get(id(document), (document, 0))
-        alike[id(document)] = document, times + 1
+    given = list(documents)  # keeps them alive, so that numbers of objects stay their own
+    by_number = dict(zip(map(id, given), given, strict=True))
     counts: dict[str, Counter[str]] = {}
-    for document, times in alike.values():
-        for name, text in part(document).items():
+    for number, times in Counter(map(id, given)).items():
+        for name, text in part(by_number[number]).items():
             counts.setdefault(name, Counter())[text] += times
     return {
         name: next(iter(found)) if len(found) == 1 else _different(found)

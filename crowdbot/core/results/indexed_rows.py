@@ -46,16 +46,12 @@ class IndexedRun(RunRow):
     """A run from the index, whose record is parsed when asked for."""
 
     _packed: bytes = b""
-    _known: Mapping[str, Any] = {}  # both are empty unless it comes from the index
-    _more: Mapping[str, Any] = {}
 
     @staticmethod
     def of(known: Mapping[str, Any], more: Mapping[str, Any], packed: bytes) -> IndexedRun:
         """Return a run from its own columns, shared ones, and its compressed record."""
         run = object.__new__(IndexedRun)
-        run.__dict__.update(
-            directory=known["directory"], entry="", _known=known, _more=more, _packed=packed
-        )
+        run.__dict__.update(known, **more, entry="", _packed=packed)
         return run
 
     record: RunRecord = cast(RunRecord, _ParsedRecord())
@@ -64,24 +60,26 @@ class IndexedRun(RunRow):
         return f"IndexedRun(directory={self.directory!r}, entry={self.entry!r})"
 
 
-def _column(name: str) -> property:
-    """Return a property that takes its value from the index, else from the record."""
-    plain: Any = vars(RunRow)[name]
+class _FromRecord:
+    """A property of `RunRow` that a run's own attribute of the same name goes before.
 
-    def value(self: IndexedRun) -> Any:
-        if name in self._known:
-            return self._known[name]
-        if name in self._more:
-            return self._more[name]
-        return plain.func(self) if isinstance(plain, cached_property) else plain.fget(self)
+    Columns of the index are plain attributes of a run: pages read millions of them.
+    """
 
-    value.__doc__ = plain.__doc__
-    return property(value)
+    def __init__(self, plain: Any) -> None:
+        self._plain = plain
+        self.__doc__ = plain.__doc__
+
+    def __get__(self, run: IndexedRun | None, owner: type) -> Any:
+        if run is None:
+            return self
+        plain = self._plain
+        return plain.func(run) if isinstance(plain, cached_property) else plain.fget(run)
 
 
 for _name in (*_PLAIN, "moment", "axes", "conditions", "provenance", *_MORE):
     if _name != "directory":
-        setattr(IndexedRun, _name, _column(_name))
+        setattr(IndexedRun, _name, _FromRecord(vars(RunRow)[_name]))
 
 
 class Texts:
@@ -134,16 +132,16 @@ def row_of(run: RunRow, scores: Sequence[Score], texts: Texts) -> dict[str, Any]
         "position": run.record.position,
         "moment": None if run.moment is None else json.dumps(run.moment),
         **{name: texts.number(value) for name, value in shared.items()},
-        "record": zlib.compress(json.dumps(run.record.document()).encode(), 1),
+        "record": zlib.compress(run.record.model_dump_json(exclude_unset=True).encode(), 1),
         "scores": b"".join(a.tobytes() for a in (*numbers, state)),
     }
 
 
 def read_all(database: sqlite3.Connection, order: str) -> tuple[tuple[RunRow, ...], ScoreColumns]:
     """Return all runs in some order, and their scores by run, metric and variant."""
-    texts, runs, found = Texts(database), list[RunRow](), list[tuple[str, int, int, bytes]]()
+    texts, runs, found = Texts(database), list[RunRow](), dict[int, _Packed]()
     query = f"SELECT {', '.join(_SELECTED)} FROM runs {order}"  # noqa: S608  names of ours
-    for row in database.execute(query):
+    for place, row in enumerate(database.execute(query)):
         known = dict(zip(_PLAIN, row, strict=False))
         known["privileged"], known["pinned"] = bool(known["privileged"]), bool(known["pinned"])
         moment, *shared, labels, states, record, scores = row[len(_PLAIN) :]
@@ -151,26 +149,45 @@ def read_all(database: sqlite3.Connection, order: str) -> tuple[tuple[RunRow, ..
         known |= {"axes": axes, "conditions": conditions, "provenance": provenance}
         known["moment"] = None if moment is None else json.loads(moment)
         runs.append(IndexedRun.of(known, more, record))
-        found.append((known["run_id"], labels, states, scores))
+        found.setdefault(labels, _Packed()).add(place, known["run_id"], states, scores)
     return tuple(runs), _columns(found, texts)
 
 
-def _columns(found: Sequence[tuple[str, int, int, bytes]], texts: Texts) -> ScoreColumns:
-    """Return the scores of runs: id, numbers of labels and states, packed values."""
-    ids, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[ColumnState]()
-    groups: dict[int, list[int]] = {}
-    for place, (_, number, _, _) in enumerate(found):
-        groups.setdefault(number, []).append(place)
-    parts = [
-        _part([found[i] for i in places], places, (ids, labels, states), texts)
-        for places in groups.values()
-    ]
-    order = np.concatenate([place for place, *_ in parts] or [np.empty(0, np.int32)])
-    by_run = np.argsort(order, kind="stable") if len(parts) > 1 else slice(None)
-    columns = [np.concatenate(some)[by_run] for some in zip(*(p[1:] for p in parts), strict=True)]
+class _Packed:
+    """Scores of runs that have the same labels.
+
+    Attributes:
+        places: of the runs in their order; ``ids``: of the runs.
+        states: number of each run's states.
+        scores: packed values of one run after the other.
+    """
+
+    def __init__(self) -> None:
+        self.places, self.ids, self.states = list[int](), list[str](), list[int]()
+        self.scores = bytearray()
+
+    def add(self, place: int, run_id: str, states: int, scores: bytes) -> None:
+        """Add a run."""
+        self.places.append(place)
+        self.ids.append(run_id)
+        self.states.append(states)
+        self.scores += scores
+
+
+def _columns(found: Mapping[int, _Packed], texts: Texts) -> ScoreColumns:
+    """Return the scores of runs by number of their labels."""
+    known = Numbered[str](), Numbered[ScoreLabel](), Numbered[ColumnState]()
+    parts = [_part(packed, texts.value(number), known, texts) for number, packed in found.items()]
+    if len(parts) == 1:
+        columns = list(parts[0][1:])
+    else:
+        order = np.concatenate([place for place, *_ in parts] or [np.empty(0, np.int32)])
+        by_run = np.argsort(order, kind="stable")
+        joined = zip(*(part[1:] for part in parts), strict=True)
+        columns = [np.concatenate(some)[by_run] for some in joined]
     run, label, state, value, lower, upper = columns or _nothing()
     return ScoreColumns(
-        run_ids=tuple(ids), labels=tuple(labels), states=tuple(states),
+        run_ids=tuple(known[0]), labels=tuple(known[1]), states=tuple(known[2]),
         run=run, label=label, state=state, value=value, lower=lower, upper=upper,
     )  # fmt: skip
 
@@ -180,29 +197,29 @@ def _nothing() -> list[NDArray[Any]]:
 
 
 def _part(
-    found: Sequence[tuple[str, int, int, bytes]],
-    places: Sequence[int],
+    found: _Packed,
+    names: Sequence[Sequence[str]],
     known: tuple[Numbered[str], Numbered[ScoreLabel], Numbered[ColumnState]],
     texts: Texts,
 ) -> tuple[NDArray[Any], ...]:
     """Return places, then columns, of the scores of runs that have the same labels."""
     ids, labels, states = known
-    label = np.array([labels.place(ScoreLabel(*one)) for one in texts.value(found[0][1])], "i4")
-    width, count = len(label), len(found)
-    packed = np.frombuffer(b"".join(p for *_, p in found), np.uint8).reshape(count, width * _BYTES)
+    label = np.array([labels.place(ScoreLabel(*one)) for one in names], "i4")
+    width, count = len(label), len(found.ids)
+    packed = np.frombuffer(found.scores, np.uint8).reshape(count, width * _BYTES)
     ends = [0, 8 * width, 16 * width, 24 * width, _BYTES * width]
     cut = [np.ascontiguousarray(packed[:, a:b]) for a, b in pairwise(ends)]
     value, lower, upper = (one.view("<f8").ravel() for one in cut[:3])
     state = cut[3].view("<u2").astype("i4")
-    kinds = np.array([number for _, _, number, _ in found])
+    kinds = np.array(found.states)
     for kind in np.unique(kinds):
         table = np.array([states.place(ColumnState(*one)) for one in texts.value(int(kind))], "i4")
         here = kinds == kind
         state[here] = table[state[here]] if len(table) else state[here]
-    run = np.array([ids.place(name) for name, *_ in found], "i4")
+    run = np.array([ids.place(name) for name in found.ids], "i4")
     return (
-        np.repeat(np.asarray(places, "i4"), width), np.repeat(run, width), np.tile(label, count),
-        state.ravel(), value, lower, upper,
+        np.repeat(np.asarray(found.places, "i4"), width), np.repeat(run, width),
+        np.tile(label, count), state.ravel(), value, lower, upper,
     )  # fmt: skip
 
 

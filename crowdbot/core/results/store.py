@@ -10,6 +10,7 @@ import json
 import logging
 import os
 import sqlite3
+import stat
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
@@ -348,30 +349,56 @@ _FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error",
 
 
 def _scan(root: Path) -> Iterator[tuple[str, str]]:
-    """Yield runs and failures below a root with their stamps, without calibration runs."""
-    top = len(str(root)) + 1
-    for folder, below, names in os.walk(root):
-        here, place = Path(folder), folder[top:].replace(os.sep, "/") or "."
-        if files.RECORD in names:
-            below.clear()
-            try:
-                yield place, _stamp_of_run(folder)
-            except OSError:  # replaced at this moment, or a broken link
-                if (here / files.RECORD).is_symlink():
-                    yield place, ""
+    """Yield runs and failures below a root with their stamps, without calibration runs.
+
+    Folders of runs, which are most, are not listed: the files of a run have known names.
+    """
+    top, waiting = len(str(root)) + 1, [str(root)]
+    while waiting:
+        folder = waiting.pop()
+        place = folder[top:].replace(os.sep, "/") or "."
+        if stamp := _stamp_if_run(folder):
+            yield place, stamp
+            continue
+        names, below = _listed(folder)
+        if files.RECORD in names:  # replaced at this moment, or a broken link
+            if os.path.islink(f"{folder}/{files.RECORD}"):  # noqa: PTH114  as below
+                yield place, ""
             continue
         if files.RECORDING in names or files.SCORES in names:
-            below.clear()
             yield place, ""
             continue
-        if here == root:
-            below[:] = [b for b in below if b != "references"]
-        below[:] = sorted(b for b in below if ".partial" not in b and ".old-" not in b)
+        if folder == str(root):
+            below.discard("references")
+        kept = (b for b in below if ".partial" not in b and ".old-" not in b)
+        waiting += [f"{folder}{os.sep}{b}" for b in sorted(kept, reverse=True)]
         for name in names:
-            run = here / name.removesuffix(SUFFIX)
-            if name.endswith(SUFFIX) and not (run / files.RECORD).exists():
+            run = f"{folder}/{name.removesuffix(SUFFIX)}"
+            if name.endswith(SUFFIX) and not os.path.exists(f"{run}/{files.RECORD}"):  # noqa: PTH110
                 with suppress(OSError):
-                    yield (here / name).relative_to(root).as_posix(), _stamp(here / name)
+                    file = f"{folder}{os.sep}{name}"
+                    yield file[top:].replace(os.sep, "/"), _stamp(file)
+
+
+def _listed(folder: str) -> tuple[list[str], set[str]]:
+    """Return the names of files in a folder, and of folders that are no links."""
+    names, below = list[str](), set[str]()
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if not entry.is_dir():
+                names.append(entry.name)
+            elif not entry.is_symlink():
+                below.add(entry.name)
+    return names, below
+
+
+def _stamp_if_run(folder: str) -> str:
+    """Return the stamp of a run; empty if the folder is none, or its record cannot be read."""
+    try:
+        about = os.stat(f"{folder}/{files.RECORD}")  # noqa: PTH116  many files: a Path takes longer
+        return "" if stat.S_ISDIR(about.st_mode) else _stamp_of_run(folder)
+    except OSError:
+        return ""
 
 
 def _stamp(file: str | Path) -> str:

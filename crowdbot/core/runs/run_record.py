@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -72,9 +73,10 @@ class _Record(CostPart):
         Raises:
             InputError: something is missing or malformed; it begins with ``what``.
         """
-        if problems := _problems(cls, document):
-            raise InputError(f"{what}: {problems[0]}")
-        return cls.model_validate(dict(document))
+        try:
+            return cls.model_validate(dict(document))
+        except (ValidationError, RecursionError) as error:
+            raise InputError(f"{what}: {_described(error)[0]}") from None
 
     @classmethod
     def read(cls, directory: Path) -> Self:
@@ -179,10 +181,10 @@ class RunRecord(_Record, RunIdentity):
     @property
     def compared(self) -> dict[str, str]:
         """Conditions that must be equal in runs that are compared, name -> text."""
-        metrics = {n: json.dumps(m.document(), sort_keys=True) for n, m in self.metrics.items()}
+        parts = self.model_dump_json(exclude_unset=True, include={"metrics"})
         return {
             **self.conditions,
-            **{f"metrics.{name}": text for name, text in metrics.items()},
+            **_metric_conditions(parts),
             **{f"versions.{name}": version for name, version in self.versions.items()},
             "processor": self.machine.get("processor", ""),
         }
@@ -195,6 +197,17 @@ class RunRecord(_Record, RunIdentity):
             stacklevel=2,
         )
         return self.document()[key]
+
+
+@lru_cache(maxsize=64)
+def _metric_conditions(record: str) -> Mapping[str, str]:
+    """Return the conditions in a record's metrics; cached, since the runs of a campaign share them.
+
+    Args:
+        record: JSON with the key ``metrics`` only.
+    """
+    metrics = json.loads(record)["metrics"].items()
+    return {f"metrics.{name}": json.dumps(part, sort_keys=True) for name, part in metrics}
 
 
 class ReferenceIdentity(RecordPart):
@@ -224,11 +237,15 @@ def record_problems(document: Mapping[str, Any]) -> list[str]:
 def _problems(model: type[RecordPart], document: Mapping[str, Any]) -> list[str]:
     try:
         model.model_validate(dict(document))
-    except ValidationError as error:
-        return [_problem(e["loc"], e["msg"]) for e in error.errors(include_url=False)]
-    except RecursionError:
-        return ["it is nested too deep"]
+    except (ValidationError, RecursionError) as error:
+        return _described(error)
     return []
+
+
+def _described(error: ValidationError | RecursionError) -> list[str]:
+    if isinstance(error, RecursionError):
+        return ["it is nested too deep"]
+    return [_problem(e["loc"], e["msg"]) for e in error.errors(include_url=False)]
 
 
 def _problem(place: tuple[int | str, ...], message: str) -> str:

@@ -43,6 +43,8 @@ _VALUE_WIDTH, _WHOLE_NAMES = 20, 80
 _NAME_WIDTH = 14
 _NUMBERS = ("value", "lower", "upper")
 _TEXTS = ("category", "metric", "symbol", "variant", "unit", "better", "status", "reason")
+#: Place of the value among the columns from ``category`` on.
+_VALUE = COLUMNS.index("value") - COLUMNS.index("category")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,10 +136,10 @@ def parse_scores(text: str, name: str | os.PathLike[str]) -> list[RunScore]:
     """
     path = os.fspath(name)
     try:
-        reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
-        if tuple(reader.fieldnames or ()) != COLUMNS:
+        reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+        if tuple(next(reader, ())) != COLUMNS:
             raise InputError(f"{path}:1: not a table of scores: expected {','.join(COLUMNS)}")
-        return [_row(path, reader.line_num, cells) for cells in reader]
+        return [_row(path, reader.line_num, cells) for cells in reader if cells]
     except csv.Error as error:
         raise InputError(f"{path}: not a table of scores: {error}") from error
 
@@ -151,16 +153,20 @@ def cells_of(score: Score) -> list[str]:
     return [cells[name] for name in COLUMNS[3:]]
 
 
-def _row(path: str, line: int, cells: Mapping[str, Any]) -> RunScore:
+def _row(path: str, line: int, cells: Sequence[str]) -> RunScore:
     try:
-        if None in cells or None in cells.values():
+        if len(cells) != len(COLUMNS):
             raise ValueError(f"a row has {len(COLUMNS)} cells")
-        return RunScore(
-            scenario=cells["scenario"],
-            planner=cells["planner"],
-            seed=int(_plain(cells["seed"])),
-            score=_score(cells),
+        scenario, planner, seed, *texts, reason, lower, upper = cells
+        value = texts.pop(_VALUE)
+        about = _texts((*texts, reason))
+        score = Score(
+            **about,
+            value=float(_plain(value)) if value else None,
+            lower=float(_plain(lower)) if lower else None,
+            upper=float(_plain(upper)) if upper else None,
         )
+        return RunScore(scenario=scenario, planner=planner, seed=_seed(seed), score=score)
     except ValueError as error:
         raise InputError(f"{path}:{line}: not a score: {error}") from error
 
@@ -172,23 +178,25 @@ def _plain(number: str) -> str:
     return number
 
 
-#: A cache, since the same few texts occur in every run.
-_hidden = lru_cache(maxsize=4096)(hidden_character)
+@lru_cache(maxsize=256)
+def _seed(cell: str) -> int:
+    return int(_plain(cell))
 
 
-def _score(cells: Mapping[str, Any]) -> Score:
+@lru_cache(maxsize=4096)
+def _texts(cells: tuple[str, ...]) -> Mapping[str, Any]:
+    """Return the texts of a score by name; cached, since every run has the same few."""
+    named = dict(zip(_TEXTS, cells, strict=True))
     for name, known in (
         ("status", ("ok", "undefined", "censored")),
         ("better", ("higher", "lower", "reference", "none")),
     ):
-        if cells[name] not in known:
-            raise ValueError(f"{name} '{cells[name]}' is not one of {', '.join(known)}")
-    for name in _TEXTS:
-        if hidden := _hidden(cells[name]):
+        if named[name] not in known:
+            raise ValueError(f"{name} '{named[name]}' is not one of {', '.join(known)}")
+    for name, text in named.items():
+        if hidden := hidden_character(text):
             raise ValueError(f"{name} has the hidden character {hidden}")
-    values: dict[str, Any] = {name: cells[name] for name in _TEXTS}
-    values |= {name: float(_plain(cells[name])) if cells[name] else None for name in _NUMBERS}
-    return Score(**values)
+    return named
 
 
 # ------------------------------------------------------------------- terminal

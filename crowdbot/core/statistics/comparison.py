@@ -238,12 +238,12 @@ def reach(freedom: int, level: float) -> float:
 def _ranked(found: Comparison, pair: _Pair, groups: Clusters, level: float) -> Comparison:
     """Return the rank-based results over all pairs, which describe and decide nothing."""
     contrasts, undecided = pair.contrasts()
-    ranks = signed_ranks(contrasts)
+    ranks = double_ranks(contrasts)
     won = 0.5 + np.sign(contrasts) / 2
     half = float(undecided.mean()) / 2
     improvement = c.mean(won, groups, level, (0.0, 1.0))
     share = float(won.mean())
-    shares = ranks.astype(float), double_ranks(contrasts).astype(float)
+    shares = signed_ranks(contrasts, ranks).astype(float), ranks.astype(float)
     biserial = c.ratio(*shares, groups, level, (-1.0, 1.0))
     return replace(
         found,

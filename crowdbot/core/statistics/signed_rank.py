@@ -17,6 +17,6 @@ def double_ranks(contrasts: Floats) -> NDArray[np.int64]:
     return np.asarray((2 * np.cumsum(counts) - counts + 1)[inverse], dtype=np.int64)
 
 
-def signed_ranks(contrasts: Floats) -> NDArray[np.int64]:
-    """`double_ranks` with the signs of the contrasts; those of zeros are 0."""
-    return np.sign(contrasts).astype(np.int64) * double_ranks(contrasts)
+def signed_ranks(contrasts: Floats, ranks: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return `double_ranks` with the signs of the contrasts; those of zeros are 0."""
+    return np.sign(contrasts).astype(np.int64) * ranks

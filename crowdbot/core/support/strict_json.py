@@ -15,6 +15,9 @@ from crowdbot.errors import hidden_character
 
 #: Largest nesting depth, and number of digits of an integer.
 DEEPEST, LONGEST = 64, 300
+_TOO_DEEP = f"it is nested deeper than {DEEPEST} brackets"
+#: What a text of ASCII must hold to hide a character: DEL, or an escape of a hidden one.
+_HIDING = ("\x7f", "\\u", "\\b", "\\f")
 
 
 def parse_json(text: str) -> Any:
@@ -31,8 +34,8 @@ def parse_json(text: str) -> Any:
             parse_float=_finite,
         )  # fmt: skip
     except RecursionError:
-        raise ValueError(f"it is nested deeper than {DEEPEST} brackets") from None
-    _check(content)
+        raise ValueError(_TOO_DEEP) from None
+    _check(content, text)
     return content
 
 
@@ -49,15 +52,15 @@ def parse_foreign_json(text: str) -> Any:
     except json.JSONDecodeError as error:
         raise ValueError(f"line {error.lineno}, column {error.colno}: {error.msg}") from None
     except RecursionError:
-        raise ValueError(f"it is nested deeper than {DEEPEST} brackets") from None
+        raise ValueError(_TOO_DEEP) from None
     if _is_deeper(content, DEEPEST):
-        raise ValueError(f"it is nested deeper than {DEEPEST} brackets")
+        raise ValueError(_TOO_DEEP)
     return content
 
 
 def _is_deeper(content: Any, most: int) -> bool:
     """Return True if lists and objects are nested deeper than ``most``."""
-    waiting = [(content, 0)]
+    waiting = [(content, 0)] if isinstance(content, (dict, list)) else []
     while waiting:
         value, depth = waiting.pop()
         if depth > most:
@@ -93,14 +96,21 @@ def _finite(digits: str) -> float:
     return number
 
 
-def _check(content: Any) -> None:
-    """Check depth, and characters that readers cannot see."""
+def _check(content: Any, text: str) -> None:
+    """Check depth, and characters that readers cannot see.
+
+    ASCII hides none but by an escape or as DEL: then only the depth is left to check.
+    """
+    if text.isascii() and not any(mark in text for mark in _HIDING):
+        if _is_deeper(content, DEEPEST - 1):
+            raise ValueError(_TOO_DEEP)
+        return
     level: Iterable[Any] = [content]
     for _ in range(DEEPEST + 1):
         level = [part for value in level for part in _parts(value)]
         if not level:
             return
-    raise ValueError(f"it is nested deeper than {DEEPEST} brackets")
+    raise ValueError(_TOO_DEEP)
 
 
 def _parts(value: Any) -> Iterator[Any]:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.report.packing import pack
+from crowdbot.core.report.packing import _AT_ONCE, pack
 
 
 def unpacked(text: str) -> list[float]:
@@ -34,6 +34,11 @@ def test_five_digits_are_kept(numbers: list[float]) -> None:
 @given(st.integers(-(2**17) + 1, 2**17 - 1))
 def test_whole_numbers_stay(number: int) -> None:
     assert unpacked(pack(np.array([float(number)]))) == [float(number)]
+
+
+def test_more_numbers_than_are_packed_at_once_keep_their_places() -> None:
+    numbers = np.arange(_AT_ONCE + 7.0) % 1000.0
+    assert unpacked(pack(numbers.reshape(1, -1))) == numbers.tolist()
 
 
 def test_order_stays() -> None:

@@ -13,7 +13,7 @@ from scipy import stats
 from crowdbot.core.statistics import sign_flip
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.sign_flip import holm, least_p, p_value
-from crowdbot.core.statistics.signed_rank import signed_ranks
+from crowdbot.core.statistics.signed_rank import double_ranks, signed_ranks
 
 #: The draws of a campaign of 18 conditions with nine draws each.
 CAMPAIGN = Clusters.of([f"{i}" for i in range(162)], [f"{i // 9}" for i in range(162)])
@@ -124,8 +124,9 @@ def test_level_with_exchangeable_planners_and_power_with_conditions_that_differ(
 def test_signed_ranks_by_hand() -> None:
     values = np.array([0.0, 1.0, -1.0, 2.0, 2.0, 0.0, 3.0, -0.5])
     # sizes 0 0 .5 1 1 2 2 3 -> ranks 1.5 1.5 3 4.5 4.5 6.5 6.5 8
-    assert signed_ranks(values).tolist() == [0, 9, -9, 13, 13, 0, 16, -6]
-    assert signed_ranks(np.array([np.inf, 1.0, -np.inf, -2.0])).tolist() == [7, 2, -7, -4]
+    assert signed_ranks(values, double_ranks(values)).tolist() == [0, 9, -9, 13, 13, 0, 16, -6]
+    infinite = np.array([np.inf, 1.0, -np.inf, -2.0])
+    assert signed_ranks(infinite, double_ranks(infinite)).tolist() == [7, 2, -7, -4]
 
 
 def test_holm_by_hand() -> None:
