@@ -1,4 +1,4 @@
-"""What other evaluators get wrong, one test each; docs/developers/defects_of_evaluators.md lists them."""
+"""What other evaluators get wrong, one test each, as docs/developers/defects_of_evaluators.md says."""
 
 from __future__ import annotations
 
