@@ -1,4 +1,4 @@
-"""What other evaluators get wrong, one test each, as docs/developers/defects_of_evaluators.md says."""
+"""What other evaluators get wrong: one test for each row of developers/defects_of_evaluators.md."""
 
 from __future__ import annotations
 
