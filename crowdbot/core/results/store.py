@@ -381,7 +381,7 @@ def _scan(root: Path) -> Iterator[tuple[str, str]]:
 
 
 def _listed(folder: str) -> tuple[list[str], set[str]]:
-    """Return the names of files in a folder, and of folders that are no links."""
+    """Return the names of files in a folder, and of folders that are not links."""
     names, below = list[str](), set[str]()
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
@@ -393,7 +393,7 @@ def _listed(folder: str) -> tuple[list[str], set[str]]:
 
 
 def _stamp_if_run(folder: str) -> str:
-    """Return the stamp of a run; empty if the folder is none, or its record cannot be read."""
+    """Return the stamp of a run; empty if the folder is not a run, or its record cannot be read."""
     try:
         about = os.stat(f"{folder}/{files.RECORD}")  # noqa: PTH116  many files: a Path takes longer
         return "" if stat.S_ISDIR(about.st_mode) else _stamp_of_run(folder)
