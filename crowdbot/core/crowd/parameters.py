@@ -91,6 +91,7 @@ class RulesRecord:
         goals_wrap: 1 if goals wrap with their agents.
         dissipation: as of `CrowdWorld`.
         pillars: how many there are.
+        body_dissipation: as of `CrowdWorld`.
     """
 
     keep_offset: float
@@ -98,6 +99,7 @@ class RulesRecord:
     goals_wrap: float
     dissipation: float
     pillars: float
+    body_dissipation: float
 
 
 RULES = record_type(RulesRecord)
@@ -140,6 +142,7 @@ class WorldParameters(NamedTuple):
             RULES, 1, keep_offset=np.array([w.exit_point == "offset"]),
             goal_ahead=np.array([w.goal_point == "ahead"]), goals_wrap=np.array([not w.parity]),
             dissipation=np.array([w.dissipation]), pillars=np.array([len(w.pillars)]),
+            body_dissipation=np.array([w.body_dissipation]),
         )  # fmt: skip
         return cls(
             w.walls, w.entrance, w.out,

@@ -81,7 +81,7 @@ def tick(
     now = header.tick * dt
     push_apart(
         agents, people.traits, order, walls, frame, first, near, discs,
-        int(world.rules[0].pillars), as_rows(placed, PLACED), room,
+        int(world.rules[0].pillars), world.rules[0].body_dissipation, as_rows(placed, PLACED), room,
     )  # fmt: skip
     robot_contacts(
         flat[end:], agents, people.traits, machines, outlines, numbers, stiffnesses,

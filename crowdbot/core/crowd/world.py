@@ -43,6 +43,7 @@ class CrowdWorld:
         firm: True if no body overlaps anything solid by more than 2 cm; else people are only pushed
             out, and just their centres never come in.
         stiffness, dissipation: contact with the robot, N/m and s/m.
+        body_dissipation: of contact among people and with walls, s/m; 0: they bounce off.
         goal_key: key of the counter-based draws of goals and entries.
         decision_rate: Hz, a power of two up to 128.
         routing: path finding around walls and pillars; None: straight to their goals.
@@ -65,6 +66,7 @@ class CrowdWorld:
     firm: bool = False
     stiffness: float = 30000.0
     dissipation: float = 0.3
+    body_dissipation: float = 0.0
     goal_key: int = 0
     decision_rate: float = 16.0
     routing: WayFinding | None = None

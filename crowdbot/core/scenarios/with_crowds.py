@@ -19,8 +19,8 @@ AXIS = "crowd"
 def with_crowds(expansion: Expansion, names: Sequence[str], registry: Registry) -> Expansion:
     """Repeat every scenario with each named crowd, on the axis ``crowd``; sorted by crowds.
 
-    Policy, cost functions, steering and the named crowd's bodies are replaced; flows, places,
-    speeds, responses to robots and draws remain the scenario's.
+    Policy, cost functions, steering, the named crowd's bodies and how they part after contact are
+    replaced; flows, places, speeds, responses to robots and draws remain the scenario's.
 
     Args:
         expansion: expansion of a suite or a scenario.
@@ -80,5 +80,6 @@ def _laid_over(own: Crowd, other: Crowd) -> Crowd:
             "costs": other.costs,
             "steering": other.steering,
             "body": body,
+            "contact_dissipation": other.contact_dissipation,
         }
     )

@@ -165,6 +165,7 @@ def _world(
         robot_visible=response.velocity == "visible",
         stiffness=scenario.contact.stiffness,
         dissipation=scenario.contact.dissipation,
+        body_dissipation=crowd.contact_dissipation,
         goal_key=drawn.goal_key,
         decision_rate=scenario.rates.crowd,
         routing=routing_of(crowd),

@@ -167,6 +167,12 @@ class Crowd(Spec):
         description="firm: no body overlaps a wall, a block or a pillar by more than 2 cm, however "
         "hard others push; soft: people are pushed out, and only their centres never come in.",
     )
+    contact_dissipation: NonNegativeDamping = Field(
+        default=0.0,
+        exclude_if=lambda value: value == 0.0,
+        description="How much stiffer contact among people and with walls is while it closes, "
+        "s/m: people part at most at its inverse. 0: they bounce off like springs.",
+    )
     exit_point: Literal["random", "offset"] = Field(
         default="random",
         description="Where people come out of a portal: anywhere in it, or opposite to where "

@@ -64,6 +64,7 @@ def test_scenarios_with_other_crowds() -> None:
     assert first.crowd.steering is None
     assert (first.crowd.flow, first.crowd.speed) == (own.crowd.flow, own.crowd.speed)
     assert first.crowd.robot_response == own.crowd.robot_response
+    assert (first.crowd.contact_dissipation, own.crowd.contact_dissipation) == (3.0, 0.0)
     calibrated = found.scenarios[len(plain.scenarios)]
     assert calibrated.crowd is not None
     assert calibrated.crowd.steering is not None

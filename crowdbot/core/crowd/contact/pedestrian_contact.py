@@ -25,6 +25,8 @@ class PlacedRecord:
     y: float
     radius: float
     stiffness: float
+    vx: float
+    vy: float
     push_x: float
     push_y: float
     row: float
@@ -33,6 +35,8 @@ class PlacedRecord:
 PLACED = record_type(PlacedRecord)
 #: A person farther than this from a wall's box, beside the radius, is not near it by rounding, m.
 _CLEAR = 1e-6
+#: Largest change of a velocity towards another by damping, 1/s: stable for ticks of 1/128 s.
+_MOST_DAMPING = 32.0
 
 
 @kernel
@@ -46,6 +50,7 @@ def push_apart(
     near: Indices,
     discs: Array,
     pillars: int,
+    dissipation: float,
     placed: Rows[PlacedRecord],
     room: Array,
 ) -> None:
@@ -57,6 +62,7 @@ def push_apart(
         frame, first, near: their `SegmentGrid`, whose reach is at least the largest radius.
         discs: (D, 3) x, y, radius: pillars, and people as they appear across a border.
         pillars: number of pillars.
+        dissipation: how much stiffer contact is while it closes, s/m; 0: an elastic spring.
         placed: (N,) scratch.
         room: (N,) output: as of `crowdbot.core.crowd.parameters.Scratch`.
     """
@@ -66,15 +72,16 @@ def push_apart(
         cell = cell_of(frame, placed[a].x, placed[a].y)
         gap = math.inf
         if cell >= 0:
-            gap = _push_by_walls(placed, a, walls, near, first[cell], first[cell + 1])
+            gap = _push_by_walls(placed, a, walls, near, first[cell], first[cell + 1], dissipation)
         for d in range(discs.shape[0]):
             reach = placed[a].radius + discs[d, 2]
             dx, dy = placed[a].x - discs[d, 0], placed[a].y - discs[d, 1]
             px, py = _push(dx, dy, reach)
             if d < pillars and dx * dx + dy * dy < reach * reach:
                 gap = min(gap, math.sqrt(dx * dx + dy * dy) - discs[d, 2])
-            placed[a].push_x += placed[a].stiffness * px
-            placed[a].push_y += placed[a].stiffness * py
+            rate = _damped(placed, a, px, py, placed[a].vx, placed[a].vy, dissipation)
+            placed[a].push_x += rate * px
+            placed[a].push_y += rate * py
         room[int(placed[a].row)] = gap
         x, y, own = placed[a].x, placed[a].y, placed[a].radius
         for b in range(a + 1, count):
@@ -82,7 +89,7 @@ def push_apart(
                 break
             reach = own + placed[b].radius
             if abs(placed[b].y - y) < reach:
-                _push_pair(placed, a, b, reach)
+                _push_pair(placed, a, b, reach, dissipation)
     for a in range(count):
         i = int(placed[a].row)
         agents[i].push_x, agents[i].push_y = placed[a].push_x, placed[a].push_y
@@ -125,6 +132,7 @@ def _place(
             continue
         placed[count].x, placed[count].y = agents[i].x, agents[i].y
         placed[count].radius, placed[count].stiffness = traits[i].radius, traits[i].push
+        placed[count].vx, placed[count].vy = agents[i].vx, agents[i].vy
         placed[count].push_x, placed[count].push_y, placed[count].row = 0.0, 0.0, i
         largest = max(largest, traits[i].radius)
         count += 1
@@ -143,17 +151,55 @@ def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
 
 
 @kernel
-def _push_pair(placed: Rows[PlacedRecord], a: int, b: int, reach: float) -> None:
+def _damped(
+    placed: Rows[PlacedRecord],
+    a: int,
+    px: float,
+    py: float,
+    vx: float,
+    vy: float,
+    dissipation: float,
+) -> float:
+    """Return the stiffness of a's contact, 1/s^2, in the way of Hunt and Crossley; never pulling.
+
+    Args:
+        px, py: overlap, away from the other, m.
+        vx, vy: a's velocity relative to the other, m/s.
+    """
+    if dissipation == 0.0:
+        return placed[a].stiffness
+    # Overlap times closing speed, so that their product with the stiffness needs no direction.
+    closing = -(px * vx + py * vy)
+    depth = math.sqrt(px * px + py * py)
+    if depth == 0.0:
+        return 0.0
+    rate = min(placed[a].stiffness * dissipation, _MOST_DAMPING / depth)
+    return max(0.0, placed[a].stiffness + rate * closing / depth)
+
+
+@kernel
+def _push_pair(
+    placed: Rows[PlacedRecord], a: int, b: int, reach: float, dissipation: float
+) -> None:
     px, py = _push(placed[a].x - placed[b].x, placed[a].y - placed[b].y, reach)
-    placed[a].push_x += placed[a].stiffness * px
-    placed[a].push_y += placed[a].stiffness * py
-    placed[b].push_x -= placed[b].stiffness * px
-    placed[b].push_y -= placed[b].stiffness * py
+    vx, vy = placed[a].vx - placed[b].vx, placed[a].vy - placed[b].vy
+    rate = _damped(placed, a, px, py, vx, vy, dissipation)
+    placed[a].push_x += rate * px
+    placed[a].push_y += rate * py
+    rate = _damped(placed, b, -px, -py, -vx, -vy, dissipation)
+    placed[b].push_x -= rate * px
+    placed[b].push_y -= rate * py
 
 
 @inline_kernel
 def _push_by_walls(
-    placed: Rows[PlacedRecord], a: int, walls: Array, near: Indices, begin: int, end: int
+    placed: Rows[PlacedRecord],
+    a: int,
+    walls: Array,
+    near: Indices,
+    begin: int,
+    end: int,
+    dissipation: float,
 ) -> float:
     """Push a person; return the distance of its centre from the nearest wall that it overlaps."""
     x, y, radius = placed[a].x, placed[a].y, placed[a].radius
@@ -167,8 +213,9 @@ def _push_by_walls(
             continue
         nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
         px, py = _push(x - nx, y - ny, radius)
-        placed[a].push_x += placed[a].stiffness * px
-        placed[a].push_y += placed[a].stiffness * py
+        rate = _damped(placed, a, px, py, placed[a].vx, placed[a].vy, dissipation)
+        placed[a].push_x += rate * px
+        placed[a].push_y += rate * py
         nearest2 = min(nearest2, (x - nx) * (x - nx) + (y - ny) * (y - ny))
     return math.sqrt(nearest2)
 

@@ -36,14 +36,16 @@ def _push_apart(
     walls: Array,
     discs: Array,
     stiffness: ArrayLike,
+    dissipation: float = 0.0,
 ) -> None:
     traits = rows_of(len(people), TRAITS)
     traits["radius"][:], traits["push"][:] = radius, stiffness
     placed, room = rows_of(len(people), PLACED), np.zeros(len(people))
     grid = segment_grid(walls, float(np.max(radius)))
     push_apart(
-        rows_in(people, s.PERSON), traits, order, walls, *grid, discs, len(discs), placed, room
-    )
+        rows_in(people, s.PERSON), traits, order, walls, *grid, discs, len(discs), dissipation,
+        placed, room,
+    )  # fmt: skip
 
 
 def _push(people: Array, radius: float = 0.33, walls: Array | None = None) -> Array:
@@ -96,6 +98,43 @@ def test_a_pillar_pushes_by_each_agents_own_stiffness() -> None:
     _push_apart(people, 0.33, np.array([1, 2, 0]), NO_WALLS, pillar, [10.0, 20.0, 30.0])
     assert people[:, s.PUSH_X] == pytest.approx([1.3, -2.6, 0.0])
     assert people[:, s.PUSH_Y] == pytest.approx([0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("speed", "expected"), [(0.2, 16.0), (0.0, 10.0), (-0.2, 4.0), (-1.0, 0.0)]
+)
+def test_contact_that_closes_is_stiffer_and_never_pulls(speed: float, expected: float) -> None:
+    people = _people([(0.0, 0.0), (0.5, 0.0)])
+    people[0, s.VX] = speed
+    _push_apart(people, 0.33, np.array([0, 1]), NO_WALLS, NO_DISCS, 62.5, 3.0)
+    assert people[:, s.PUSH_X] == pytest.approx([-expected, expected])
+
+
+@settings(deadline=None, max_examples=20)
+@given(st.floats(0.2, 2.0), st.floats(0.2, 2.0), st.sampled_from([62.5, 125.0, 250.0]))
+def test_people_with_dissipation_part_slowly(first: float, second: float, stiffness: float) -> None:
+    """Two who meet head-on at any speed part at most at the inverse, and slower than they met."""
+    people = _people([(0.0, 0.0), (0.67, 0.0)])
+    people[:, s.VX] = first, -second
+    for _ in range(2 * TICKS):
+        _push_apart(people, 0.33, np.array([0, 1]), NO_WALLS, NO_DISCS, stiffness, 3.0)
+        people[:, s.VX] += people[:, s.PUSH_X] * DT
+        people[:, s.X] += people[:, s.VX] * DT
+    parting = people[1, s.VX] - people[0, s.VX]
+    assert 0.0 < parting < min(1.0 / 3.0, first + second) + 0.05
+    assert np.sum(people[:, s.VX]) == pytest.approx(first - second)
+
+
+def test_who_runs_into_a_wall_or_a_pillar_does_not_bounce_off() -> None:
+    wall, pillar = np.array([[1.0, -5.0, 1.0, 5.0]]), np.array([[1.5, 0.0, 0.5]])
+    for walls, discs in ((wall, NO_DISCS), (NO_WALLS, pillar)):
+        people = _people([(0.66, 0.0)])
+        people[:, s.VX] = 1.6
+        for _ in range(2 * TICKS):
+            _push_apart(people, 0.33, np.array([0]), walls, discs, 62.5, 3.0)
+            people[:, s.VX] += people[:, s.PUSH_X] * DT
+            people[:, s.X] += people[:, s.VX] * DT
+        assert -1.0 / 3.0 - 0.02 < people[0, s.VX] < 0.0
 
 
 def _robot(x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> Array:

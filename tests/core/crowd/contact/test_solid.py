@@ -73,6 +73,21 @@ def test_bodies_stay_out_of_what_is_solid(name: str) -> None:
     assert np.isfinite(flat).all()
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_a_parked_robot_on_the_way_is_not_struck(name: str) -> None:
+    """Peak forces stay below 300 N, near the limits of ISO/TS 15066 for the trunk."""
+    engine = _engine(name, 14, True)
+    flat = engine.initial_state()
+    robot = np.array([[3.0, 2.4, 0.0, 0.0, 0.178, 0.428, 0.0, 0.0]])
+    felt, _ = s.contact_with(flat)
+    hardest = 0.0
+    for _ in range(4 * TICKS):
+        engine.advance(flat, robot)
+        hardest = max(hardest, float(np.hypot(felt[s.ROBOT_FX], felt[s.ROBOT_FY])))
+    assert np.any(s.view(flat)[1][:, s.X] > 3.0)
+    assert hardest < 300.0
+
+
 class _Driven:
     """A policy that wants given accelerations, whatever stands there."""
 
