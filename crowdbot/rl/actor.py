@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.batch.parallel import Batches
+from crowdbot.core.batch.robot_tables import DRIVE_STATE
 from crowdbot.core.crowd.contact.robot_contact import R_W, R_YAW, RVX, RVY
 from crowdbot.core.learning.actions import action_size, commands_of
 from crowdbot.core.learning.build import build_observer, build_reward
@@ -21,6 +22,7 @@ from crowdbot.core.types.task import Task
 from crowdbot.rl.env_setup import EnvSetup
 
 Vectors = NDArray[np.float32]
+_DRIVE = {name: column for column, name in enumerate(DRIVE_STATE.names)}
 
 
 class Actor:
@@ -73,10 +75,15 @@ class Actor:
         """Return commands v, w, vy (W, 3) of actions (W, `size`), m/s and rad/s."""
         return commands_of(actions, self.context.limits)
 
-    def reward(self, batches: Batches, rows: Array, given: Array, here: Mask) -> Array:
+    def news(self, batches: Batches) -> Array:
+        """Return (W, D) `DriveStateRecord` of the robot after a step, a copy."""
+        return batches.drives[:, self._robot].copy()
+
+    def reward(self, news: Array, rows: Array, given: Array, here: Mask) -> Array:
         """Return the rewards (W,) of a step; 0 where no step was taken.
 
         Args:
+            news: as of `news`.
             rows: (W, R, 8) of all robots after it.
             given: (W, 3) commands.
             here: (W,) True for worlds that were stepped.
@@ -88,12 +95,12 @@ class Actor:
         change = StepChange(
             progress=progress,
             distance=distance,
-            arrived=self.arrived(batches) & here,
-            contact=self._drive(batches, "touched") / ticks,
-            wall=self._drive(batches, "blocked") / ticks,
-            gap=self._drive(batches, "gap"),
-            advance=self._drive(batches, "advance"),
-            work=self._drive(batches, "work"),
+            arrived=self.arrived(news) & here,
+            contact=news[:, _DRIVE["touched"]] / ticks,
+            wall=news[:, _DRIVE["blocked"]] / ticks,
+            gap=news[:, _DRIVE["gap"]],
+            advance=news[:, _DRIVE["advance"]],
+            work=news[:, _DRIVE["work"]],
             command=given,
             before=self._before,
         )
@@ -101,13 +108,13 @@ class Actor:
         self._before = np.where(here[:, np.newaxis], given, self._before)
         return np.asarray(found)
 
-    def arrived(self, batches: Batches) -> Mask:
+    def arrived(self, news: Array) -> Mask:
         """Return (W,) True where the robot has entered its goal zone in this step or before."""
-        return np.asarray(self._drive(batches, "arrived") >= 0.0)
+        return np.asarray(news[:, _DRIVE["arrived"]] >= 0.0)
 
-    def touched(self, batches: Batches) -> Mask:
+    def touched(self, news: Array) -> Mask:
         """Return (W,) True where a person touched the robot in the last step."""
-        return np.asarray(self._drive(batches, "touched") > 0.0)
+        return np.asarray(news[:, _DRIVE["touched"]] > 0.0)
 
     def late(self, batches: Batches) -> Mask:
         """Return (W,) True where the time limit is over."""
@@ -123,9 +130,11 @@ class Actor:
         """
         own = rows[:, self._robot]
         cos, sin = np.cos(own[:, R_YAW]), np.sin(own[:, R_YAW])
-        ahead = cos * own[:, RVX] + sin * own[:, RVY]
-        aside = cos * own[:, RVY] - sin * own[:, RVX]
-        people = np.zeros((self._worlds, most if self._privileged else 0, 5))
+        twist = np.empty((self._worlds, 3))
+        twist[:, 0] = cos * own[:, RVX] + sin * own[:, RVY]
+        twist[:, 1] = own[:, R_W]
+        twist[:, 2] = cos * own[:, RVY] - sin * own[:, RVX]
+        people = np.empty((self._worlds, most if self._privileged else 0, 5))
         if self._privileged:
             batches.people(people)
         return self._observer.observe(
@@ -133,7 +142,7 @@ class Actor:
                 fresh=fresh,
                 stepped=stepped,
                 pose=own[:, [0, 1, R_YAW]],
-                twist=np.column_stack([ahead, own[:, R_W], aside]),
+                twist=twist,
                 goal=self._goals,
                 readings={seen.name: self._ranges(batches, k, seen) for k, seen in self._sensors},
                 people=people,
@@ -142,9 +151,6 @@ class Actor:
 
     def _ranges(self, batches: Batches, k: int, seen: Any) -> Array:
         shape = seen.info.shape
-        out = np.zeros((self._worlds, *((1, *shape) if len(shape) == 1 else shape)))
+        out = np.empty((self._worlds, *((1, *shape) if len(shape) == 1 else shape)))
         batches.ranges(k, out)
         return out[:, 0] if len(shape) == 1 else out
-
-    def _drive(self, batches: Batches, name: str) -> Array:
-        return np.asarray(batches.drive(name)[:, self._robot])

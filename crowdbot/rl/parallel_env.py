@@ -87,14 +87,14 @@ class ParallelNavEnv(ParallelEnv):
         rollout, here = self.rollout, np.ones(1, np.bool_)
         rollout.advance(np.stack(rows, axis=1), np.zeros(1, np.int64))
         going = {name: self._actors[name] for name in self.agents}
+        news = {n: a.news(rollout.batches) for n, a in going.items()}
         rewards = {
-            n: float(a.reward(rollout.batches, rollout.rows, given[n], here)[0])
-            for n, a in going.items()
+            n: float(a.reward(news[n], rollout.rows, given[n], here)[0]) for n, a in going.items()
         }
-        done = {n: bool(a.arrived(rollout.batches)[0]) for n, a in going.items()}
+        done = {n: bool(a.arrived(news[n])[0]) for n, a in going.items()}
         late = {n: bool(a.late(rollout.batches)[0]) and not done[n] for n, a in going.items()}
         infos = {
-            n: {"is_success": done[n], "touched": bool(a.touched(rollout.batches)[0])}
+            n: {"is_success": done[n], "touched": bool(a.touched(news[n])[0])}
             for n, a in going.items()
         }
         observed = self._observe(fresh=False)

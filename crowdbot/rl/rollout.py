@@ -44,7 +44,7 @@ class Rollout:
 
     Attributes:
         actors: the robots of each world, in order.
-        rows: (W, R, 8) as people feel them, after the last step.
+        rows: (W, R, 8) as people feel them, now.
         scenarios: (W,) id of each world's scenario.
     """
 
@@ -61,6 +61,7 @@ class Rollout:
         self._people = np.zeros(count, np.int64)
         for w in range(count):
             self._note(w)
+        self.batches.robots(self.rows)
 
     def _first(self, threads: int) -> Batches:
         """Return the worlds of the first episodes."""
@@ -94,6 +95,7 @@ class Rollout:
             bank.give_back(self.world(w))
             self.batches.put(w, self._take(bank, episode), episode.key)
             self._note(w)
+        self.batches.robots(self.rows)
 
     def _take(self, bank: Bank, episode: Episode) -> BatchWorld:
         """Return the world of an episode, with its own start and goal if they are drawn."""
@@ -145,11 +147,12 @@ class Rollout:
         self.advance(given[:, np.newaxis], which)
         here = np.zeros(len(actions), np.bool_)
         here[which] = True
-        arrived = actor.arrived(batches) & here
+        news = actor.news(batches)
+        arrived = actor.arrived(news) & here
         return StepResult(
-            reward=actor.reward(batches, self.rows, given, here),
+            reward=actor.reward(news, self.rows, given, here),
             arrived=arrived,
-            touched=actor.touched(batches) & here,
+            touched=actor.touched(news) & here,
             late=actor.late(batches) & here & ~arrived,
         )
 
@@ -160,7 +163,6 @@ class Rollout:
             fresh: (W,) True where an episode has just begun.
             stepped: (W,) True where a step was made since the last look.
         """
-        self.batches.robots(self.rows)
         most = int(self._people.max(initial=0))
         return self.actors[robot].look(self.batches, self.rows, fresh, stepped, most)
 

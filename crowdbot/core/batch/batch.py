@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,10 +19,38 @@ from crowdbot.core.types.arrays import Array, Indices
 from crowdbot.errors import PluginError
 
 _DRIVE = {name: column for column, name in enumerate(DRIVE_STATE.names)}
-_WANTED = [_DRIVE[name] for name in ("wanted_v", "wanted_w", "wanted_vy")]
 _SLEWED = [_DRIVE[name] for name in ("v", "w", "vy")]
-_NEWS = [_DRIVE[name] for name in ("blocked", "touched", "since")]
 _MOST_KEY = 2**62
+
+
+class Drives(NamedTuple):
+    """Robots of many worlds; batches of several threads have parts of the same arrays.
+
+    Attributes:
+        table: (W, `crowdbot.core.batch.step.WORLD_COLUMNS`) of the worlds.
+        drives: (W, R, D) `crowdbot.core.batch.robot_tables.DriveStateRecord` of all robots.
+        least, most: (W, R, 3) limits of commands v, w, vy, m/s and rad/s.
+    """
+
+    table: Indices
+    drives: Array
+    least: Array
+    most: Array
+
+    def part(self, first: int, end: int) -> Drives:
+        """Return those of some worlds, sharing memory."""
+        own = slice(first, end)
+        return Drives(self.table[own], self.drives[own], self.least[own], self.most[own])
+
+
+def drives_of(worlds: Sequence[BatchWorld]) -> Drives:
+    """Return room for the robots of worlds."""
+    count, robots = len(worlds), max(len(w.robots) for w in worlds)
+    return Drives(
+        np.zeros((count, k.WORLD_COLUMNS), np.int64),
+        np.zeros((count, robots, columns_of(DRIVE_STATE))),
+        *np.zeros((2, count, robots, 3)),
+    )
 
 
 class Batch:
@@ -30,27 +59,28 @@ class Batch:
     Args:
         worlds: the first ones; `put` replaces any.
         keys: (W,) of their noise.
+        shared: room for their robots, which others read too; None: its own.
 
     Attributes:
         worlds: as they are now.
-        drives: (W, R, D) `crowdbot.core.batch.robot_tables.DriveStateRecord` of all robots.
-        least, most: (W, R, 3) limits of commands v, w, vy, m/s and rad/s.
+        drives, least, most: as of `Drives`.
     """
 
-    def __init__(self, worlds: Sequence[BatchWorld], keys: Sequence[int]) -> None:
+    def __init__(
+        self, worlds: Sequence[BatchWorld], keys: Sequence[int], shared: Drives | None = None
+    ) -> None:
         self.worlds = list(worlds)
-        count, robots = len(worlds), max(len(w.robots) for w in worlds)
         self._most = max(len(w.groups) for w in worlds), max(len(w.scanners) for w in worlds)
-        self._table = np.zeros((count, k.WORLD_COLUMNS), np.int64)
+        self._table, self.drives, self.least, self.most = shared or drives_of(worlds)
+        count, robots = self.drives.shape[:2]
+        self._all, self._slow = np.arange(count), np.zeros(count, np.bool_)
         self._crowds = np.zeros((count, len(CROWD_FIELDS), ENTRY), np.int64)
         self._robots = np.zeros((count, robots, len(ROBOT_FIELDS), ENTRY), np.int64)
-        self.drives = np.zeros((count, robots, columns_of(DRIVE_STATE)))
-        self.least, self.most = np.zeros((2, count, robots, 3))
         self._sound = np.ones(count, np.bool_)
         self._lay_out()
         for w, key in enumerate(keys):
             self._show(w, key)
-        self._read(np.arange(count))
+        self._read(self._all)
 
     def put(self, w: int, world: BatchWorld, key: int) -> None:
         """Replace a world; it begins at its initial state, with its scanners read."""
@@ -78,16 +108,15 @@ class Batch:
         Raises:
             PluginError: a cost function of a crowd returned NaN.
         """
-        chosen = np.arange(len(self.worlds)) if which is None else which
-        self.drives[:, :, _WANTED] = np.clip(commands, self.least, self.most)
-        self.drives[:, :, _NEWS] = 0.0
-        slow = [w for w in chosen.tolist() if not self.worlds[w].compiled]
-        fast = chosen if not slow else np.setdiff1d(chosen, slow)
+        chosen = self._all if which is None else which
+        slow = self._slow[chosen]
+        fast = chosen[~slow] if slow.any() else chosen
         k.step_worlds(
+            np.ascontiguousarray(commands, np.float64), self.least, self.most,
             fast, self._table, self._crowds, self._groups, self._robots, self._scanners,
             self.drives, self._sound,
         )  # fmt: skip
-        for w in slow:
+        for w in chosen[slow].tolist():
             self._step_slowly(w)
         if not self._sound.all():
             self._refuse(int(np.flatnonzero(~self._sound)[0]))
@@ -145,7 +174,7 @@ class Batch:
 
     def _show_tables(self, w: int) -> None:
         world, (groups, scanners) = self.worlds[w], self._most
-        row = self._table[w]
+        row, self._slow[w] = self._table[w], not world.compiled
         row[k.FIRST_GROUP], row[k.GROUPS] = w * groups, len(world.groups)
         row[k.FIRST_SCANNER], row[k.SCANNERS] = w * scanners, len(world.scanners)
         row[k.PEOPLE], row[k.PERIOD] = world.people, world.blueprint.period

@@ -7,7 +7,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from crowdbot.core.batch.batch import Batch
+from crowdbot.core.batch.batch import Batch, drives_of
+from crowdbot.core.batch.robot_tables import DRIVE_STATE
+from crowdbot.core.batch.step import NOW
 from crowdbot.core.batch.step_threads import StepThreads
 from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.types.arrays import Array, Indices
@@ -26,7 +28,10 @@ class Batches:
         ends: list[int] = np.linspace(0, len(worlds), count + 1).astype(int).tolist()
         self._parts: list[tuple[int, int]] = list(itertools.pairwise(ends))
         self._thread_of = np.repeat(np.arange(len(self._parts)), np.diff(ends)).tolist()
-        self._batches: list[Batch] = [Batch(worlds[a:b], keys[a:b]) for a, b in self._parts]
+        self._shared = drives_of(worlds)
+        self._batches: list[Batch] = [
+            Batch(worlds[a:b], keys[a:b], self._shared.part(a, b)) for a, b in self._parts
+        ]
         self._threads = StepThreads(len(self._batches) - 1)
 
     def thread_of(self, w: int) -> int:
@@ -44,12 +49,18 @@ class Batches:
         return self._batches[number].worlds[w - self._parts[number][0]]
 
     def step(self, commands: Array, which: Indices) -> None:
-        """Advance some worlds by one step each, see `Batch.step`."""
+        """Advance some worlds by one step each, see `Batch.step`.
+
+        Args:
+            which: rows of the worlds, rising.
+        """
 
         def one(number: int) -> None:
             first, end = self._parts[number]
-            own = which[(which >= first) & (which < end)] - first
-            if len(own):
+            own = None
+            if len(which) < len(commands):
+                own = which[(which >= first) & (which < end)] - first
+            if own is None or len(own):
                 self._batches[number].step(commands[first:end], own)
 
         self._threads.share(one)
@@ -66,9 +77,14 @@ class Batches:
         """Write the ranges (W, L, B) of one sensor, see `Batch.ranges`."""
         self._into(out, lambda batch, rows: batch.ranges(sensor, rows))
 
+    @property
+    def drives(self) -> Array:
+        """Return (W, R, D) `DriveStateRecord` of all robots, shared memory."""
+        return self._shared.drives
+
     def drive(self, name: str) -> Array:
         """Return (W, R) a field of `DriveStateRecord`, a copy."""
-        return np.concatenate([batch.drive(name) for batch in self._batches])
+        return self._shared.drives[:, :, DRIVE_STATE.names.index(name)].copy()
 
     @property
     def commands(self) -> Array:
@@ -78,7 +94,7 @@ class Batches:
     @property
     def now(self) -> Indices:
         """Return (W,) ticks of 1/128 s since each world began, a copy."""
-        return np.concatenate([batch.now for batch in self._batches])
+        return self._shared.table[:, NOW].copy()
 
     def close(self) -> None:
         """End the threads."""

@@ -37,12 +37,14 @@ WORLD_COLUMNS = 8
 
 @free_kernel
 def step_worlds(
-    which: Indices, worlds: Indices, crowds: Indices, groups: Indices, robots: Indices,
+    commands: Array, least: Array, most: Array, which: Indices, worlds: Indices, crowds: Indices,
+    groups: Indices, robots: Indices,
     scanners: Indices, drives: Array, sound: Mask,
 ) -> None:  # fmt: skip
     """Advance some worlds by a step each, and read the scanners that are due.
 
     Args:
+        commands, least, most: (W, R, 3) v, w, vy of each robot, and its limits, m/s and rad/s.
         which: (K,) rows of worlds.
         worlds: (W, `WORLD_COLUMNS`), changed.
         crowds: (W, F, 4) entries of `crowd_table`.
@@ -52,6 +54,7 @@ def step_worlds(
         drives: (W, R, D) `DriveStateRecord`, changed.
         sound: (W,) set to False where a cost function returned NaN.
     """
+    _command(commands, least, most, drives)
     for k in range(which.shape[0]):
         w = which[k]
         for _ in range(worlds[w, PERIOD]):
@@ -63,6 +66,24 @@ def step_worlds(
             worlds[w, NOW] += 1
             _read(worlds[w], crowds[w], scanners)
         meet_people(w, worlds, crowds, drives)
+
+
+@kernel
+def _command(commands: Array, least: Array, most: Array, drives: Array) -> None:
+    """Set what all robots are to do, and that nothing has happened in this step yet."""
+    for w in range(drives.shape[0]):
+        for r in range(drives.shape[1]):
+            drive, low, high = as_record(drives[w, r], DRIVE_STATE), least[w, r], most[w, r]
+            drive.wanted_v = _within(commands[w, r, 0], low[0], high[0])
+            drive.wanted_w = _within(commands[w, r, 1], low[1], high[1])
+            drive.wanted_vy = _within(commands[w, r, 2], low[2], high[2])
+            drive.blocked = drive.touched = drive.since = 0.0
+
+
+@kernel
+def _within(value: float, low: float, high: float) -> float:
+    """Return a value within limits; NaN stays NaN."""
+    return low if value < low else high if value > high else value
 
 
 @free_kernel
