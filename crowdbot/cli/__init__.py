@@ -7,7 +7,6 @@ example. Heavy imports stay inside functions: ``--help`` imports every command.
 
 from __future__ import annotations
 
-import io
 import logging
 import os
 import re
@@ -18,6 +17,7 @@ from pathlib import Path
 
 from crowdbot.cli.app.command_names import command_names
 from crowdbot.cli.app.mishaps import left_by, tell_of_threads
+from crowdbot.cli.app.streams import prepare_streams
 from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.support.gc_throttle import collect_seldom
 from crowdbot.core.support.skip_final_gc import end_without_collecting
@@ -34,8 +34,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     if argv is None:
         end_without_collecting()
+    prepare_streams()
     _start_log()
-    _tolerate_any_encoding()
     tell_of_threads()
     try:
         with telling_interrupts():
@@ -54,6 +54,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         from crowdbot.cli.app.mishaps import system_error
 
         _say(system_error(error))
+        return 1
+    except MemoryError as error:
+        asked = f" ({error})" if str(error) else ""
+        _say(f"error: there is not enough memory{asked}; 'free -h' and 'ulimit -v' show the limits")
         return 1
     except Exception as error:
         if os.environ.get("CROWDBOT_DEBUG"):
@@ -144,13 +148,6 @@ def _text(error: CrowdbotError) -> str:
 
 def _say(text: str) -> None:
     print(printable(text), file=sys.stderr)
-
-
-def _tolerate_any_encoding() -> None:
-    """Escape characters that the terminal cannot show, instead of failing."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
 
 
 def _drop_output() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -78,6 +79,18 @@ def test_results_leave_them_out_and_say_so(root: Path, told: Tell) -> None:
     )
     assert planners(out) == [2]
     assert "left out" not in message
+
+
+def test_a_metric_that_no_run_has_is_told_where_all_are_left_out(
+    root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(root / "scenarios", tmp_path / "scenarios")
+    shutil.rmtree(tmp_path / "scenarios" / "alone")
+    assert cli.main(["results", "--runs", str(tmp_path), "--metric", "speed"]) == 1
+    message = capsys.readouterr().err
+    assert "1 run of altered scenarios left out" in message
+    assert "metric 'speed' was not scored in these runs; 'crowdbot evaluate RUNS" in message
+    assert cli.main(["results", "--runs", str(tmp_path), "--metric", "success"]) == 0
 
 
 def test_report_needs_no_choice_of_suite(root: Path, tmp_path: Path, told: Tell) -> None:

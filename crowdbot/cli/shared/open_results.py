@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -31,13 +32,18 @@ Reference = Annotated[
 _SHOWN = 3
 
 
-def open_results(root: Path, altered: bool) -> Results:
+def open_results(root: Path, altered: bool, metrics: Sequence[str] = ()) -> Results:
     """Return all results; those of altered scenarios only if asked for, else stderr tells them.
 
+    Args:
+        metrics: patterns of names that are going to be asked for.
+
     Raises:
-        InputError: there is no such folder.
+        InputError: there is no such folder, or no run, altered ones included, has such a metric.
     """
     from crowdbot.core.results.results import Results
+    from crowdbot.core.results.score_columns import metrics_of
+    from crowdbot.core.statistics.groups import check_scored
 
     found = Results.open(root)
     kept = found.without_altered()
@@ -48,6 +54,8 @@ def open_results(root: Path, altered: bool) -> Results:
     lost = plural(len(found.runs) - len(kept.runs), "run")
     message = f"{lost} of altered scenarios left out ({named}): --altered includes them"
     say(message, err=True)
+    for metric in metrics:
+        check_scored(metrics_of(found.scores), metric)
     return kept
 
 

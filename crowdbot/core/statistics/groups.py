@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -90,7 +90,7 @@ class Grouped:
         Raises:
             InputError: no run was scored by the metric.
         """
-        _check_metric(self._table, metric)
+        check_scored({name[0] for name in self._table.names}, metric)
         return [
             _summary(
                 self._table, name, dict(zip(self._by, group, strict=True)), rows,
@@ -172,8 +172,12 @@ def _label(run: RunRow | Failure, name: str) -> str:
     return run.axes[name] if name in run.axes else str(getattr(run, name, ""))
 
 
-def _check_metric(table: Table, metric: str) -> None:
-    metrics = {name[0] for name in table.names}
+def check_scored(metrics: Collection[str], metric: str) -> None:
+    """Check that a pattern fits one of the metrics by which runs were scored, if there are any.
+
+    Raises:
+        InputError: it fits none.
+    """
     if metrics and not any(fnmatchcase(m, metric) for m in metrics):
         near = did_you_mean(nearest(metric, metrics))
         raise InputError(

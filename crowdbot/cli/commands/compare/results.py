@@ -102,7 +102,7 @@ def show(
     from crowdbot.core.statistics.groups import Grouped
     from crowdbot.errors import UsageError
 
-    found = _only(open_results(out, altered), planner, status)
+    found = _only(open_results(out, altered, metric or ()), planner, status)
     given = reference_results(reference) if reference else None
     found, references = with_reference(found, given)
     found = with_scales(found)
