@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from crowdbot.errors import InputError, UnknownNameError
+from crowdbot.errors import CrowdbotError, InputError, UnknownNameError
 
 
 class BagMessage(NamedTuple):
@@ -54,23 +56,86 @@ def topic_fields(path: Path) -> dict[str, set[str]]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    from rosbags.highlevel import AnyReader, AnyReaderError
+    from rosbags.highlevel import AnyReader
 
     from crowdbot.core.trajectories.bag.definitions import known_types
 
     if not path.exists():
         raise InputError(f"{path}: no such file")
     types = known_types()
+    for database in sorted(path.glob("*.db3")) if path.is_dir() else [path]:
+        _check_whole(database)
     try:
-        with AnyReader([path], default_typestore=types) as reader:
+        with AnyReader(_parts(path), default_typestore=types) as reader:
             if reader.is2:  # a bag may have definitions of some of its types
                 own = reader.typestore.fielddefs
                 reader.typestore.register(
                     {name: fields for name, fields in types.fielddefs.items() if name not in own}
                 )
             yield reader
-    except (AnyReaderError, FileNotFoundError) as error:
-        raise InputError(f"{path}: not a bag that can be read: {error}") from error
+    except (CrowdbotError, MemoryError):
+        raise
+    except Exception as error:  # a library on bytes that may be damaged anywhere
+        text = str(error) or type(error).__name__
+        raise InputError(f"{path}: not a bag that can be read: {text}{_remedy(text)}") from error
+
+
+def _parts(path: Path) -> list[Path]:
+    """Return what the library opens: the bag, or the files of a folder without ``metadata.yaml``.
+
+    The file is written at the end of a recording, so it is missing after a loss of power.
+    """
+    packed = path.suffix == ".zstd"
+    if path.is_dir() and not (path / "metadata.yaml").exists():
+        for suffix in (".mcap", ".db3", ".bag"):
+            if found := sorted(path.glob(f"*{suffix}"), key=_in_order):
+                return found
+        packed = any(path.glob("*.zstd"))
+        if not packed:
+            raise InputError(f"{path}: a folder without metadata.yaml, .mcap, .db3 and .bag files")
+    if packed:
+        raise InputError(
+            f"{path}: compressed as a whole, without the metadata.yaml that says so; unpack it "
+            "with 'zstd -d FILE'"
+        )
+    return [path]
+
+
+def _check_whole(part: Path) -> None:
+    """Refuse a database that lacks its end: SQLite reads zeros where the last page is cut.
+
+    Source: the database header, https://www.sqlite.org/fileformat.html.
+    """
+    with part.open("rb") as file:
+        header = file.read(100)
+    if len(header) < 100 or not header.startswith(b"SQLite format 3\0"):
+        return
+    size, written, pages, valid = struct.unpack(">16xH6xII60xI4x", header)
+    whole = (65536 if size == 1 else size) * (pages if written == valid else 0)
+    if (there := part.stat().st_size) < whole:
+        raise InputError(
+            f"{part}: cut off: {there} of {whole} bytes; 'sqlite3 FILE .recover | sqlite3 OUT' "
+            "saves what is left"
+        )
+
+
+def _in_order(part: Path) -> tuple[int, str]:
+    """Return the key by which part 10 of a recording comes after part 9."""
+    number = re.search(r"(\d+)$", part.stem)
+    return (int(number[1]) if number else -1), part.name
+
+
+#: Part of a message -> what helps.
+_REMEDIES = {
+    "File end magic is invalid": "it was not closed; 'mcap recover FILE -o OUT' mends it",
+    "no such column: offered_qos": "it is older than ROS 2 Foxy; 'ros2 bag convert' renews it",
+    "image is malformed": "'sqlite3 FILE .recover | sqlite3 OUT' saves what is left",
+    "end-of-stream marker": "a file is cut off",
+}
+
+
+def _remedy(text: str) -> str:
+    return next((f" ({told})" for part, told in _REMEDIES.items() if part in text), "")
 
 
 def _check_layout(path: Path, reader: Any, connection: Any) -> None:
