@@ -13,6 +13,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.plugins.metrics.scenes import (
     AGENT_RADIUS,
     REACH,
+    Array,
     Body,
     grid,
     line,
@@ -73,6 +74,59 @@ def forcing_aside() -> Trajectories:
 )
 def test_planted_faults_cost_what_the_card_says(run: Trajectories, most: float) -> None:
     assert acceptance(run) <= most
+
+
+def moving(t: Array, x: Array, y: Array) -> Body:
+    """Along these points."""
+    still = 0.0 * t
+    return Body(x + still, y + still, np.gradient(x + still, t), np.gradient(y + still, t))
+
+
+def behind(gap: float, speed: float, seconds: float) -> Trajectories:
+    """Behind a walker, at this gap."""
+    t = grid(seconds, 1 / 16)
+    return scene(t, moving(t, speed * t - REACH - gap, 0 * t), [line(t, (0, 0), (speed, 0))])
+
+
+def before_a_chest(gap: float, speed: float, comes: float) -> Trajectories:
+    """Up to this gap from a person, who stands or comes nearer; both stop at the same time."""
+    left = np.maximum(0.0, 5.0 - T)
+    robot, person = moving(T, -speed * left, 0 * T), moving(T, REACH + gap + comes * left, 0 * T)
+    return scene(T, robot, [person])
+
+
+def across(ahead: float, speed: float, walks: float, degrees: float) -> Trajectories:
+    """Across the way of a walker who stops at this gap, and walks on behind the robot."""
+    way = np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+    later = np.maximum(0.0, T - 5.3 - 1.2 / speed)
+    x = -REACH - ahead + walks * (later - np.maximum(0.0, 5.0 - T))
+    return scene(T, line(T, tuple(-5.0 * speed * way), tuple(speed * way)), [moving(T, x, 0 * T)])
+
+
+def aside(room: float, seconds: float, speed: float, walks: float) -> Trajectories:
+    """Towards a person who stands or walks, and steps aside by this room in so many seconds."""
+    y = (REACH + room) * np.clip((T - 5.0 + seconds) / seconds, 0.0, 1.0)
+    return scene(T, line(T, (-5.0 * speed, 0), (speed, 0)), [moving(T, walks * (5.0 - T), y)])
+
+
+SLOW_TO_FAST = (0.2, 0.5, 1.2)
+
+
+@pytest.mark.parametrize("speed", SLOW_TO_FAST)
+def test_planted_faults_cost_at_all_speeds_and_angles(speed: float) -> None:
+    """Each is compared with its polite sibling."""
+    for seconds in (6.0, 30.0):
+        polite = acceptance(behind(2.0, speed, seconds))
+        assert acceptance(behind(0.5, speed, seconds)) < polite - 0.08
+    for comes in (0.0, 0.6, 1.3):
+        polite = acceptance(before_a_chest(1.5, speed, comes))
+        assert acceptance(before_a_chest(0.3, speed, comes)) < polite - 0.1
+    for walks, degrees in ((0.6, 60.0), (1.3, 90.0), (1.0, 120.0)):
+        polite = acceptance(across(2.5, speed, walks, degrees))
+        assert acceptance(across(0.3, speed, walks, degrees)) < polite - 0.15
+    for walks, seconds in ((0.0, 0.5), (0.6, 1.0), (1.3, 0.5)):
+        polite = acceptance(aside(1.2, 5.0, speed, walks))
+        assert acceptance(aside(0.1, seconds, speed, walks)) < polite - 0.3
 
 
 def test_a_polite_pass_costs_little_and_each_fault_is_named() -> None:
