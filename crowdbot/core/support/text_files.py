@@ -55,8 +55,41 @@ def input_bytes(file: Path, most: int = LARGEST, name: str = "", *, text: bool =
             content.decode()
     except (OSError, ValueError) as error:
         near = suggest_files(file) if isinstance(error, FileNotFoundError) else ""
+        if isinstance(error, UnicodeDecodeError):
+            near = _what_it_is(content)
         raise InputError(f"{name or file}: cannot be read: {reason_of(error)}{near}") from None
+    if text and (said := _stands_for(content)):
+        raise InputError(f"{name or file}: cannot be read: {said}")
     return content
+
+
+#: First bytes of files that are often taken for text -> what helps.
+_OTHERS = {
+    b"\x1f\x8b": "it is compressed, unpack it with 'gunzip'",
+    b"PK": "it is a spreadsheet or a zip archive, export or unpack it",
+    b"\xff\xfe": "it is UTF-16, save it as UTF-8",
+    b"\xfe\xff": "it is UTF-16, save it as UTF-8",
+    b"\x28\xb5\x2f\xfd": "it is compressed, unpack it with 'zstd -d'",
+    b"\x89HDF": "it is HDF5, export it as CSV",
+    b"SQLite format 3": "it is an SQLite database",
+}
+
+
+def _what_it_is(content: bytes) -> str:
+    told = (text for start, text in _OTHERS.items() if content.startswith(start))
+    return "; " + next(told, "save it as UTF-8 if it is text")
+
+
+def _stands_for(content: bytes) -> str:
+    """Return why a text is not the file that was wanted, or an empty text."""
+    begin = content[:200].removeprefix(b"\xef\xbb\xbf").lstrip().lower()
+    if begin.startswith(b"version https://git-lfs"):
+        return "it is a pointer of Git LFS; 'git lfs pull' fetches the file"
+    if begin.startswith((b"<!doctype html", b"<html")):
+        return "it is a web page, perhaps the message of a failed download"
+    if begin.startswith(b"pk\x03\x04"):
+        return "it is a spreadsheet or a zip archive, export or unpack it"
+    return ""
 
 
 def suggest_files(path: Path) -> str:

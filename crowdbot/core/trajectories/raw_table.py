@@ -183,7 +183,7 @@ class Ids:
 
 
 def as_number(cell: Any) -> float:
-    """Return the number in a cell; NaN if it is empty. A decimal comma is one, too.
+    """Return the number in a cell; NaN if it is empty or says so. A decimal comma is one, too.
 
     Raises:
         ValueError, TypeError: it is something else.
@@ -194,8 +194,12 @@ def as_number(cell: Any) -> float:
         text = cell.strip()
         if _COMMA.fullmatch(text):
             text = text.replace(",", ".")
-        return float(text) if text else math.nan
+        return math.nan if text.lower() in _UNKNOWN else float(text)
     return float(cell)
+
+
+#: What programs write in cells without a value, in lower case.
+_UNKNOWN = ("", "nan", "na", "n/a", "#n/a", "null", "none", "-")
 
 
 #: Numbers of these sizes are stamps of the years 1973 to 2286: least number, ns in its unit.

@@ -18,12 +18,16 @@ from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
 FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
 #: Our name -> other names that are usual, in lower case; taken if ours is not there.
 _USUAL: Mapping[str, Sequence[str]] = {
-    "t": ("time", "timestamp", *FRAMES),
+    "t": ("time", "timestamp", "simsec", "simtime", *FRAMES),
+    "x": ("coordcentx", "startx"),
+    "y": ("coordcenty", "starty"),
     "id": (
         "persid", "personid", "person_id", "ped_id", "pedestrian_id", "agent_id", "track_id",
         "pers", "person", "pedestrian", "pedestrianid", "agent", "agentid", "trackid", "human_id",
     ),
 }  # fmt: skip
+#: Vadere's columns end in the number of what wrote them: ``startX-PID1``.
+_PROCESSOR = re.compile(r"-PID\d+$")
 _LENGTHS = ("x", "y", "vx", "vy", "radius")
 #: Columns that may be in another unit than ours, by themselves.
 _OTHERS = ("t", "theta")
@@ -100,6 +104,7 @@ def chosen(
 
 def without_unit(column: str) -> str:
     """Return the name of a column without its unit: ``x/cm``, ``x [cm]``, ``x(cm)``."""
+    column = _PROCESSOR.sub("", column)
     match = _UNIT.match(column)
     return match[1] if match is not None and match[1] else column
 

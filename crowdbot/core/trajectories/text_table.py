@@ -94,7 +94,7 @@ def split(path: Path, text: str) -> TextTable:
     Raises:
         InputError: it is empty, or rows differ in length.
     """
-    lines = text.splitlines()
+    lines = _plain_viswalk(text.splitlines())
     comments = [line for line in lines if line.lstrip().startswith(_COMMENTS)]
     first = next((line for line in lines if line.strip() and line not in comments), "")
     if not first:
@@ -110,6 +110,21 @@ def split(path: Path, text: str) -> TextTable:
         header = _header_of_comments(comments, len(rows[0]))
     told = " ".join(comments)
     return TextTable(header, rows, numbers, _frame_rate(told), length_unit(told) or 1.0)
+
+
+def _plain_viswalk(lines: list[str]) -> list[str]:
+    """Return the lines of a file of Viswalk as those of other tables, in their places.
+
+    Its remarks begin with ``*`` and ``$``, its header with ``$PEDESTRIAN:``, where NO is a person's
+    number.
+    """
+    head = next((k for k, line in enumerate(lines) if line.upper().startswith(_VISWALK)), None)
+    if head is None:
+        return lines
+    names = lines[head][len(_VISWALK) :].split(";")
+    header = ";".join("id" if name.strip().upper() == "NO" else name for name in names)
+    rest = ("" if line.startswith(("*", "$")) else line for line in lines[head + 1 :])
+    return [""] * head + [header, *rest]
 
 
 def _is_number(cell: str) -> bool:
@@ -138,6 +153,7 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
     return []
 
 
+_VISWALK = "$PEDESTRIAN:"
 _STARTS = (
     "id", "persid", "personid", "ped_id", "pers", "person", "t", "time", *FRAMES,
 )  # fmt: skip

@@ -130,3 +130,44 @@ def test_headings_in_degrees_are_noticed(degrees: float) -> None:
         READ.from_pandas({**robot, "theta": np.full(30, degrees)}, **BODY)
     right = READ.from_pandas({**robot, "theta": np.full(30, yaw + 0.15)}, **BODY)
     assert right.implausible() == []
+
+
+def _people(path: Path, text: str | bytes) -> crowdbot.Trajectories:
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return READ.from_csv(agents=path, agent_radius=0.2)
+
+
+def test_viswalk(tmp_path: Path) -> None:
+    head = "$VISION\n* File: corridor.inpx\n$PEDESTRIAN:NO;COORDCENTX;SIMSEC;COORDCENTY\n"
+    rows = (f"{i};{x:.4f};{f / 25};{y:.4f}\n" for i, f, x, y, _ in ROWS)
+    _check(_people(tmp_path / "a.pp", head + "".join(rows)))
+
+
+def test_footsteps_of_vadere(tmp_path: Path) -> None:
+    head = "pedestrianId simTime endTime-PID1 startX-PID1 startY-PID1 endX-PID1 endY-PID1\n"
+    rows = (f"{i} {f / 25} {f / 25 + 0.4} {x:.4f} {y:.4f} 0 0\n" for i, f, x, y, _ in ROWS)
+    _check(_people(tmp_path / "postvis.traj", head + "".join(rows)))
+
+
+@pytest.mark.parametrize("word", ["NULL", "N/A", "None", "nan", "-", ""])
+def test_words_for_unknown_values(tmp_path: Path, word: str) -> None:
+    first, second = "0,1,0,0\n0.1,1,{0},{0}\n0.2,1,0.2,0\n", "0,2,1,1\n0.1,2,1.1,1\n0.2,2,1.2,1\n"
+    run = _people(tmp_path / "a.csv", "t,id,x,y\n" + first.format(word) + second)
+    assert run.agents is not None
+    assert np.isnan(run.agents.x[:, 0]).tolist() == [False, True, False]
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("t,id,x,y\n0,1,2,3\n".encode("utf-16"), "it is UTF-16, save it as UTF-8"),
+        ("# Füße\nt,id,x,y\n0,1,2,3\n".encode("latin-1"), "save it as UTF-8 if it is text"),
+        (b"\x1f\x8b\x08\x00" + bytes(range(128, 200)), "unpack it with 'gunzip'"),
+        (b"PK\x03\x04\x14\x00\x06\x00", "it is a spreadsheet or a zip archive"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:a\n", "'git lfs pull' fetches"),
+        (b"\n<!DOCTYPE html>\n<html></html>\n", "a web page, perhaps the message of a failed"),
+    ],
+)
+def test_files_that_are_no_text_of_a_table(tmp_path: Path, content: bytes, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        _people(tmp_path / "a.csv", content)
