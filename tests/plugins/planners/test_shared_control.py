@@ -16,6 +16,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 from crowdbot.plugin import Command, Observation, Planner, Pose, Reading, SensorInfo
+from crowdbot.plugins.planners.probabilistic import joint_build as joint
 from crowdbot.plugins.planners.shared.stopping_build import arc_gap_moving
 from crowdbot.testing.drive import LIMITS, Course
 
@@ -154,6 +155,57 @@ def test_the_joint_density_weighs_user_robot_and_crowd() -> None:
         command, _ = drive(planner, (0.6, 0.0), ((1.2, -0.25 * side, 0.2),), twist=(0.5, 0.0))
         assert 0.2 < command.v < 0.6
         assert side * command.w > 0.2
+
+
+#: Horizon, agreeability, spreads of user, planner and people, avoidance, safety, front, limits,
+#: standing.
+_JOINT = np.array([2.0, 0.3, 0.5, 0.8, 0.15, 0.9999, 0.3, 0.5, 1.0, 2.0, 1.0])
+_DISC = np.array([[0.0, 0.0, 0.35]])
+_ON = (1.0, 0.0, 0.0)
+
+
+def _likely(
+    ways: list[tuple[float, ...]],
+    person: tuple[float, ...],
+    horizon: float = 2.0,
+    spread: float = 0.15,
+) -> Array:
+    """The log density of each way of a robot that drives on at 1 m/s, as its user wants."""
+    p = _JOINT.copy()
+    p[[joint.HORIZON, joint.PEOPLE_SPREAD]] = horizon, spread
+    on = np.array(_ON)
+    return joint.log_densities(np.array(ways), on, on, np.array([person]), _DISC, on, p)
+
+
+def test_a_way_through_a_person_is_not_the_more_likely_the_faster_it_is() -> None:
+    """The person stays where it is."""
+    person = (2.0, 0.0, 0.0, 0.0, 0.25)
+    through, slow = _likely([_ON, (0.2, 0.0, 0.0)], person, horizon=4.0, spread=0.01)
+    assert slow > through + 10.0
+
+
+@pytest.mark.parametrize("far", [2.5, 3.0, 3.5])
+def test_a_user_who_drives_into_an_oncoming_person_is_led_past(far: float) -> None:
+    """User and planner want to go straight on; the spread of the person's way hides no contact."""
+    person = (far, 0.05, -1.2, 0.0, 0.25)
+    straight, beside = _likely([_ON, (0.9, -0.75, 0.0)], person)
+    assert beside > straight + 5.0
+    assert abs(_likely([_ON], (far, 4.0, -1.2, 0.0, 0.25))[0]) < 1e-3  # not in the way
+
+
+def test_a_way_is_likely_if_the_person_can_step_aside_and_not_if_there_is_no_time() -> None:
+    """Two people in the way, one to be reached in 1.4 s, the other in half a second."""
+    far, close = ((x, 0.2, 0.0, 0.0, 0.25) for x in (2.0, 1.1))
+    assert _likely([_ON], far)[0] > -8.0
+    assert _likely([_ON], close)[0] < -25.0
+    assert _likely([_ON], far, spread=0.01)[0] < -25.0  # one who does not step aside
+
+
+def test_no_one_is_driven_ahead_who_does_not_ask_for_it() -> None:
+    """A user who stands is not moved away from what is close behind the chair."""
+    planner = made("probabilistic", autonomy="stand_still")
+    command, _ = drive(planner, (0.0, 0.0), ((-0.55, 0.0, 0.1), (-0.5, 0.2, 0.1)))
+    assert command.v == 0.0
 
 
 def test_a_planner_that_agrees_with_the_user_has_the_last_word() -> None:

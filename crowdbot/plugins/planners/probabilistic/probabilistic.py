@@ -40,13 +40,19 @@ class ProbabilisticSpec(LadderSpec):
         default=0.8, description="Spread of the planner's way, growing with time, m/s."
     )
     people_spread: PositiveSpeed = Field(
-        default=0.15, description="Spread of people's ways, growing with time, m/s."
+        default=0.15,
+        description="Spread of the velocities with which people may go on, in each direction, m/s.",
     )
     avoidance: Annotated[float, Gt(0), Lt(1)] = Field(
         default=0.9999, description="Interaction with people and walls, a fraction."
     )
     safety: PositiveLength = Field(
         default=0.3, description="Gap at which that interaction has fallen to 61 %, m."
+    )
+    standing: Annotated[float, Gt(0), Le(1)] = Field(
+        default=0.7,
+        description="Share of a contact with a person that counts where the robot stands; from "
+        "0.5 m/s on all of it does.",
     )
     window: PositiveDuration = Field(
         default=0.5, description="Candidates are reachable in this time, s."

@@ -51,7 +51,7 @@ class Probabilistic:
         self._p = np.array(
             [spec.horizon, spec.agreeability, spec.user_spread, spec.robot_spread,
              spec.people_spread, spec.avoidance, spec.safety, front, limits.a_max,
-             limits.alpha_max]
+             limits.alpha_max, spec.standing]
         )  # fmt: skip
         one = np.ones(3)
         candidates(0.0, 1.0, 2, -1.0, 1.0, 2, 0.0)
@@ -82,9 +82,9 @@ class Probabilistic:
         spec, limits = self._spec, self._limits
         v, w, _ = twist
         dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
-        back = min(0.0, float(user[0]), float(planner[0]))  # no flight that no one asks for
-        low = min(max(v - dv, limits.v_min, back), limits.v_max)
-        high = max(min(v + dv, limits.v_max), low)
+        asked = (0.0, float(user[0]), float(planner[0]))  # no flight that no one asks for
+        low = min(max(v - dv, limits.v_min, min(asked)), limits.v_max)
+        high = max(min(v + dv, limits.v_max, max(asked)), low)
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
         grid = candidates(
             low, high, spec.speeds, left, right, spec.yaw_rates, min(max(user[1], left), right)
