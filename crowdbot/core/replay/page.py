@@ -21,6 +21,7 @@ _SCRIPTS = (
     "script/thoughts.js",
     "script/canvas.js", "script/views.js", "script/timeline.js", "script/series.js",
     "script/solid_load.js", "script/solid_place.js", "script/solid_figures.js",
+    "script/solid_bodies.js",
     "script/solid_people.js",
     "script/solid_robots.js", "script/solid_marks.js", "script/solid_eye.js",
     "script/solid.js", "script/solid_xr.js", "script/solid_view.js",

@@ -84,8 +84,51 @@ def test_figures_and_light_of_a_scenario_are_shown(tmp_path: Path) -> None:
                 f"{drawn}.figures[0].reduce((sum, mesh) => sum + mesh.count, 0)"
             )
             assert 1 <= figures <= here
-            assert page.evaluate(f"{drawn}.parts.trunk.count") + figures <= here
+            assert page.evaluate(f"{drawn}.bodies.reduce((n, b) => n + b.trunk.count, 0)") == 0
             assert (
                 page.evaluate("shown.panels[0].solid.scene.background.getHexString()") == "102030"
             )
+        browser.close()
+
+
+#: Places around the eye that are in the picture but not in sight, or behind it and yet in sight;
+#: bodies drawn at each level.
+_SIGHT = """() => {
+  const [panel] = shown.panels, { camera, parts } = panel.solid, sight = sightOf(camera, false);
+  const missed = [], needless = [];
+  for (let x = -30; x <= 30; x += 0.7) {
+    for (let y = -30; y <= 30; y += 0.7) {
+      const place = new THREE.Vector3(sight.at.x + x, 0.9, sight.at.z - y);
+      const away = -place.clone().applyMatrix4(camera.matrixWorldInverse).z;
+      const { x: across, y: up } = place.clone().project(camera);
+      const seen = distanceSeen(sight, place.x, -place.z) < Infinity;
+      if (away > 0 && Math.abs(across) < 1 && Math.abs(up) < 1 && !seen) missed.push([x, y]);
+      if (away < -6 && seen) needless.push([x, y]);
+    }
+  }
+  return { missed, needless, levels: parts.people.bodies.map(({ trunk }) => trunk.count) };
+}"""
+
+
+@pytest.mark.slow
+@needs_browser
+def test_who_is_in_sight_is_drawn_the_plainer_the_farther_away(tmp_path: Path) -> None:
+    write_replay(tmp_path / "page.html", replace(passing(), solids=_SOLIDS))
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=PROGRAM, args=_SOFTWARE)
+        with Visit(browser, tmp_path / "page.html", "#t=4") as page:
+            page.evaluate("state.playing = false")
+            levels = set[int]()
+            eyes = (("camera", 5, 1.6), ("solid", 5, 0.0), ("solid", 14, 0.0), ("solid", 40, 0.0))
+            for view, far, yaw in eyes:
+                page.select_option("#view", view)
+                until(page, "shown.panels[0].solid")
+                frames = page.evaluate("shown.panels[0].solid.frames")
+                changed = f"around.far = {far}, shown.panels[0].gaze.yaw = {yaw}"
+                page.evaluate(f"shown.panels[0].{changed}, ask()")
+                until(page, f"shown.panels[0].solid.frames > {frames}")
+                found = page.evaluate(_SIGHT)
+                assert found["missed"] == found["needless"] == []
+                levels |= {k for k, count in enumerate(found["levels"]) if count}
+            assert levels == {0, 1, 2}
         browser.close()

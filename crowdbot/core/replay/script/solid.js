@@ -79,8 +79,7 @@ function drawSolid(solid, frame, eye, options) {
     placeEye(solid, eye, width / height);
   }
   parts.obstacles.group.scale.z = options.low ? 0.35 : 1; // from outside, walls hide nothing
-  const at = solid.camera.getWorldPosition(new THREE.Vector3());
-  parts.people.eye = { x: at.x, y: -at.z };
+  parts.people.sight = sightOf(solid.camera, renderer.xr.isPresenting); // a headset turns by itself
   if (run.people) moveWanted(parts.wanted, frame);
   if (run.people) movePeople(parts.people, run, frame, options.hiddenPerson ?? -1);
   moveRobots(parts.robots, frame.robots, options.hiddenRobot ?? -1);

@@ -27,10 +27,7 @@ function figureColours(text) {
 }
 
 /** True if a person is drawn as a figure: near to the eye, on its own legs. */
-function hasFigure(crowd, p, x, y) {
-  if (!crowd.figures.length || crowd.look(p)) return false;
-  return !crowd.eye || Math.hypot(x - crowd.eye.x, y - crowd.eye.y) < FIGURES_NEAR;
-}
+const hasFigure = (crowd, p, away) => crowd.figures.length > 0 && !crowd.look(p) && away < FIGURES_NEAR;
 
 /** Places a person's figure, in the phase of its walk. */
 function placeFigure(crowd, p, x, y, heading) {
@@ -42,9 +39,4 @@ function placeFigure(crowd, p, x, y, heading) {
   s.m.makeRotationZ(heading).scale(new THREE.Vector3(h, h, h)).setPosition(x, y, 0);
   mesh.setMatrixAt(mesh.count, s.m);
   mesh.count += 1;
-}
-
-/** Forgets whom the figures showed, or, at the end of a frame, hands them to the graphics card. */
-function eachFigure(crowd, act) {
-  for (const phases of crowd.figures) phases.forEach(act);
 }
