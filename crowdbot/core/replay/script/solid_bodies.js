@@ -27,7 +27,7 @@ function partColour(name, p) {
   return name === "thing" ? "#4d4d57" : CLOTHES[p % CLOTHES.length];
 }
 
-/** For each level the meshes of all parts, with room for so many people. */
+/** For each level the meshes of all parts, with room for this many people. */
 function makeBodies(count, group) {
   const material = new THREE.MeshLambertMaterial();
   const colour = new THREE.Color();

@@ -25,9 +25,9 @@ STEP = 0.25
     STANDING,
 ) = range(11)
 PARAMETERS = 11
-#: A person has so many velocities in each direction, up to so many spreads from the present one.
+#: Velocities of a person in each direction, and how many spreads they reach from the present one.
 _WAYS, _SPAN = 5, 2.0
-#: Gaps beyond so many times `SAFETY` play no part; the smallest density of people.
+#: Gaps beyond this multiple of `SAFETY` play no part; the smallest density of people.
 _FAR, _TINY = 4.0, 1e-300
 #: From this speed of the robot on, m/s, a contact counts whole.
 _GOING = 0.5
