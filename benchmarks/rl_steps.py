@@ -9,6 +9,7 @@ the cost of a step.
 
     python benchmarks/rl_steps.py --people 20,100 --beams 0,180 --worlds 64
     python benchmarks/rl_steps.py --threads 1,2 --ceiling
+    python benchmarks/rl_steps.py --growth
     python benchmarks/rl_steps.py --memory 1000000
 """
 
@@ -73,9 +74,22 @@ def commands(worlds: int) -> Any:
     return found * [1.0, 1.0, 0.0]
 
 
-def kernels(people: int, beams: int, worlds: int, threads: int) -> Rate:
-    """The batch alone, without observation and reward."""
-    scenario = crowdbot.load(SUITE, SCENARIO, set=fields(people, beams))
+def longer(people: int) -> list[str]:
+    """Changes to the scenario: a floor that grows with its people, at 0.05 per m^2."""
+    end = 5 + 2 * people
+    return [
+        f"crowd.flow.density={20 / AREA}", "robots.robot.sensors.camera=null",
+        f"environment.length={end + 5} m",
+        f"environment.zones.crowd.x=[5 m, {end} m]",
+        f"environment.zones.robot_goal.x=[{end} m, {end + 5} m]",
+        f"environment.portals.b.x=[{end + 5} m, {end + 6} m]",
+    ]  # fmt: skip
+
+
+def kernels(people: int, beams: int, worlds: int, threads: int, *, same_room: bool = True) -> Rate:
+    """The batch alone, without observation and reward; people may have a longer floor each."""
+    changes = fields(people, beams) if same_room else longer(people)
+    scenario = crowdbot.load(SUITE, SCENARIO, set=changes)
     plan = blueprint(scenario, registry(), ["front_lidar"] if beams else [])
     pools = [ScratchPool() for _ in range(threads)]
     ends = np.linspace(0, worlds, threads + 1)[1:]
@@ -180,6 +194,15 @@ def navground(people: int, beams: int) -> Rate | None:
     return best(lambda: world.update(0.0625), 1)
 
 
+def growth() -> None:
+    """Print how the cost of a step grows with people and worlds, on a floor that grows too."""
+    print(f"{'people':>8}{'worlds':>8}{'per CPU s':>12}{'us per person':>15}")
+    for people in (20, 40, 80, 160):
+        for worlds in (16, 64, 128):
+            own, _ = kernels(people, 0, worlds, 1, same_room=False)
+            print(f"{people:8}{worlds:8}{own:12.0f}{1e6 / own / people:15.2f}", flush=True)
+
+
 def resident() -> int:
     """Return the resident memory of this process, bytes."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
@@ -219,7 +242,11 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--peers", action="store_true", help="crowdbot.Session, IR-SIM, navground")
     parser.add_argument("--ceiling", action="store_true", help="as many processes as threads")
     parser.add_argument("--memory", type=int, metavar="STEPS", help="memory over many steps")
+    parser.add_argument("--growth", action="store_true", help="cost by people and worlds")
     given = parser.parse_args(arguments)
+    if given.growth:
+        growth()
+        return
     if given.memory:
         memory(given.memory, given.worlds)
         return

@@ -42,7 +42,6 @@ class Actor:
         first = next(iter(setup.blueprints.values()))
         model, self._robot, self._worlds = first.models[robot], robot, worlds
         self._spec = setup.observation
-        self._privileged = self._spec.privileged
         self._sensors = [(k, s) for k, s in enumerate(first.sensors) if s.robot == robot]
         self.context = LearningContext(
             worlds=worlds,
@@ -120,13 +119,15 @@ class Actor:
         """Return (W,) True where the time limit is over."""
         return np.asarray(batches.now >= self._limits)
 
-    def look(self, batches: Batches, rows: Array, fresh: Mask, stepped: Mask, most: int) -> Vectors:
+    def look(
+        self, batches: Batches, rows: Array, fresh: Mask, stepped: Mask, people: Array
+    ) -> Vectors:
         """Return observations (W, N).
 
         Args:
             rows: (W, R, 8) of all robots.
             fresh, stepped: (W,) as of `RobotInputs`.
-            most: room for this many people, where they are seen as they are.
+            people: (W, M, 5) as of `RobotInputs`.
         """
         own = rows[:, self._robot]
         cos, sin = np.cos(own[:, R_YAW]), np.sin(own[:, R_YAW])
@@ -134,9 +135,6 @@ class Actor:
         twist[:, 0] = cos * own[:, RVX] + sin * own[:, RVY]
         twist[:, 1] = own[:, R_W]
         twist[:, 2] = cos * own[:, RVY] - sin * own[:, RVX]
-        people = np.empty((self._worlds, most if self._privileged else 0, 5))
-        if self._privileged:
-            batches.people(people)
         return self._observer.observe(
             RobotInputs(
                 fresh=fresh,

@@ -59,9 +59,10 @@ class Rollout:
         self.rows = np.zeros((count, robots, 8))
         self.scenarios = np.full(count, "", object)
         self._people = np.zeros(count, np.int64)
+        self._seen = np.zeros((count, 0, 5))
         for w in range(count):
             self._note(w)
-        self.batches.robots(self.rows)
+        self._gather()
 
     def _first(self, threads: int) -> Batches:
         """Return the worlds of the first episodes."""
@@ -95,7 +96,16 @@ class Rollout:
             bank.give_back(self.world(w))
             self.batches.put(w, self._take(bank, episode), episode.key)
             self._note(w)
+        self._gather()
+
+    def _gather(self) -> None:
+        """Read robots and, if they are observed, people of worlds that have begun."""
         self.batches.robots(self.rows)
+        if self.setup.observation.privileged:
+            most = int(self._people.max(initial=0))
+            if self._seen.shape[1] != most:
+                self._seen = np.zeros((len(self._people), most, 5))
+            self.batches.show_people(self._seen)
 
     def _take(self, bank: Bank, episode: Episode) -> BatchWorld:
         """Return the world of an episode, with its own start and goal if they are drawn."""
@@ -163,8 +173,7 @@ class Rollout:
             fresh: (W,) True where an episode has just begun.
             stepped: (W,) True where a step was made since the last look.
         """
-        most = int(self._people.max(initial=0))
-        return self.actors[robot].look(self.batches, self.rows, fresh, stepped, most)
+        return self.actors[robot].look(self.batches, self.rows, fresh, stepped, self._seen.copy())
 
     def people(self) -> Array:
         """Return x, y, vx, vy, radius (W, M, 5) of all people; NaN for those who are absent."""

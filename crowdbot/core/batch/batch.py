@@ -64,6 +64,7 @@ class Batch:
     Attributes:
         worlds: as they are now.
         drives, least, most: as of `Drives`.
+        seen: (W, M, 5) people after each step, as `people` writes them; with M = 0, none are kept.
     """
 
     def __init__(
@@ -73,6 +74,7 @@ class Batch:
         self._most = max(len(w.groups) for w in worlds), max(len(w.scanners) for w in worlds)
         self._table, self.drives, self.least, self.most = shared or drives_of(worlds)
         count, robots = self.drives.shape[:2]
+        self.seen = np.zeros((count, 0, 5))
         self._all, self._slow = np.arange(count), np.zeros(count, np.bool_)
         self._crowds = np.zeros((count, len(CROWD_FIELDS), ENTRY), np.int64)
         self._robots = np.zeros((count, robots, len(ROBOT_FIELDS), ENTRY), np.int64)
@@ -114,7 +116,7 @@ class Batch:
         k.step_worlds(
             np.ascontiguousarray(commands, np.float64), self.least, self.most,
             fast, self._table, self._crowds, self._groups, self._robots, self._scanners,
-            self.drives, self._sound,
+            self.drives, self._sound, self.seen,
         )  # fmt: skip
         for w in chosen[slow].tolist():
             self._step_slowly(w)
@@ -125,9 +127,13 @@ class Batch:
         """Write the rows (W, R, 8) of all robots as people feel them."""
         gather_robots(self._crowds, out)
 
-    def people(self, out: Array) -> None:
-        """Write x, y, vx, vy and radius (W, M, 5) of all people, NaN for those who are absent."""
-        gather_people(self._table, self._crowds, out)
+    def people(self, out: Array, which: Indices | None = None) -> None:
+        """Write x, y, vx, vy and radius (W, M, 5) of all people, NaN for those who are absent.
+
+        Args:
+            which: rows of the worlds; None: all.
+        """
+        gather_people(self._all if which is None else which, self._table, self._crowds, out)
 
     def ranges(self, sensor: int, out: Array) -> None:
         """Write the latest ranges (W, L, B) of one sensor of each world, m."""
@@ -153,6 +159,7 @@ class Batch:
             world.advance_people()
             k.step_robots(w, self._table, self._crowds, self._robots, self._scanners, self.drives)
         k.meet_people(w, self._table, self._crowds, self.drives)
+        self.people(self.seen, np.array([w]))
 
     def _read(self, which: Indices) -> None:
         k.read_scanners(which, self._table, self._crowds, self._scanners)

@@ -73,6 +73,12 @@ class Batches:
         """Write all people (W, M, 5), see `Batch.people`."""
         self._into(out, lambda batch, rows: batch.people(rows))
 
+    def show_people(self, out: Array) -> None:
+        """Write all people (W, M, 5) to ``out`` now and after each step, see `Batch.seen`."""
+        for batch, (first, end) in zip(self._batches, self._parts, strict=True):
+            batch.seen = out[first:end]
+        self.people(out)
+
     def ranges(self, sensor: int, out: Array) -> None:
         """Write the ranges (W, L, B) of one sensor, see `Batch.ranges`."""
         self._into(out, lambda batch, rows: batch.ranges(sensor, rows))

@@ -9,6 +9,7 @@ from crowdbot.core.batch.array_tables import floats1, floats2, floats3, ints1
 from crowdbot.core.batch.decide import decide
 from crowdbot.core.batch.drive import move, watch_goal
 from crowdbot.core.batch.encounters import meet
+from crowdbot.core.batch.people_rows import write_people
 from crowdbot.core.batch.robot_tables import DRIVE_STATE
 from crowdbot.core.batch.scan import is_due, scan
 from crowdbot.core.batch.scanner_tables import OWN, SCANNER
@@ -39,7 +40,7 @@ WORLD_COLUMNS = 8
 def step_worlds(
     commands: Array, least: Array, most: Array, which: Indices, worlds: Indices, crowds: Indices,
     groups: Indices, robots: Indices,
-    scanners: Indices, drives: Array, sound: Mask,
+    scanners: Indices, drives: Array, sound: Mask, seen: Array,
 ) -> None:  # fmt: skip
     """Advance some worlds by a step each, and read the scanners that are due.
 
@@ -53,6 +54,8 @@ def step_worlds(
         scanners: (S, F, 4) entries of `scanner_table`.
         drives: (W, R, D) `DriveStateRecord`, changed.
         sound: (W,) set to False where a cost function returned NaN.
+        seen: (W, M, 5) output: people, see `write_people`, while the processor's cache has them;
+            nothing with M = 0.
     """
     _command(commands, least, most, drives)
     for k in range(which.shape[0]):
@@ -66,6 +69,8 @@ def step_worlds(
             worlds[w, NOW] += 1
             _read(worlds[w], crowds[w], scanners)
         meet_people(w, worlds, crowds, drives)
+        if seen.shape[1] > 0:
+            write_people(crowds[w], worlds[w, PEOPLE], seen[w])
 
 
 @kernel

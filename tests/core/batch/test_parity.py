@@ -13,6 +13,7 @@ from crowdbot.api import registry
 from crowdbot.core.batch.array_tables import ScratchPool
 from crowdbot.core.batch.batch import Batch
 from crowdbot.core.batch.blueprint import blueprint
+from crowdbot.core.batch.parallel import Batches
 from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.crowd import state as s
 from crowdbot.core.support.ticks import TICK
@@ -115,6 +116,23 @@ def test_worlds_of_any_size_in_any_order_do_not_depend_on_each_other() -> None:
     for one, other in zip(together, alone, strict=True):
         assert np.array_equal(one, other)
     assert not np.array_equal(together[0], together[2])
+
+
+def test_people_shown_after_a_step_are_those_of_the_world_in_any_thread() -> None:
+    pools = [ScratchPool(), ScratchPool()]
+    plan = blueprint(crowdbot.load(*CHALLENGE, set=[KINEMATIC, FEW]), registry(), [])
+    worlds = [BatchWorld(plan, root, pool) for root, pool in enumerate((*pools, pools[1]))]
+    batches = Batches(worlds, [0, 1, 2], 2)
+    shown, asked = np.zeros((2, 3, worlds[0].people + 2, 5))
+    batches.show_people(shown)
+    for which in ([0, 1, 2], [0, 2], [1]):
+        batches.step(np.full((3, 1, 3), np.nan), np.array(which))
+        batches.people(asked)
+        assert np.array_equal(shown, asked, equal_nan=True)
+    assert np.isfinite(shown[0]).any()
+    assert np.isnan(shown[:, -2:]).all()
+    assert np.isnan(batches.commands[:, 0, 0]).all()  # not taken for a limit
+    batches.close()
 
 
 def test_a_world_begins_again_as_it_began() -> None:
