@@ -203,6 +203,7 @@ class KernelDispatcher(CPUDispatcher):
         """Return a part with its Python and C wrappers; the part is not compiled again."""
         # A part from the cache has a context of all functions, which cannot return new arrays.
         makes_arrays = self.targetoptions.get("_nrt", True)
+        self.targetctx.refresh()  # as before any compilation; else numba knows no constants yet
         context = part.target_context.subtarget(enable_nrt=makes_arrays)
         description, environment = part.fndesc, part.environment
         library = context.codegen().create_library(description.qualname)

@@ -120,6 +120,7 @@ ours = [n for n in Listener.names if hasattr(loops, n)]
 print(json.dumps(ours))
 """
 LOOPS = """
+from typing import NamedTuple
 import numpy as np
 from crowdbot.core.support.compiling.compile import array_kernel, kernel
 @kernel
@@ -143,6 +144,17 @@ def of_array(values):
 @array_kernel
 def also_of_array(values):
     return array(values)[0] * 3.0
+class Pair(NamedTuple):
+    a: np.ndarray
+    b: np.ndarray
+@kernel
+def of_pair(pair):
+    return pair.a[1] + pair.b[2]
+@kernel
+def around_pair(values):
+    return of_pair(Pair(values, values)) * 2.0
+def pair(values):
+    return of_pair(Pair(values, values))
 """
 
 
@@ -204,6 +216,13 @@ def test_python_gets_an_array_from_what_was_a_part_before(tmp_path: Path) -> Non
     # The part comes first, with its caller, then what another process has made of it.
     assert _ended(_started(tmp_path, "of_array", "array")) == ([], [4.0, 2.0])
     assert _ended(_started(tmp_path, "also_of_array", "array"))[1] == [6.0, 2.0]
+
+
+@pytest.mark.slow
+def test_python_passes_a_tuple_to_what_was_a_part_before(tmp_path: Path) -> None:
+    """Taking it apart needs constants, which numba knows only after a refresh."""
+    assert _ended(_started(tmp_path, "around_pair"))[1] == [6.0]
+    assert _ended(_started(tmp_path, "pair")) == (["of_pair"], [3.0])
 
 
 @pytest.mark.slow
