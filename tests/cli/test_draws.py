@@ -49,6 +49,15 @@ def secret_of(suite: Path) -> dict[str, Any]:
     return found
 
 
+def test_errors_name_the_suite_and_no_copy_of_it(suite: Path, capsys: Captured) -> None:
+    suite.write_text(SUITE.replace("crowd.speed.mean: 2", "crowd.speeed: 2"))
+    assert main(["draws", "commit", str(suite)]) == 1
+    shown = capsys.readouterr().err
+    assert f"{suite}:6:" in shown.replace("\n", "")
+    assert ".try" not in shown
+    assert sorted(suite.parent.iterdir()) == [suite.parent / "minimal.yaml", suite]
+
+
 def test_commit_then_reveal(suite: Path, capsys: Captured) -> None:
     assert main(["draws", "commit", str(suite), "--json"]) == 0
     shown = capsys.readouterr().out

@@ -125,7 +125,8 @@ def _minutes(seconds: float) -> str:
 
 def _line(state: State, job: Job, done: Done) -> str:
     ended = len(state.plan.jobs) - len(state.left)
-    how = f"failed: {_first(done.error)}" if done.error else done.status
+    ended_as = "done" if job.kind == "crowd_alone" else done.status  # people cannot be too late
+    how = f"failed: {_first(done.error)}" if done.error else ended_as
     left = f", {_minutes(state.remaining)} left" if state.left else ""
     return f"[{ended}/{len(state.plan.jobs)}] {job.title}: {how} ({done.wall_time:.1f} s{left})"
 

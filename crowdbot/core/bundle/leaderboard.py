@@ -182,7 +182,7 @@ def _cell(table: Standings, metric: str, entry: LeaderboardEntry) -> dict[str, A
         }  # fmt: skip
     others = {k: getattr(score.counts, k) for k in OUTCOMES if k != "ok"}
     notes = [f"{n} {k}" for k, n in others.items() if n]
-    if score.counts.censored:
+    if score.counts.censored and any(end is not None for end in score.bounds):
         notes.append(f"mean of all runs {range_text(score.bounds)}")
     notes += ["scored again"] * (metric in entry.rescored)
     value, interval = estimate_text(score.mean)

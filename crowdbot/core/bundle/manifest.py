@@ -22,7 +22,7 @@ PLANNER_FILES = "planner/"
 RULES = 2
 RULES_TEXT = (
     "One planner with one set of parameters drives all scenarios of the suite.",
-    "Every scenario is run with the seeds of the suite; no run is left out, whatever came of it.",
+    "Every scenario is run with the seeds of the suite; no run is left out, however it ended.",
     "A planner that reads ground truth says so and is ranked apart.",
     "A planner is deterministic: the same observations and seed give the same commands.",
     "Scenarios, rates and metrics are those of the suite, unchanged.",

@@ -37,7 +37,7 @@ EDGES: dict[str, Array] = {
 #: Units of the features.
 UNITS = {
     "speed": "m/s",
-    "acceleration": "m/s^2",
+    "acceleration": "m/s²",
     "turning": "rad/s",
     "nearest": "m",
     "time_to_collision": "s",

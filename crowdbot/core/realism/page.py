@@ -41,7 +41,7 @@ def _section(found: Realism) -> dict[str, Any]:
         "name": found.name,
         "index": f"{found.index:.2f}",
         "score": f"{found.score:.3f}",
-        "range": f"{found.low:.3f} to {found.high:.3f}",
+        "range": f" ({found.low:.3f} to {found.high:.3f} over draws)" * (found.low < found.high),
         "floor": f"{found.floor:.3f}",
         "ceiling": f"{found.ceiling:.3f}",
         "coverage": found.coverage,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,9 @@ _SCRIPTS = (
     "script/others.js", "script/controls.js", "script/app.js",
 )  # fmt: skip
 
+#: What `scenario_words` adds about one run; several runs of a scenario differ in it.
+_REALISED = re.compile(r", \S+ in this run")
+
 
 def write_replay(path: Path, *shown: ShownRun, title: str = "") -> None:
     """Write one offline HTML page; equal input gives equal bytes.
@@ -58,7 +62,7 @@ def _render(shown: Sequence[ShownRun], title: str) -> str:
         allowed=Allowed(frames=True, later=(three_source(),)),
         three=three_packed(),
         title=title,
-        words=list(dict.fromkeys(one.words for one in shown if one.words)),
+        words=_words(shown),
         labels=[one.label or one.title for one in shown],
         statuses=[one.status for one in shown],
         facts={name: [_facts(one).get(name, "–") for one in shown] for name in names},
@@ -68,6 +72,14 @@ def _render(shown: Sequence[ShownRun], title: str) -> str:
             f"{i}-{n}": text for i, (_, blobs) in enumerate(packed) for n, text in blobs.items()
         },
     )
+
+
+def _words(shown: Sequence[ShownRun]) -> list[str]:
+    """Return what the scenarios' names mean; realised densities only where all runs agree."""
+    found: dict[str, set[str]] = {}
+    for words in filter(None, (one.words for one in shown)):
+        found.setdefault(_REALISED.sub("", words), set()).add(words)
+    return [told.pop() if len(told) == 1 else name for name, told in found.items()]
 
 
 def _facts(shown: ShownRun) -> dict[str, str]:

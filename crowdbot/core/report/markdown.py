@@ -196,7 +196,7 @@ def _score_cell(score: PlannerScore) -> str:
 
 def _whole(score: PlannerScore) -> list[str]:
     """Return bounds for the mean of all runs, if the mean of some is not enough."""
-    if not score.counts.censored:
+    if not score.counts.censored or all(end is None for end in score.bounds):
         return []
     return [f"mean of all {range_text(score.bounds)}"]
 

@@ -11,7 +11,7 @@ import os
 import re
 import secrets
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -36,6 +36,8 @@ from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError
 
+#: Ending of a temporary copy of a document.
+_COPY = ".try.yaml"
 #: Bytes of a salt.
 SALT_BYTES = 32
 _SEEDS = 2**63
@@ -247,15 +249,26 @@ def _change(document: OpenDocument, lines: Sequence[str], registry: Registry) ->
 
 
 def _check_drawn(document: OpenDocument, after: ParsedSuite, registry: Registry) -> None:
-    expansion = expand_document(after, registry.scenario_model)
+    try:
+        expansion = expand_document(after, registry.scenario_model)
+    except SpecError as error:
+        raise SpecError([_named(d, document.name) for d in error.diagnostics]) from None
     if not any(scenario.hidden for scenario in expansion.scenarios):
         raise InputError(f"{document.name}: no people are drawn from suite.seed: nothing to hide")
+
+
+def _named(found: Diagnostic, name: str) -> Diagnostic:
+    """Return an error of a copy under the name of its original."""
+    source = found.mark.source
+    if not source.name.endswith(_COPY):
+        return found  # in a file that the document includes
+    return replace(found, mark=replace(found.mark, source=replace(source, name=name)))
 
 
 @contextlib.contextmanager
 def _copy(path: Path, text: str) -> Iterator[Path]:
     """Yield a temporary file with a text, beside another one so that its includes resolve."""
-    copy = path.with_name(f".{path.stem}.{os.getpid()}.try.yaml")
+    copy = path.with_name(f".{path.stem}.{os.getpid()}{_COPY}")
     try:
         copy.write_bytes(text.encode())
         yield copy

@@ -68,10 +68,10 @@ def _robot(run: Trajectories, sample: int) -> str:
         distance = math.hypot(x - float(robot.x[sample]), y - float(robot.y[sample]))
         left = f", {max(0.0, distance - robot.goal_radius):.1f} m from its goal"
     speed, rate = float(robot.v[sample]), math.degrees(float(robot.w[sample]))
-    place = f"({float(robot.x[sample]):.1f}, {float(robot.y[sample]):.1f})"
+    place = f"({float(robot.x[sample]):z.1f}, {float(robot.y[sample]):z.1f})"
     if abs(speed) < 0.005 and abs(rate) < 0.5:
         return f"the robot stood at {place}{left}"
-    return f"the robot at {place} drove at {speed:.2f} m/s and turned at {rate:.0f} °/s{left}"
+    return f"the robot at {place} drove at {speed:z.2f} m/s and turned at {rate:z.0f} °/s{left}"
 
 
 def _seen(scans: Iterable[ReplayScan], t: float) -> Iterator[str]:

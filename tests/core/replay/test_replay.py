@@ -23,6 +23,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from crowdbot.errors import InputError
 from tests.core.recording.recording_cases import random_run, write_run
+from tests.core.replay.replay_cases import passing
 
 EVIL = "</script><script>alert(1)</script><!-- \"'& \u2028"
 
@@ -321,6 +322,17 @@ def test_contacts_name_people_by_place(page: Page) -> None:
         (0.3, 0.40625, 1),  # id 103
         (1.0, 1.1, -1),
     ]
+
+
+def test_runs_of_one_scenario_explain_its_name_once(tmp_path: Path) -> None:
+    said = "In this scenario's name, d0125: 0.125 people per m² where they start{}; slow: slow."
+    densities = [", 0.1 in this run", ", 0.099 in this run"]
+    shown = [replace(passing(), words=said.format(text)) for text in densities]
+    write_replay(tmp_path / "both.html", *shown)
+    write_replay(tmp_path / "one.html", shown[1])
+    texts = [(tmp_path / f"{name}.html").read_text("utf-8") for name in ("both", "one")]
+    assert [t.count("In this scenario") for t in texts] == [1, 1]
+    assert ["in this run" in t for t in texts] == [False, True]
 
 
 def test_nothing_comes_from_outside(page: Page) -> None:

@@ -90,6 +90,14 @@ def test_words_and_pictures_of_each(cause: Cause) -> None:
     assert all(p.shapes for p in pictures)
 
 
+def test_no_number_is_a_negative_zero() -> None:
+    robot, person = line(T, (0, -0.01), (0.5, -0.0001)), line(T, (3, 3), (0, 0))
+    run = scene(T, robot, (person,), robot_goal=FAR)
+    text = "\n".join(what_happened(run, decisive_moment(run, ended())))
+    assert re.search(r"the robot at \(\d\.\d, 0\.0\) drove at", text), text
+    assert re.search(r"turned at 0 °/s", text), text
+
+
 def test_words_name_side_gap_and_speed() -> None:
     text = "\n".join(what_happened(CASES[Cause.CLOSE][0], moment(Cause.CLOSE)))
     assert "stood, left of the robot" in text
