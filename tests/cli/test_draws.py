@@ -50,7 +50,7 @@ def secret_of(suite: Path) -> dict[str, Any]:
 
 
 def test_errors_name_the_suite_and_no_copy_of_it(suite: Path, capsys: Captured) -> None:
-    suite.write_text(SUITE.replace("crowd.speed.mean: 2", "crowd.speeed: 2"))
+    suite.write_text(SUITE.replace("crowd.speed.mean: 2", "crowd.sped: 2"))
     assert main(["draws", "commit", str(suite)]) == 1
     shown = capsys.readouterr().err
     assert f"{suite}:6:" in shown.replace("\n", "")
