@@ -132,12 +132,12 @@ class NavVectorEnv(VectorEnv):
         if not self._begun:
             raise InputError("reset() begins the first episodes")
         again = self._ended.copy()
-        if self.autoreset_mode.value == DISABLED and again.any():
-            raise InputError("episodes have ended; reset them with options={'reset_mask': …}")
         if again.any():
+            if self.autoreset_mode.value == DISABLED:
+                raise InputError("episodes have ended; reset them with options={'reset_mask': …}")
             self._begin(again, [None] * self.num_envs, None)
         result = self.rollout.step(given, np.flatnonzero(~again))
-        self._steps[~again] += 1
+        self._steps += ~again
         after = self._after(result, again)
         self._show()
         return after

@@ -18,9 +18,11 @@ def goal_and_motion(seen: RobotInputs, limits: RobotLimits, goal_range: float) -
     distance = np.hypot(away[:, 0], away[:, 1])
     bearing = np.arctan2(away[:, 1], away[:, 0]) - seen.pose[:, 2]
     fastest = np.array([max(limits.v_max, -limits.v_min), limits.w_max, limits.vy_max])
-    motion = np.divide(seen.twist, fastest, out=np.zeros_like(seen.twist), where=fastest > 0.0)
-    near = np.minimum(distance / goal_range, 1.0)
-    return np.column_stack([near, np.cos(bearing), np.sin(bearing), motion])
+    found = np.zeros((len(away), SIZE))
+    found[:, 0] = np.minimum(distance / goal_range, 1.0)
+    found[:, 1], found[:, 2] = np.cos(bearing), np.sin(bearing)
+    np.divide(seen.twist, fastest, out=found[:, 3:], where=fastest > 0.0)
+    return found
 
 
 def bounds(*parts: tuple[int, float, float]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
