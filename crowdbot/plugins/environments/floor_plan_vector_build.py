@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import math
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -15,7 +14,7 @@ import shapely  # type: ignore[import-untyped,unused-ignore]
 from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.plugin import InputError, did_you_mean, nearest
-from crowdbot.plugin.for_environments import DEEPEST, parse_foreign_json
+from crowdbot.plugin.for_environments import parse_foreign_json
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_units_build import (
     UNITS,
@@ -23,6 +22,7 @@ from crowdbot.plugins.environments.floor_plan_units_build import (
     declared_crs,
     in_metres,
 )
+from crowdbot.plugins.environments.floor_plan_wkt_build import geometry_of
 
 _LOG = logging.getLogger(__name__)
 #: The values of the property ``kind``, and which of them are solid, floor, or neither.
@@ -36,8 +36,6 @@ _LEVELS = ("level", "storey", "story")
 _STOREY = 2.0
 #: Part of the floor that may be covered twice without a warning.
 _COVERED_TWICE = 0.25
-_CURVE = re.compile(r"(COMPOUND|MULTI)?CURVE(POLYGON)?|CIRCULARSTRING|MULTISURFACE", re.IGNORECASE)
-_SRID = re.compile(r"\s*SRID\s*=\s*\d+\s*;", re.IGNORECASE)
 
 
 @dataclass
@@ -65,7 +63,7 @@ def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) ->
     """
     aside = Counter[str]()
     if spec.read_as == "wkt":
-        found, crs = [(_from_wkt(text, name), dict[str, Any]())], ""
+        found, crs = [(geometry_of(text, name), dict[str, Any]())], ""
     else:
         content = _from_json(text, name)
         found, crs = list(_features(content, name, aside)), declared_crs(content)
@@ -105,33 +103,6 @@ def sorted_plan(
     return plan
 
 
-def _from_wkt(text: str, name: str) -> Any:
-    curve = _CURVE.search(text)
-    if curve:
-        raise InputError(
-            f"{name}: {curve[0].upper()}: curves are not read; replace them by lines "
-            "(ST_CurveToLine in PostGIS)"
-        )
-    _check_depth(text, name)
-    try:
-        return shapely.from_wkt(_SRID.sub("", text.strip(), count=1))
-    except shapely.errors.ShapelyError as error:
-        raise InputError(f"{name}: is not well-known text: {error}") from error
-
-
-def _check_depth(text: str, name: str) -> None:
-    """Refuse geometries that are nested deeper than the library's stack allows."""
-    depth = 0
-    for found in re.finditer(r"[()]", text):
-        depth += 1 if found[0] == "(" else -1
-        if depth > DEEPEST:
-            line = text.count("\n", 0, found.start()) + 1
-            column = found.start() - text.rfind("\n", 0, found.start())
-            raise InputError(
-                f"{name}: line {line}, column {column}: nested deeper than {DEEPEST} brackets"
-            )
-
-
 def _from_json(text: str, name: str) -> Any:
     try:
         return parse_foreign_json(text)
@@ -143,9 +114,11 @@ def _features(content: Any, name: str, aside: Counter[str]) -> Iterator[_Found]:
     """Yield each geometry with its properties; count what has no place."""
     kind = content.get("type") if isinstance(content, dict) else None
     if kind == "FeatureCollection":
-        features = content.get("features") or ()
+        features = content.get("features")
         if not isinstance(features, list):
             raise InputError(f"{name}: is not GeoJSON: 'features' is not a list")
+        if not features:
+            raise InputError(f"{name}: the plan is empty: it has no features")
         for feature in features:
             yield from _features(feature, name, aside)
     elif kind == "Feature":
@@ -189,7 +162,7 @@ def _with_heights(value: Any) -> Any:
     if not isinstance(value, list):
         return value
     if len(value) > 2 and isinstance(value[0], (int, float)):
-        return [*value[:2], *(math.nan if height is None else height for height in value[2:])]
+        return [*value[:2], *(math.nan if height is None else height for height in value[2:3])]
     return [_with_heights(part) for part in value]
 
 

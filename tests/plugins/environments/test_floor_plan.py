@@ -68,6 +68,21 @@ def test_a_byte_order_mark_changes_nothing(tmp_path: Path, kind: str, text: str)
     assert _floor(marked).equals(_floor(plain))
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0));",
+        '"POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0))"',
+        "# a room\nPOLYGON ((0 0, 2 0, 2 3, 0 3, 0 0))\n\nPOLYGON ((2 0, 4 0,\n 4 3, 2 3, 2 0))\n",
+        "POLYGON M ((0 0 9, 4 0 9, 4 3 9, 0 3 9, 0 0 9))",
+        "POLYGON ZM ((0 0 1 9, 4 0 1 9, 4 3 1 9, 0 3 1 9, 0 0 1 9))",
+    ],
+)
+def test_wkt_as_databases_write_it(tmp_path: Path, text: str) -> None:
+    parts = _plan(file=_file(tmp_path, "rooms.wkt", text), least_area=0.0)
+    assert _floor(parts).area == pytest.approx(12.0)
+
+
 @pytest.mark.parametrize(("unit", "scale"), [("cm", 0.01), ("mm", 0.001), ("ft", 0.3048)])
 def test_units_origin_and_rotation(unit: str, scale: float) -> None:
     parts = _plan(wkt=L_SHAPE, unit=unit, least_area=0.0, origin=[3.0, -2.0], rotation="90 deg")
@@ -125,6 +140,7 @@ def test_a_bow_tie_is_repaired_with_a_warning(caplog: pytest.LogCaptureFixture) 
     ("name", "content", "message"),
     [
         ("a.wkt", "POLYGON ((0 0, 1", "is not well-known text"),
+        ("a.geojson", '{"type": "FeatureCollection", "features": []}', "it has no features"),
         (
             "a.wkt",
             "\n" + "GEOMETRYCOLLECTION (" * 100 + ")" * 100,
