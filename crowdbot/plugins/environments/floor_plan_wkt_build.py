@@ -63,7 +63,7 @@ def _one_of_wkt(part: str, name: str) -> Any:
 
 
 def _without_measures(shape: Any) -> Any:
-    """Return a geometry without the numbers that are no place (M)."""
+    """Return a geometry without the measures (M)."""
     if not getattr(shapely, "has_m", lambda _: False)(shape):
         return shape
     if not shapely.has_z(shape):
