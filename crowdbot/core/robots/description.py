@@ -19,6 +19,7 @@ from crowdbot.core.robots.convex_piece import is_piece
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
 from crowdbot.core.robots.sdf_frames import written_out
 from crowdbot.core.robots.sdf_nested import without_nested
+from crowdbot.core.robots.sdf_poses import plain_poses
 from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
 from crowdbot.core.support.text_files import LARGEST
 from crowdbot.core.types.arrays import Array
@@ -233,6 +234,7 @@ def parse_description(text: str) -> Description:
             f"<{top.tag}>"
         )
     version = top.get("version", "1.9")
+    plain_poses(model)
     flat, nested = without_nested(model)
     made, notes = written_out(flat, version)
     return Description(text, "sdf", made, version if made is model else "1.9", (*nested, *notes))

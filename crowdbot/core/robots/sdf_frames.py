@@ -65,7 +65,7 @@ def _is_elsewhere(model: Xml.Element, version: str) -> list[bool]:
 def _reference(element: Xml.Element) -> str:
     """Return the frame that an element's pose names; empty if none."""
     pose = element.find("pose")
-    return "" if pose is None else pose.get("relative_to") or pose.get("frame") or ""
+    return "" if pose is None else pose.get("relative_to") or ""
 
 
 def _axis_frame(axis: Xml.Element, version: str) -> str:

@@ -286,3 +286,35 @@ def test_damping_that_holds_a_robot_is_told() -> None:
 def test_macros_are_told_with_what_expands_them(text: str) -> None:
     with pytest.raises(PluginError, match=r"xacro ROBOT\.urdf\.xacro > ROBOT\.urdf"):
         read_description(text)
+
+
+@pytest.mark.parametrize(
+    ("version", "pose"),
+    [
+        ("1.9", '<pose degrees="true">{at} -90 0 0</pose>'),
+        ("1.9", '<pose rotation_format="euler_rpy" degrees="true">{at} -90 0 0</pose>'),
+        ("1.9", '<pose rotation_format="quat_xyzw">{at} -0.7071068 0 0 0.7071068</pose>'),
+        ("1.6", '<pose frame="base_link">{at} -1.5707963 0 0</pose>'),
+    ],
+)
+def test_poses_of_sdf_in_any_format(version: str, pose: str) -> None:
+    wheel = pose.format(at="0 {y} 0.05") + _inertial(0.5, 0.001)
+    shape = '<collision name="c">' + WHEEL_SHAPE + "</collision>"
+    text = _cart(wheel=wheel + shape, joint="").replace('version="1.9"', f'version="{version}"')
+    described = read_description(text)
+    turned = described.pose("left_wheel", "base_link")
+    np.testing.assert_allclose(turned[:3, :3], [[1, 0, 0], [0, 0, 1], [0, -1, 0]], atol=1e-6)
+    assert described.differential_drive("left", "right").track == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(
+    ("pose", "told"),
+    [
+        ('<pose rotation_format="axis_angle">0 0 0 0 0 0</pose>', "known: euler_rpy, quat_xyzw"),
+        ('<pose rotation_format="quat_xyzw">0 0 0 0 0 0</pose>', "has 6 numbers, not 7"),
+        ('<pose rotation_format="quat_xyzw">0 0 0 0 0 0 0</pose>', "quaternion of length 0"),
+    ],
+)
+def test_poses_of_sdf_that_are_none_are_refused(pose: str, told: str) -> None:
+    with pytest.raises(PluginError, match=told):
+        read_description(_cart(wheel=pose + _inertial(0.5, 0.001), joint=""))

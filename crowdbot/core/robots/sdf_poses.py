@@ -1,0 +1,62 @@
+"""Poses of SDFormat as they may be written: in degrees, as quaternions, with the older `frame`."""
+
+from __future__ import annotations
+
+import math
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+
+from crowdbot.core.robots.xml import name_of, numbers, six
+from crowdbot.errors import PluginError
+
+_FORMATS = ("euler_rpy", "quat_xyzw")
+
+
+def plain_poses(model: Xml.Element) -> None:
+    """Write all poses of a model as x, y, z, roll, pitch, yaw in rad, in place.
+
+    Before SDFormat 1.7 a pose said ``frame`` for ``relative_to``.
+
+    Raises:
+        PluginError: a pose has another number of numbers than its format, or an unknown format.
+    """
+    for element in model.iter():
+        for pose in element.findall("pose"):
+            _make_plain(pose, f"the pose of '{name_of(element)}'")
+
+
+def _make_plain(pose: Xml.Element, what: str) -> None:
+    kind, old = pose.attrib.pop("rotation_format", _FORMATS[0]), pose.attrib.pop("frame", "")
+    if old and not pose.get("relative_to"):
+        pose.set("relative_to", old)
+    in_degrees = pose.attrib.pop("degrees", "false").strip().lower() in ("true", "1")
+    if kind not in _FORMATS:
+        raise PluginError(f"{what} has the rotation_format '{kind}'; known: {', '.join(_FORMATS)}")
+    if (kind == _FORMATS[0] and not in_degrees) or not (pose.text or "").strip():
+        return
+    found = numbers(pose.text or "", what)
+    count = 6 if kind == _FORMATS[0] else 7
+    if len(found) != count:
+        raise PluginError(f"{what} has {len(found)} numbers, not {count}")
+    if count == 7:
+        found = _from_quaternion(found, what)
+    else:
+        found = [*found[:3], *(math.radians(angle) for angle in found[3:])]
+    pose.text = " ".join(f"{value:.17g}" for value in found)
+
+
+def _from_quaternion(found: list[float], what: str) -> list[float]:
+    """Return x, y, z, roll, pitch, yaw of x, y, z and a quaternion x, y, z, w."""
+    length = math.sqrt(sum(part * part for part in found[3:]))
+    if length < 1e-6:
+        raise PluginError(f"{what} has a quaternion of length 0")
+    x, y, z, w = (part / length for part in found[3:])
+    made = np.eye(4)
+    made[:3, :3] = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+        [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+    made[:3, 3] = found[:3]
+    return six(made)
