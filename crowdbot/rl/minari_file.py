@@ -35,7 +35,7 @@ def write_minari(runs: Sequence[Path], out: Path, registry: Registry) -> None:
         raise MissingLibraryError("Minari is not installed; install it with: "
                                   "pip install minari gymnasium pyarrow")  # fmt: skip
     if not _NAME.fullmatch(out.name):
-        raise InputError(f"{out}: the name of a data set is like 'runs-v0', with a version")
+        raise InputError(f"{out.name}: the name of a data set is like 'runs-v0', with a version")
     episodes = [run_episode(run, registry) for run in runs]
     first = episodes[0]
     for run, episode in zip(runs, episodes, strict=True):
@@ -72,7 +72,7 @@ def _buffer(number: int, episode: RunEpisode) -> Any:
 def _root(folder: Path) -> Iterator[None]:
     """Let Minari write into a folder."""
     before = os.environ.get(_ROOT)
-    os.environ[_ROOT] = str(folder)
+    os.environ[_ROOT] = str(folder.resolve())
     try:
         yield
     finally:

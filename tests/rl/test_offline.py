@@ -63,6 +63,15 @@ def test_an_episode_is_what_the_robot_met_and_did(runs: Path) -> None:
     assert not episode.arrived
 
 
+def test_calibration_runs_are_no_data(runs: Path, tmp_path: Path) -> None:
+    folder, (first, _) = tmp_path / "runs", runs_under(runs)
+    for name in ("a/seed-0", "references/robot_alone-0a1b"):
+        shutil.copytree(first, folder / name)
+    assert runs_under(folder) == [folder / "a" / "seed-0"]
+    alone = folder / "references" / "robot_alone-0a1b"
+    assert runs_under(alone) == [alone]  # named by itself
+
+
 def test_scenes_of_trajnet_share_no_person_and_no_frame(runs: Path, tmp_path: Path) -> None:
     out = tmp_path / "all.ndjson"
     assert cli.main(["export", str(runs), "--to", "trajnet", "--out", str(out)]) == 0
@@ -98,7 +107,8 @@ def test_minari_loads_the_episodes(
 ) -> None:
     minari: Any = pytest.importorskip("minari", reason="minari is not installed")
     out = tmp_path / "sets" / "runs-v0"
-    assert cli.main(["export", str(runs), "--to", "minari", "--out", str(out)]) == 0
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["export", str(runs), "--to", "minari", "--out", "sets/runs-v0"]) == 0
     assert "MINARI_DATASETS_PATH" not in os.environ
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(out.parent))
     data = minari.load_dataset("runs-v0")

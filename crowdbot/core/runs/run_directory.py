@@ -26,6 +26,8 @@ RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
     "run.json", "run.mcap", "scenario.yaml", "scores.csv", "replay.html",
 )  # fmt: skip
 _LOCK = ".lock"
+#: Folder of calibration runs; no scenario or planner has this name.
+_REFERENCES = "references"
 _NEEDED = (RECORDING, SCENARIO, SCORES)
 #: Keys of the record that describe the other files.
 OF_FILES = ("files", "digests")
@@ -50,9 +52,12 @@ def checked_record(directory: Path) -> dict[str, Any]:
 
 
 def runs_under(folder: Path) -> list[Path]:
-    """Return the complete runs with a recording in a folder, itself included, in order of path."""
-    records = folder.rglob(RECORD)
-    return sorted(file.parent for file in records if (file.parent / RECORDING).is_file())
+    """Return the complete runs with a recording in a folder, itself included, in order of path.
+
+    Calibration runs, which lack the robot or the people, are not among them.
+    """
+    found = (file.parent for file in folder.rglob(RECORD) if (file.parent / RECORDING).is_file())
+    return sorted(run for run in found if _REFERENCES not in run.relative_to(folder).parts)
 
 
 def attach_files(folder: Path, record: Mapping[str, Any]) -> bytes:
