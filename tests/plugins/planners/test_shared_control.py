@@ -120,6 +120,19 @@ def test_the_other_half_takes_over_where_the_user_is_unsafe() -> None:
     assert command.w > 1.0  # goal_seek turns to the goal on the left
 
 
+def test_rds_stays_near_to_the_user_and_lets_nothing_be_touched() -> None:
+    planner = made("rds", wish="user")
+    free, signals = drive(planner, (0.5, 0.3))
+    assert free == pytest.approx(Command(0.5, 0.3))
+    assert signals["rds/change"] == pytest.approx(0.0)
+    near, signals = drive(planner, (0.6, 0.0), BEFORE)
+    assert 0.0 <= near.v < 0.4
+    assert signals["rds/change"] > 0.1
+    assert drive(planner, (0.0, 0.0), BEFORE)[0] == Command(0.0, 0.0)  # it goes nowhere by itself
+    with pytest.raises(InputError, match="joystick"):
+        planner.reset(Course().task, LIMITS, {"lidar": LIDAR}, 0)
+
+
 @pytest.mark.parametrize(("share", "w"), [(0.0, 0.4), (0.25, 0.3), (1.0, 0.0)])
 def test_a_fixed_share_is_the_weighted_mean(share: float, w: float) -> None:
     planner = made("linear_blending", arbitration="fixed", share=share, autonomy="goal_seek")

@@ -14,6 +14,11 @@ class RdsSpec(RungSpec):
     """The robot avoids everything by itself; standing still is always allowed."""
 
     kind: Literal["rds"] = "rds"
+    wish: Literal["goal", "user"] = Field(
+        default="goal",
+        description="Whose velocity it stays near to: its own towards the goal, or that of the "
+        "user at the joystick, as reactive assistance.",
+    )
     time_horizon: PositiveDuration = Field(
         default=1.5, description="Time for which nothing is touched, s."
     )
@@ -24,6 +29,11 @@ class RdsSpec(RungSpec):
         default=0.18,
         description="Distance ahead of the axle of the point whose velocity is chosen, m.",
     )
+
+    @property
+    def wants(self) -> tuple[str, ...]:
+        """Return the near sensors, if it takes them, and the joystick, if it assists a user."""
+        return (*super().wants, *(("joystick",) if self.wish == "user" else ()))
 
 
 RDS = Component(

@@ -11,15 +11,26 @@ Half-planes are those around rest, as in the authors' last version, so that rest
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
-from crowdbot.plugin import Array, Command, Observation, kernel
+from crowdbot.plugin import (
+    Array,
+    Command,
+    InputError,
+    Observation,
+    RobotLimits,
+    SensorInfo,
+    Task,
+    kernel,
+)
 from crowdbot.plugins.planners.rds.rds import RdsSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner
 from crowdbot.plugins.planners.shared.half_planes_build import avoid, best_velocity
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
+from crowdbot.plugins.planners.shared.user_input_build import JOYSTICK, UserInput
 
 #: Things farther than this do not count, m; size of a lidar point, m.
 _NEAR, _POINT = 4.0, 0.03
@@ -35,9 +46,35 @@ class Rds(VelocityPlanner):
 
     def __init__(self, spec: RdsSpec) -> None:
         super().__init__(spec)
-        self._spec = spec
+        self._spec, self._user, self._point = spec, UserInput(), spec.reference_point
         self._ends, self._round = np.zeros((2, 2)), self.radius
         self._lines, self._scratch = np.zeros((_MOST, 4)), np.zeros((_MOST, 4))
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Take limits, outline, mounts and joystick; compile kernels.
+
+        Raises:
+            InputError: it assists a user, and the robot has no joystick.
+        """
+        if self._spec.wish == "user" and all(s.category != JOYSTICK for s in sensors.values()):
+            raise InputError("planner 'rds': with wish 'user' the robot needs a joystick")
+        self._user.reset(sensors, limits)
+        super().reset(task, limits, sensors, seed)
+
+    def step(self, obs: Observation) -> Command:
+        """Return the command nearest to the wish, the planner's own or the user's."""
+        if self._spec.wish == "goal":
+            return super().step(obs)
+        assert self.limits is not None
+        scene, user, reach = self._surroundings.see(obs), self._user.command(obs), self._point
+        if self.limits.vy_max > 0.0:
+            along, aside = self._nearest(obs, scene, (user.v, user.vy), self.limits.vy_max)
+            return Command(along, user.w if along or aside else 0.0, aside)
+        wanted = user.v, user.w * reach
+        along, aside = self._nearest(obs, scene, wanted, self.limits.w_max * reach)
+        return Command(along, aside / reach)
 
     def forget(self) -> None:
         """Take the capsule around the robot; compile what is not compiled yet."""
@@ -59,7 +96,14 @@ class Rds(VelocityPlanner):
         else:
             turn = max(-limits.w_max, min(limits.w_max, _GAIN * error))
             wanted, aside = (top * max(0.0, math.cos(error)), turn * reach), limits.w_max * reach
-        bounds = _bounds(min(0.0, limits.v_min), limits.v_max, aside)
+        return self._nearest(obs, scene, wanted, aside)
+
+    def _nearest(
+        self, obs: Observation, scene: PlannerScene, wanted: tuple[float, float], aside: float
+    ) -> tuple[float, float]:
+        """Return the velocity of the reference point nearest to the wanted one, m/s."""
+        assert self.limits is not None
+        bounds = _bounds(min(0.0, self.limits.v_min), self.limits.v_max, aside)
         chosen = self._choose(_things(scene), wanted, bounds)
         obs.log("rds/change", math.hypot(chosen[0] - wanted[0], chosen[1] - wanted[1]))
         return chosen
