@@ -80,8 +80,9 @@ class Observation:
         person: what the robot knows of its person, if its task is about one
             (``task.person``); ``goal`` is then where the robot's place beside the person is now.
         draw: ``draw(name, rows)`` records what the planner thinks, as numbers in the robot's base
-            frame, m: rows (K, 2) of a path or of points; ``tracks`` has rows (K, 5) of people:
-            number, x, y, vx, vy. The replay shows it.
+            frame, m: rows (K, 2) of a path. Names that begin with ``points`` are dots, with
+            ``arrows`` an arrow from each row to the next, two rows each. ``tracks`` has rows
+            (K, 5) of people: number, x, y, vx, vy. The replay shows it.
     """
 
     t: float

@@ -91,7 +91,7 @@ class MeshcatView:
         """Show what a planner drew last, as lines on the floor."""
         del t
         path = f"crowdbot/thoughts/{robot}/{name}"
-        lines = drawn_lines(columns)
+        lines = drawn_lines(columns, name)
         if not lines.shape[1]:
             self._meshcat.Delete(path)
             return

@@ -81,3 +81,14 @@ def test_rows_turn_with_the_robot() -> None:
     assert drawn_lines(path)[1].tolist() == [[1.0, 0.0], [1.0, 2.0]]
     assert drawn_lines(path[:, :1]).shape == (2, 0, 2)
     assert drawn_lines(path[:, :0]).shape == (2, 0, 2)
+
+
+def test_points_and_arrows_have_lines_of_their_own() -> None:
+    rows = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]]
+    columns = drawing_in_world(0.0, 0.0, 0.0, rows, tracks=False)
+    points = drawn_lines(columns, "points/near")
+    np.testing.assert_allclose(points.mean(axis=0), rows)
+    np.testing.assert_allclose(np.ptp(points, axis=0), [[0.1, 0.0]] * 3)
+    assert drawn_lines(columns, "arrows").tolist() == [[[0.0, 0.0]], [[1.0, 0.0]]]
+    assert drawn_lines(columns[:, :0], "arrows").shape == (2, 0, 2)
+    assert drawn_lines(columns[:, :0], "points").shape == (2, 0, 2)

@@ -9,8 +9,44 @@ function drawThoughts(g, run, time, px) {
     const j = lastBefore(drawing.t, time);
     if (j < 0 || time - drawing.t[j] > THOUGHT_AGE) continue;
     const [from, to] = [drawing.starts[j], drawing.starts[j] + drawing.rows[j]];
-    (drawing.tracks ? drawTracks : drawPath)(g, drawing, from, to, px);
+    drawingOf(drawing)(g, drawing, from, to, px);
   }
+}
+
+/** Returns the function that draws a drawing: tracks, or by the beginning of its name. */
+function drawingOf({ name, tracks }) {
+  if (tracks) return drawTracks;
+  if (name.startsWith("points")) return drawPoints;
+  return name.startsWith("arrows") ? drawArrows : drawPath;
+}
+
+/** Draws a dot on each row. */
+function drawPoints(g, { columns: [x, y] }, from, to, px) {
+  g.beginPath();
+  for (let i = from; i < to; i++) {
+    g.moveTo(x[i], y[i]);
+    g.arc(x[i], y[i], 2.5 * px, 0, 2 * Math.PI);
+  }
+  g.fillStyle = colours.thought;
+  g.fill();
+}
+
+/** Draws an arrow from each row to the next one, two rows each. */
+function drawArrows(g, { columns: [x, y] }, from, to, px) {
+  g.beginPath();
+  for (let i = from; i + 1 < to; i += 2) {
+    const angle = Math.atan2(y[i + 1] - y[i], x[i + 1] - x[i]);
+    g.moveTo(x[i], y[i]);
+    g.lineTo(x[i + 1], y[i + 1]);
+    for (const side of [-1, 1]) {
+      const barb = angle + side * 2.6;
+      g.moveTo(x[i + 1], y[i + 1]);
+      g.lineTo(x[i + 1] + 7 * px * Math.cos(barb), y[i + 1] + 7 * px * Math.sin(barb));
+    }
+  }
+  g.strokeStyle = colours.thought;
+  g.lineWidth = 2 * px;
+  g.stroke();
 }
 
 /** Draws a cross on each track, and a line to where it would be. */
