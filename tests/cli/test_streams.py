@@ -24,9 +24,8 @@ def _shell(words: str, **more: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_closed_streams_are_no_error() -> None:
-    done = _shell(f"{COMMAND} plugins >&-")
+    done = _shell(f"{COMMAND} plugins <&- >&-")
     assert (done.returncode, done.stderr) == (0, "")
-    assert _shell(f"{COMMAND} validate no_such.yaml <&- >&- 2>&-").returncode == 1
 
 
 def test_characters_that_cannot_be_printed_are_written_plainly() -> None:

@@ -160,7 +160,7 @@ def read_grey(file: Path, alpha: Alpha = "ignored") -> NDArray[np.float64]:
         return _read_pgm(file.name, content)
     if content[:4] == b"\x89PNG":
         return _read_png(file, content, alpha)
-    raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image")
+    raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image; convert it to PNG")
 
 
 def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
