@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-#: The longest tests, 9 minutes of processor time together.
+#: The longest tests, 11 minutes of processor time together.
 LONG = (
     "tests/core/statistics/test_power.py::test_so_many_draws_find_it_in_four_cases_of_five",
     "tests/core/support/test_gc_throttle.py::test_many_new_objects_are_made_without_a_collection",
@@ -13,7 +13,6 @@ LONG = (
     "tests/core/statistics/test_sign_flip.py::test_level_with_exchangeable_planners_and_power",
     "tests/core/statistics/test_sign_flip.py::test_a_faster_planner_that_is_worth_nothing_in_a_tenth",
     "tests/core/statistics/test_summary.py::test_no_difference_between_a_planner_and_itself",
-    "tests/plugins/planners/test_oracle.py::test_through_fifty_who_avoid_nobody[1]",
     "tests/test_old_names.py::test_commands_say_each_old_name_in_one_line",
     "tests/core/editor/test_page.py::test_twenty_people_two_walls_and_a_robot",
     "tests/core/live/person/test_browser.py::test_a_second_page_watches",
@@ -45,7 +44,6 @@ LONG = (
     "tests/cli/test_plugins.py::test_show_every_kind",
     "tests/cli/test_plugins_new.py::test_the_other_scenario_runs",
     "tests/cli/test_plugins_new.py::test_the_package_keeps_its_promises",
-    "tests/cli/test_serve.py::test_roslibpy_drives_to_the_goal_as_the_same_planner_inside[Twist]",
     "tests/cli/test_simulate.py::test_runs_at_once_are_the_same_run",
     "tests/cli/test_verify_fleet.py::test_scores_of_robots_that_do_not_fit_are_found",
     "tests/cli/test_view.py::test_runs_beside_each_other",
@@ -61,6 +59,15 @@ LONG = (
     "tests/core/live/person/test_browser.py::test_without_webgl_the_page_says_so",
     "tests/core/live/person/test_browser.py::test_a_headset_stands_in_the_crowd",
     "tests/docs/test_example_package.py",
+    "tests/cli/test_verify_command.py::test_two_processors",
+    "tests/cli/test_verify_fleet.py::test_bundles_of_two_robots_are_verified_and_ranked",
+    "tests/cli/test_examples.py::test_people_walk_in_every_world",
+    "tests/cli/test_serve.py::test_roslibpy_drives_to_the_goal_as_the_same_planner_inside",
+    "tests/core/sim/test_excused.py::test_the_next_draw_counts",
+    "tests/core/sim/test_memory.py::test_a_finished_run_is_thrown_away",
+    "tests/plugins/planners/dwa/test_dwa.py::test_fewer_contacts_than_blind_driving",
+    "tests/plugins/planners/dwa/test_manoeuvring.py::test_a_way_that_can_be_driven_is_kept",
+    "tests/plugins/planners/test_oracle.py::test_through_fifty_who_avoid_nobody",
     "tests/dsl/test_mutations.py::test_refused_or_understood",
     "tests/dsl/test_safety.py::test_document",
     "tests/dsl/schema/test_documents.py::test_what_the_schema_refuses_validate_refuses",
