@@ -25,6 +25,7 @@ from crowdbot.core.live.zenoh_door import Network, ZenohDoor
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import scenery
 from crowdbot.core.types.motion import Command
+from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.errors import InputError
 from tests.core.live.live_cases import clock, until
@@ -167,6 +168,26 @@ def test_lockstep_over_zenoh(stamped: bool) -> None:
             door.publish([clock(k * 10**9)])
             assert session.answer(30.0, lambda: None) == Command(0.001 * k, 0.25)
         subscriber.undeclare()
+        token.undeclare()
+        until(lambda: not session.driven)
+
+
+def test_a_joystick_drives_by_zenoh() -> None:
+    kind = "sensor_msgs/msg/Joy"
+    types = JAZZY.types
+    with _both() as (_, session, other):
+        limits = RobotLimits(v_min=0.0, v_max=0.8, w_max=1.5, a_max=1.0, alpha_max=2.0)
+        session.robots[""].limits = limits
+        session.ask(0)
+        name = next(iter(session.joysticks))
+        joy = Ros2Topic(name, kind, hash_in(kind, "jazzy"))
+        token = other.liveliness().declare_token(joy.token(0, "me", 11, "MP", "joy"))
+        until(lambda: session.driven)
+        head = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](0, 0), "")
+        axes = np.array([0.5, 1.0], np.float32)
+        message = types[kind](head, axes, np.zeros(0, np.int32))
+        other.put(joy.key(0), bytes(JAZZY.serialize_cdr(message, kind)))
+        assert session.answer(30.0, lambda: None) == Command(0.8, 0.75)
         token.undeclare()
         until(lambda: not session.driven)
 
