@@ -1,10 +1,13 @@
-r"""Does our SARL drive as its authors' does? A replication card of the source's own test.
+r"""Do our SARL and ORCA drive as published? A replication card of the source's own test.
 
 Runs the test of CrowdNav (Chen, Liu, Kreiss, Alahi, ICRA 2019) in a small loop of its own: five
 people cross a circle, the robot goes from its lowest point to its highest, in steps of 0.25 s:
 
     python benchmarks/learned_replication.py weights.pth --people orca --radius 4 --cases 500
     python benchmarks/learned_replication.py weights.npz --people sfm --radius 7 --step 0.0125
+    python benchmarks/learned_replication.py orca
+
+With ``orca`` in place of weights the robot takes ORCA's velocity, with the parameters of people.
 
 People walk by ORCA (the parameters of CrowdNav), by the social force model with Guo's modification,
 or by the headed one (the models and numbers of Social-Navigation-PyEnvs, with which weights for
@@ -18,6 +21,8 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -153,30 +158,51 @@ def nearest(place: Array, relative: Array) -> float:
     return float(np.hypot(*on.T).min()) - 2.0 * RADIUS
 
 
+class Learned:
+    """A robot that a value network drives."""
+
+    def __init__(self, planner: LearnedPlanner, given: argparse.Namespace) -> None:
+        self.planner, self.truth, self.yaw = planner, given.truth, 0.5 * math.pi
+        self.unicycle = given.kinematics == "unicycle"
+        self.choices = actions(SPEED, 5, 16, unicycle=self.unicycle)
+
+    def velocity(self, robot: Array, people: Array, after: Array) -> Array:
+        """Return its velocity (2,), m/s; ``robot`` and people are rows (8,), now and then."""
+        known = people[:, [X, Y, VX, VY]].copy()
+        known[:, :2] += STEP * known[:, 2:]
+        ahead = np.column_stack(
+            [after[:, [X, Y, VX, VY]] if self.truth else known, np.full(len(people), RADIUS)]
+        )
+        x, y, gx, gy = robot[[X, Y, GX, GY]]
+        state = ValueSearchRobot(x, y, self.yaw, RADIUS, gx, gy, SPEED)
+        speed, angle = self.choices[int(np.argmax(self.planner.worths(state, self.choices, ahead)))]
+        self.yaw = self.yaw + angle if self.unicycle else angle
+        return np.array([speed * math.cos(self.yaw), speed * math.sin(self.yaw)])
+
+
+class Orca:
+    """A robot that avoids people as they avoid each other, and takes half of it upon itself."""
+
+    def velocity(self, robot: Array, people: Array, _: Array) -> Array:
+        """Return its velocity (2,), m/s."""
+        seen = np.vstack([people, robot])
+        own = len(people)
+        return np.array(_orca(seen, own, own, STEP, np.zeros((4 * (own + 2), 4))))
+
+
 def case(
-    planner: LearnedPlanner, rng: np.random.Generator, given: argparse.Namespace
+    driver: Learned | Orca, rng: np.random.Generator, given: argparse.Namespace
 ) -> tuple[str, float, float]:
     """Run one case; return how it ended, its time (s), and the least clearance (m)."""
     people = crossing(rng, given.humans, given.radius)
     own, least, t = len(people), math.inf, 0.0
     robot, goal = np.array([0.0, -given.radius]), np.array([0.0, given.radius])
-    velocity, yaw = np.zeros(2), 0.5 * math.pi
+    velocity = np.zeros(2)
     lines = np.zeros((4 * (own + 2), 4))
-    choices = actions(SPEED, 5, 16, unicycle=given.kinematics == "unicycle")
     while t < given.limit:
         seen, after = _after(people, robot, velocity, goal, given, lines)
-        known = seen[:own, [X, Y, VX, VY]].copy()
-        known[:, :2] += STEP * known[:, 2:]
-        ahead = np.column_stack(
-            [after[:, [X, Y, VX, VY]] if given.truth else known, np.full(own, RADIUS)]
-        )
-        state = ValueSearchRobot(robot[0], robot[1], yaw, RADIUS, goal[0], goal[1], SPEED)
-        speed, angle = choices[int(np.argmax(planner.worths(state, choices, ahead)))]
-        if given.kinematics == "unicycle":
-            yaw += angle
-        else:
-            yaw = angle
-        velocity = speed * np.array([math.cos(yaw), math.sin(yaw)])
+        itself = np.array([*robot, *velocity, *goal, 0.0, 0.0])
+        velocity = driver.velocity(itself, seen[:own], after)
         relative = (people[:, [VX, VY]] - velocity) * STEP
         least = min(least, nearest(people[:, :2] - robot, relative))
         robot = robot + velocity * STEP
@@ -208,8 +234,10 @@ def _after(
     return seen, now[: len(people)].copy()
 
 
-def planner_of(given: argparse.Namespace) -> LearnedPlanner:
-    """Return the planner under test."""
+def drivers(given: argparse.Namespace) -> Callable[[], Learned | Orca]:
+    """Return what makes the robot under test, at its start."""
+    if str(given.weights) == "orca":
+        return Orca
     weights = read_weights(given.weights)
     network = (CadrlNetwork if "value_network.0.weight" in weights else SarlNetwork)(
         weights, str(given.weights)
@@ -217,7 +245,7 @@ def planner_of(given: argparse.Namespace) -> LearnedPlanner:
     spec = SarlSpec.model_validate(
         {"kind": "sarl", "weights": str(given.weights), "kinematics": given.kinematics}
     )
-    return LearnedPlanner(spec, network)
+    return partial(Learned, LearnedPlanner(spec, network), given)
 
 
 def main() -> None:
@@ -225,7 +253,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("weights", type=Path, help=".pth or .npz")
+    parser.add_argument("weights", type=Path, help=".pth, .npz, or the word orca")
     parser.add_argument("--people", choices=sorted(MODELS), default="orca")
     parser.add_argument("--humans", type=int, default=5)
     parser.add_argument("--radius", type=float, default=4.0, help="of the circle, m")
@@ -237,9 +265,9 @@ def main() -> None:
     parser.add_argument("--truth", action="store_true", help="the robot knows their next step")
     parser.add_argument("--kinematics", choices=["holonomic", "unicycle"], default="holonomic")
     given = parser.parse_args()
-    planner = planner_of(given)
+    driver = drivers(given)
     ends = [
-        case(planner, np.random.default_rng([given.seed, n]), given) for n in range(given.cases)
+        case(driver(), np.random.default_rng([given.seed, n]), given) for n in range(given.cases)
     ]
     rates = {}
     for end in ("arrived", "hit", "late"):
