@@ -12,8 +12,8 @@ from typing import Any, cast
 from unittest import SkipTest
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crowdbot.core.planning.drawn import Drawn
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.planning.planner import Observation, Planner, Truth, named_drawing, named_signal
 from crowdbot.core.registry.registry import Registry
@@ -128,7 +128,7 @@ class Driven:
         self._privileged = privileged
         self.commands: list[Command] = []
         self.signals: list[tuple[str, float]] = []
-        self.drawings: list[tuple[str, NDArray[np.float32]]] = []
+        self.drawings: list[Drawn] = []
         self._course, self._sensors = course, dict(sensors)
         count = len(course.people)
         self._scene = Scene(
@@ -199,7 +199,9 @@ class Driven:
             goal_zone=task.goal_zone,
             readings=dict(readings),
             log=lambda name, value: self.signals.append(named_signal(name, value)),
-            draw=lambda name, rows: self.drawings.append(named_drawing(name, rows)),
+            draw=lambda name, rows, text=None: self.drawings.append(
+                named_drawing(name, rows, text)
+            ),
             truth=self._truth(k / RATE, pose, twist) if self._privileged else None,
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Protocol
@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crowdbot.core.planning.drawn import Draw, Drawn, texts_of_rows
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.person_task import PersonEstimate
@@ -24,8 +25,8 @@ _LONGEST_NAME, _MOST_SIGNALS, _MOST_VALUES = 200, 1000, 2_000_000
 _MOST_ROWS, _MOST_COLUMNS, _MOST_DRAWN = 2000, 16, 20_000_000
 
 
-def _ignore(name: str, value: object) -> None:
-    del name, value
+def _ignore(name: str, value: object, /, text: object = None) -> None:
+    del name, value, text
 
 
 #: Name of the drawing with the people that a planner tracks, and number of its columns.
@@ -82,7 +83,8 @@ class Observation:
         draw: ``draw(name, rows)`` records what the planner thinks, as numbers in the robot's base
             frame, m: rows (K, 2) of a path. Names that begin with ``points`` are dots, with
             ``arrows`` an arrow from each row to the next, two rows each. ``tracks`` has rows
-            (K, 5) of people: number, x, y, vx, vy. The replay shows it.
+            (K, 5) of people: number, x, y, vx, vy. ``draw(name, rows, text)`` shows a text at
+            each row: one for all, or a list of one each. The replay shows it.
     """
 
     t: float
@@ -94,16 +96,26 @@ class Observation:
     readings: Mapping[str, Reading] = field(default_factory=lambda: MappingProxyType({}))
     log: Callable[[str, float], None] = _ignore
     truth: Truth | None = None
-    draw: Callable[[str, ArrayLike], None] = _ignore
+    draw: Draw = _ignore
     person: PersonEstimate | None = None
 
 
-def named_drawing(name: str, rows: ArrayLike) -> tuple[str, NDArray[np.float32]]:
-    """Return a valid drawing for the recording, (K, C).
+def named_drawing(name: str, rows: ArrayLike, text: str | Sequence[str] | None = None) -> Drawn:
+    """Return a valid drawing for the recording.
 
     Raises:
-        TypeError, ValueError: it is not a named table of finite numbers, or too large.
+        TypeError, ValueError: it is not a named table of finite numbers, its texts are none, or it
+            is too large.
     """
+    table = _table(name, rows)
+    if text is None:
+        return Drawn(name, table)
+    if name == TRACKS:
+        raise ValueError(f"draw: '{TRACKS}' are people, without texts; give these another name")
+    return Drawn(name, table, texts_of_rows(name, len(table), text))
+
+
+def _table(name: str, rows: ArrayLike) -> NDArray[np.float32]:
     named_signal(name, 0.0)
     table = np.array(rows, np.float32)
     if table.size == 0:
@@ -118,7 +130,7 @@ def named_drawing(name: str, rows: ArrayLike) -> tuple[str, NDArray[np.float32]]
         raise ValueError(f"draw: rows of '{TRACKS}' are number, x, y, vx, vy, not {table.shape[1]}")
     if not np.isfinite(table).all():
         raise ValueError(f"draw: '{name}' holds a number that is not finite")
-    return name, table
+    return table
 
 
 def named_signal(name: str, value: float) -> tuple[str, float]:

@@ -41,6 +41,9 @@ DEFINITIONS = {
     "Trip": "int64 agent\nfloat64 t0\nfloat64 t1\nbool reached",
     "Series": "string name\nfloat64[] t\nfloat64[] value",
     "Drawing": "std_msgs/Header header\nstring name\nuint32 columns\nfloat32[] data",
+    "DrawnTexts": (
+        "std_msgs/Header header\nstring name\nuint32 columns\nfloat32[] data\nstring[] texts"
+    ),
     "Contact": (
         "std_msgs/Header header\nfloat64 t0\nfloat64 t1\nint64 agent\nfloat64 impulse\n"
         "float64 peak_force\nfloat64 relative_speed\nfloat64 bearing"

@@ -1,20 +1,27 @@
-"""A planner's drawings, made in its robot's base frame, placed in the world and as lines."""
+"""A planner's drawings, made in its robot's base frame, as messages and placed in the world."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 import crowdbot.core.recording.markers as markers
 import crowdbot.core.recording.messages as ros
+from crowdbot.core.planning.drawn import Drawn
+from crowdbot.core.planning.planner import TRACKS
+from crowdbot.core.recording.topics import Topic
 from crowdbot.core.types.arrays import Array
 
 _COLOUR, _WIDTH, _HEIGHT = (0.7, 0.35, 0.0, 1.0), 0.04, 0.03
 
 #: Length of the line that shows a point, m.
 _POINT = 0.1
+#: Height of letters and of their place above the floor, m; time for which texts are shown, s.
+_LETTER, _TEXT_HEIGHT, _TEXT_AGE = 0.25, 2.0, 0.5
 #: A track's line ends where its person would be after this time, s.
 _AHEAD = 1.0
 
@@ -46,6 +53,42 @@ def drawn_marker(ns: int, name: str, columns: Array) -> bytes:
     points = np.column_stack([ends, np.full(len(ends), _HEIGHT)])
     size = (_WIDTH, 0.0, 0.0)
     return ros.to_cdr(markers.marker(ns, name, "LINE_LIST", size, _COLOUR, points))
+
+
+def text_markers(ns: int, name: str, columns: Array, texts: Sequence[str]) -> list[bytes]:
+    """Return one ``visualization_msgs/Marker`` for each text that is not empty, above heads.
+
+    They go by themselves if they are not drawn again, as in the replay.
+    """
+    found = []
+    for number, ((x, y), text) in enumerate(zip(columns[:2].T.tolist(), texts, strict=True)):
+        if text:
+            said = markers.text_marker(ns, name, text, (x, y, _TEXT_HEIGHT), (_LETTER, _COLOUR))
+            said.id, said.lifetime.nanosec = number, round(1e9 * _TEXT_AGE)
+            found.append(ros.to_cdr(said))
+    return found
+
+
+def drawing_message(ns: int, frame: str, drawn: Drawn) -> tuple[str, int, Any]:
+    """Return topic, stamp (ns) and message of a drawing in a recording.
+
+    Args:
+        ns: stamp, ns.
+        frame: the robot's base frame.
+        drawn: the drawing.
+    """
+    kind = "crowdbot_msgs/Drawing" if drawn.texts is None else "crowdbot_msgs/DrawnTexts"
+    topic = Topic.TRACKS if drawn.name == TRACKS else Topic.THOUGHTS
+    texts = {} if drawn.texts is None else {"texts": list(drawn.texts)}
+    message = ros.new(
+        kind,
+        header=ros.header(ns, frame),
+        name=drawn.name,
+        columns=drawn.rows.shape[1],
+        data=drawn.rows.ravel(),
+        **texts,
+    )
+    return topic if drawn.texts is None else Topic.THOUGHT_TEXTS, ns, message
 
 
 def drawing_in_world(x: float, y: float, yaw: float, rows: ArrayLike, *, tracks: bool) -> Array:

@@ -60,6 +60,28 @@ def marker(
     )
 
 
+def text_marker(
+    ns: int,
+    namespace: str,
+    text: str,
+    place: tuple[float, float, float],
+    look: tuple[float, tuple[float, float, float, float]],
+) -> Any:
+    """Return a text in the map frame that faces its reader.
+
+    Args:
+        ns: stamp, ns.
+        namespace: of the marker.
+        text: what it says.
+        place: x, y, z, m.
+        look: height of a capital letter, m, and red, green, blue, opacity.
+    """
+    height, rgba = look
+    said = marker(ns, namespace, "TEXT_VIEW_FACING", (0.0, 0.0, height), rgba, np.zeros((0, 3)))
+    said.text, said.pose.position = text, ros.point(*place)
+    return said
+
+
 def marker_array(markers: Iterable[Any]) -> Any:
     """Return several markers in one message."""
     return ros.new("visualization_msgs/MarkerArray", markers=list(markers))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.crowd import state as s
+from crowdbot.core.planning.drawn import Drawn
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
@@ -33,7 +34,7 @@ class RunLog:
         robot: int | None = 0,
         aim: int = s.GOAL_X,
         on_sample: Callable[[float, Sequence[float] | None, Array | None], None] | None = None,
-        on_drawing: Callable[[float, str, NDArray[np.float32]], None] | None = None,
+        on_drawing: Callable[[float, Drawn], None] | None = None,
     ) -> None:
         """Start a log.
 
@@ -46,7 +47,7 @@ class RunLog:
             robot: its number among those of the crowd's state; None records no contacts.
             aim: column of the crowd's state where the point begins to which people walk.
             on_sample: is given each sample, too: time, the robot's row, people.
-            on_drawing: is given what the planner draws, too: time, name, rows.
+            on_drawing: is given what the planner draws, too, and the time.
         """
         self._on_sample, self._on_drawing = on_sample, on_drawing
         self.writer = writer
@@ -110,11 +111,11 @@ class RunLog:
         self.writer.command(t, command)
         self.writer.planner_time(t, seconds)
 
-    def drawing(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
-        """Record what the planner draws: rows (K, C) in the robot's base frame."""
-        self.writer.drawing(t, name, rows)
+    def drawing(self, t: float, drawn: Drawn) -> None:
+        """Record what the planner draws."""
+        self.writer.drawing(t, drawn)
         if self._on_drawing is not None:
-            self._on_drawing(t, name, rows)
+            self._on_drawing(t, drawn)
 
     def step_times(self) -> dict[str, float]:
         """Return mean and largest wall time of a planner step, s."""

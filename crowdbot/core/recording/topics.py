@@ -24,6 +24,7 @@ class Topic(StrEnum):
     PLANNER_TIME = "/crowdbot/planner_time"
     TRACKS = "/tracks"
     THOUGHTS = "/thoughts"
+    THOUGHT_TEXTS = "/thought_texts"
     END = "/crowdbot/end"
     CONTACTS = "/contacts"
     CLOCK = "/clock"

@@ -31,7 +31,14 @@ class Watcher(Protocol):
         """
         ...
 
-    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
+    def drawing(
+        self,
+        t: float,
+        robot: str,
+        name: str,
+        columns: Array,
+        texts: Sequence[str] | None = None,
+    ) -> None:
         """A robot's planner drew what it thinks.
 
         Args:
@@ -40,5 +47,6 @@ class Watcher(Protocol):
             name: of the drawing; ``tracks`` are the people that the planner knows of.
             columns: (2, K) x, y of a path or of points, m, world frame; of tracks (4, K) with
                 vx, vy, m/s. They are placed from the robot's true pose.
+            texts: K, each at its x, y; None: no texts.
         """
         ...

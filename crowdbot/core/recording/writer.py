@@ -19,10 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crowdbot.core.recording.messages as ros
-from crowdbot.core.planning.planner import TRACKS
+from crowdbot.core.planning.drawn import Drawn
 from crowdbot.core.recording.camera import CameraMessages
 from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.container.own_file import Written
+from crowdbot.core.recording.drawings import drawing_message
 from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
 from crowdbot.core.recording.joints import WheelMessages
 from crowdbot.core.recording.motion.candidates import Choosers
@@ -225,27 +226,20 @@ class RecordingWriter:
         """Write one value of a named signal."""
         self._series[Topic.SIGNAL].add(name, t, value)
 
-    def drawing(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
-        """Write what a planner thinks: rows (K, C) in the robot's base frame.
+    def drawing(self, t: float, drawn: Drawn) -> None:
+        """Write what a planner thinks.
 
         With the rate of the replay page, unless all is recorded.
         """
         if self._tools is None:
             return
         rate = None if self._whole else REPLAY_RATE
-        if self._drawn.setdefault(name, Thinning(rate)).keeps(ros.nanoseconds(t)):
-            self._waiting.append(partial(self._draw, t, name, rows))
+        if self._drawn.setdefault(drawn.name, Thinning(rate)).keeps(ros.nanoseconds(t)):
+            self._waiting.append(partial(self._draw, t, drawn))
 
-    def _draw(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
+    def _draw(self, t: float, drawn: Drawn) -> None:
         ns = ros.nanoseconds(t)
-        message = ros.new(
-            "crowdbot_msgs/Drawing",
-            header=ros.header(ns, self._base),
-            name=name,
-            columns=rows.shape[1],
-            data=rows.ravel(),
-        )
-        self._file.put(Topic.TRACKS if name == TRACKS else Topic.THOUGHTS, ns, message)
+        self._file.put(*drawing_message(ns, self._base, drawn))
 
     @_later
     def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:

@@ -1,4 +1,4 @@
-"""Pack what the planner drew: its tracks of people, paths and points, in the world."""
+"""Pack what the planner drew: its tracks of people, paths, points and texts, in the world."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ def encode_drawings(
     """Return names, times and numbers of rows; and x, y of all rows (2, K), float32.
 
     Rows of tracks also have their velocities, (4, K). They are placed from the robot's true pose.
+    A drawing with texts has each of them once, and for each row which one it is; -1: none.
     """
     about: list[dict[str, Any]] = []
     blobs: dict[str, str] = {}
@@ -36,9 +37,23 @@ def encode_drawings(
                 "tracks": name == TRACKS,
                 "t": [round(one.t, 6) for one in drawn],
                 "rows": [part.shape[1] for part in rows],
+                **_texts(drawn),
             }
         )
     return {"drawings": about}, blobs
+
+
+def _texts(drawn: Sequence[PlannerDrawing]) -> dict[str, Any]:
+    if all(one.texts is None for one in drawn):
+        return {}
+    numbers: dict[str, int] = {}
+    which: list[int] = []
+    for one in drawn:
+        if one.texts is None:
+            which += [-1] * len(one.rows)
+        else:
+            which += [numbers.setdefault(text, len(numbers)) for text in one.texts]
+    return {"texts": list(numbers), "which": which}
 
 
 def _in_world(run: Trajectories, drawing: PlannerDrawing, *, tracks: bool) -> Array:

@@ -36,5 +36,5 @@ def tracking_lines(found: Results, root: Path, within: Sequence[float]) -> Itera
         if truth.robot is None or truth.agents is None:
             continue
         about = {"scenario": run.scenario, "planner": run.planner, "seed": run.seed}
-        for quality in tracking_quality(truth, tracks, within):
+        for quality in tracking_quality(truth, [(one.t, one.rows) for one in tracks], within):
             yield {**about, **asdict(quality)}

@@ -19,6 +19,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 
 from crowdbot.core.recording.drawings import drawn_lines
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader, RobotHeader
+from crowdbot.core.recording.text_lines import text_lines
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -87,11 +88,18 @@ class MeshcatView:
         if agents is not None:
             self._move_people(agents)
 
-    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
-        """Show what a planner drew last, as lines on the floor."""
+    def drawing(
+        self,
+        t: float,
+        robot: str,
+        name: str,
+        columns: Array,
+        texts: Sequence[str] | None = None,
+    ) -> None:
+        """Show what a planner drew last, as lines on the floor; Meshcat has no letters."""
         del t
         path = f"crowdbot/thoughts/{robot}/{name}"
-        lines = drawn_lines(columns, name)
+        lines = drawn_lines(columns, name) if texts is None else text_lines(columns, texts)
         if not lines.shape[1]:
             self._meshcat.Delete(path)
             return

@@ -26,6 +26,7 @@ from crowdbot.core.assistance.target import lidars_of
 from crowdbot.core.crowd import state as crowd_state
 from crowdbot.core.crowd.response.notice import notice_time
 from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.planning.drawn import Drawn
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import (
     Observation,
@@ -131,7 +132,7 @@ class PlannerSystem(LeafSystem):
         visible: Mapping[str, None],
         on_step: Callable[[float, HostedCommand], None],
         on_signal: Callable[[float, str, float], None],
-        on_drawing: Callable[[float, str, NDArray[np.float32]], None],
+        on_drawing: Callable[[float, Drawn], None],
         people: People | None = None,
         guided: Guided | None = None,
         crowd_size: int = 0,
@@ -255,9 +256,9 @@ class PlannerSystem(LeafSystem):
         self._bounds.check(name)
         self._on_signal(t, name, value)
 
-    def _draw(self, t: float, name: str, rows: NDArray[np.float32]) -> None:
-        self._drawn.check(name, rows.size)
-        self._on_drawing(t, name, rows)
+    def _draw(self, t: float, drawn: Drawn) -> None:
+        self._drawn.check(drawn.name, drawn.size)
+        self._on_drawing(t, drawn)
 
     def _observe(self, bank: Array, t: float, truth: Truth | None) -> Observation:
         pose, twist, sideways = self._task.start, (0.0, 0.0), [0.0]
@@ -277,7 +278,7 @@ class PlannerSystem(LeafSystem):
                 if bank[s.stamp] >= 0.0
             },
             log=lambda name, value: self._signal(t, *named_signal(name, value)),
-            draw=lambda name, rows: self._draw(t, *named_drawing(name, rows)),
+            draw=lambda name, rows, text=None: self._draw(t, named_drawing(name, rows, text)),
             truth=truth,
         )
 

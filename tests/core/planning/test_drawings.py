@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,10 @@ import pytest
 import crowdbot
 from crowdbot.cli import main
 from crowdbot.core.planning.planner import drawing_bounds, named_drawing
+from crowdbot.core.recording.reading.one_robot import PlannerDrawing
 from crowdbot.core.replay.encode_drawings import encode_drawings
 from crowdbot.errors import PlannerError
+from tests.core.replay.replay_cases import passing
 
 PLANNER = """
 class Draws:
@@ -24,6 +27,8 @@ class Draws:
     def step(self, obs):
         obs.draw("path", [[0.0, 0.0], [1.0, 0.5]])
         obs.draw("nothing", [])
+        obs.draw("why", [[1.0, 0.0], [2.0, 0.0]], text=["waits", "a\x1b[1m\nb"])
+        obs.draw("here", [[0.0, 0.0]], "one")
         return 0.2, 0.0
 """
 SCENARIO = "challenge-2026", "counter-d020-attentive-n01"
@@ -63,6 +68,49 @@ def test_tracks_have_five_columns() -> None:
     assert named_drawing("tracks", [[1, 2, 3, 4, 5]])[1].shape == (1, 5)
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (3, "'why' has one text or a list of texts, not 3"),
+        (["one"], "'why' has 2 rows, but 1 texts"),
+        (["one", None], "'why' has a text that is none: None"),
+        ("x" * 81, "a text of 'why' has at most 80 characters, not 81"),
+        (b"one", "one text or a list"),
+    ],
+)
+def test_texts_are_short_and_as_many_as_rows(text: object, words: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=re.escape(words)):
+        named_drawing("why", [[0.0, 0.0], [1.0, 0.0]], text)  # type: ignore[arg-type]
+
+
+def test_texts_are_bounded_and_not_for_tracks() -> None:
+    with pytest.raises(ValueError, match="at most 200 texts, not 201"):
+        named_drawing("why", np.zeros((201, 2)), "one")
+    with pytest.raises(ValueError, match="'tracks' are people, without texts"):
+        named_drawing("tracks", np.zeros((1, 5)), "one")
+    drawn = named_drawing("why", np.zeros((2, 2)), "a\x00b\u202ec")
+    assert drawn.texts == ("abc", "abc")
+    assert drawn.size == 4 + 6
+    assert named_drawing("why", [], "one").texts == ()
+
+
+def test_a_page_has_each_text_once() -> None:
+    at = np.array([[1.0, 2.0]])
+    drawn = {
+        "why": [
+            PlannerDrawing(0.0, at, ("waits",)),
+            PlannerDrawing(0.5, at[:0], ()),
+            PlannerDrawing(0.6, at),
+            PlannerDrawing(1.0, np.vstack([at, at]), ("goes", "waits")),
+        ],
+        "plan": [PlannerDrawing(0.0, at)],
+    }
+    plan, why = encode_drawings(passing().run, drawn)[0]["drawings"]
+    assert (why["rows"], why["texts"]) == ([1, 0, 1, 2], ["waits", "goes"])
+    assert why["which"] == [0, -1, 1, 0]
+    assert "texts" not in plan
+
+
 @pytest.mark.parametrize("in_process", [True, False])
 def test_drawings_of_a_file_are_recorded(tmp_path: Path, in_process: bool) -> None:
     file = tmp_path / "draws.py"
@@ -72,7 +120,11 @@ def test_drawings_of_a_file_are_recorded(tmp_path: Path, in_process: bool) -> No
         drawn = recording.drawings()
         topics = recording.info.topics
     assert topics["/thoughts"][0] == "crowdbot_msgs/msg/Drawing"
-    assert set(drawn) == {"path", "nothing"}
+    assert topics["/thought_texts"][0] == "crowdbot_msgs/msg/DrawnTexts"
+    assert set(drawn) == {"path", "nothing", "why", "here"}
+    assert drawn["why"][0].texts == ("waits", "a[1m b")
+    assert drawn["here"][-1].texts == ("one",)
+    assert drawn["path"][0].texts is None
     assert len(drawn["path"]) >= 20  # 8 Hz for 3 s
     assert drawn["path"][0].rows.tolist() == [[0.0, 0.0], [1.0, 0.5]]
     assert drawn["nothing"][0].rows.shape == (0, 2)

@@ -110,7 +110,7 @@ class Memory:
     def signal(self, t: float, name: str, value: float) -> None:
         pass
 
-    def drawing(self, t: float, name: str, rows: Any) -> None:
+    def drawing(self, t: float, drawn: Any) -> None:
         pass
 
     def trip(self, agent: int, t0: float, t1: float, reached: bool) -> None:

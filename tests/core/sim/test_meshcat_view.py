@@ -132,3 +132,7 @@ def test_what_a_planner_draws_lies_on_the_floor(view: MeshcatView) -> None:
     assert _has(view, "crowdbot/thoughts/robot/plan")
     view.drawing(1.1, "robot", "plan", path[:, :0])
     assert not _has(view, "crowdbot/thoughts/robot/plan")
+    view.drawing(1.2, "robot", "why", path[:, :1], ["waits"])
+    assert _has(view, "crowdbot/thoughts/robot/why")
+    view.drawing(1.3, "robot", "why", path[:, :1], [""])
+    assert not _has(view, "crowdbot/thoughts/robot/why")

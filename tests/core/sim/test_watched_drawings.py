@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from crowdbot.core.recording.drawings import drawing_in_world, drawn_lines
+import crowdbot.core.recording.messages as ros
+from crowdbot.core.recording.drawings import drawing_in_world, drawn_lines, text_markers
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.recording import Recording
+from crowdbot.core.recording.text_lines import text_lines
 from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.sim.simulate import simulate
 from crowdbot.core.types.arrays import Array
@@ -29,6 +31,7 @@ class Drawing:
     def step(self, obs: Any) -> tuple[float, float]:
         obs.draw("tracks", [[7, 2.0, 1.0, 0.5, -0.25]])
         obs.draw("plan", [[0.0, 0.0], [1.0, 0.0], [2.0, 0.5]])
+        obs.draw("why", [[0.5, 0.0]], text="passes")
         return 0.4, 0.5
 
 
@@ -36,6 +39,7 @@ class Watcher:
     def __init__(self) -> None:
         self.poses: dict[float, Sequence[float]] = {}
         self.seen: list[tuple[float, str, str, Array]] = []
+        self.texts: list[tuple[str, ...]] = []
 
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
         assert list(robots) == ["robot"]
@@ -45,8 +49,17 @@ class Watcher:
         del agents
         self.poses[t] = robots["robot"][:3]
 
-    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
+    def drawing(
+        self,
+        t: float,
+        robot: str,
+        name: str,
+        columns: Array,
+        texts: Sequence[str] | None = None,
+    ) -> None:
         self.seen.append((t, robot, name, columns))
+        if texts is not None:
+            self.texts.append((name, *texts))
 
 
 def test_what_a_planner_draws_is_shown_while_it_drives(tmp_path: Path) -> None:
@@ -63,6 +76,7 @@ def test_what_a_planner_draws_is_shown_while_it_drives(tmp_path: Path) -> None:
         assert [t for t, *_ in shown] == pytest.approx(times[name][-len(shown) :])
         assert len(shown) >= 15  # all but the first, before the robot's first sample
         assert all(one[3].shape[0] == columns for one in shown)
+    assert set(watcher.texts) == {("why", "passes")}
     t, _, _, last = next(one for one in reversed(watcher.seen) if one[2] == "tracks")
     before = max(stamp for stamp in watcher.poses if stamp <= t)
     x, y, yaw = watcher.poses[before]
@@ -92,3 +106,22 @@ def test_points_and_arrows_have_lines_of_their_own() -> None:
     assert drawn_lines(columns, "arrows").tolist() == [[[0.0, 0.0]], [[1.0, 0.0]]]
     assert drawn_lines(columns[:, :0], "arrows").shape == (2, 0, 2)
     assert drawn_lines(columns[:, :0], "points").shape == (2, 0, 2)
+
+
+def test_texts_are_markers_that_face_the_reader() -> None:
+    data = text_markers(2, "why", np.array([[1.0, 3.0], [2.0, 4.0]]), ["", "waits"])
+    (said,) = [ros.from_cdr(one, "visualization_msgs/msg/Marker") for one in data]
+    assert (said.type, said.ns, said.id, said.text) == (said.TEXT_VIEW_FACING, "why", 1, "waits")
+    assert (said.pose.position.x, said.pose.position.y) == (3.0, 4.0)
+    assert said.scale.z > 0.1
+    assert said.lifetime.nanosec > 0
+
+
+def test_texts_without_letters_are_outlines_around_their_place() -> None:
+    start, end = text_lines(np.array([[2.0, 9.0], [1.0, 9.0]]), ["MMM $x$", "\u200d"])
+    assert start.shape == end.shape
+    assert len(start) > 20
+    low, high = start.min(axis=0), start.max(axis=0)
+    assert (low + high) / 2 == pytest.approx([2.0, 1.0])
+    assert high[1] - low[1] > 3 * (high[0] - low[0])  # along y, letters upright along x
+    assert text_lines(np.zeros((2, 0)), []).shape == (2, 0, 2)

@@ -19,7 +19,7 @@ from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
-from crowdbot.core.recording.drawings import drawn_marker
+from crowdbot.core.recording.drawings import drawn_marker, text_markers
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.people import MARKER, PeopleMessages
 from crowdbot.core.recording.topics import Topic
@@ -33,7 +33,7 @@ SEEN = (
     OfferedTopic(str(Topic.PEOPLE_MARKER), MARKER),
     OfferedTopic(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
 )
-#: Lines of what a robot's planner draws.
+#: Lines and texts of what a robot's planner draws.
 THOUGHTS = "/thoughts_marker"
 _POSE = "geometry_msgs/msg/PoseStamped"
 #: Largest command and request of a client, bytes; largest number of its command topics.
@@ -160,12 +160,24 @@ class FoxgloveDoor:
             if seen is not None:
                 self._channels[offer.topic].log(seen, log_time=ns)
 
-    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
-        """Show what a planner drew to those who look, as lines."""
+    def drawing(
+        self,
+        t: float,
+        robot: str,
+        name: str,
+        columns: Array,
+        texts: Sequence[str] | None = None,
+    ) -> None:
+        """Show what a planner drew to those who look, as lines or texts."""
         topic = self._thoughts.get(robot)
-        if topic is not None and self.wants(topic):
-            ns = self._epoch + ros.nanoseconds(t)
-            self._channels[topic].log(drawn_marker(ns, name, columns), log_time=ns)
+        if topic is None or not self.wants(topic):
+            return
+        ns = self._epoch + ros.nanoseconds(t)
+        shown = [drawn_marker(ns, name, columns)] if texts is None else (
+            text_markers(ns, name, columns, texts)
+        )  # fmt: skip
+        for data in shown:
+            self._channels[topic].log(data, log_time=ns)
 
     def _people_seen(self, topic: str, ns: int, agents: Array | None) -> bytes | None:
         if agents is None or self._people is None or self._arrows is None:

@@ -95,11 +95,19 @@ class LivePicture:
         )
         self._drawn.clear()
 
-    def drawing(self, t: float, robot: str, name: str, columns: Array) -> None:
+    def drawing(
+        self,
+        t: float,
+        robot: str,
+        name: str,
+        columns: Array,
+        texts: Sequence[str] | None = None,
+    ) -> None:
         """Show what a planner drew last with the next sample."""
         self._drawn[robot, name] = {
             "robot": robot, "name": name, "t": t, "tracks": name == TRACKS,
             "columns": np.round(columns, 2).tolist(),
+            **({} if texts is None else {"texts": list(texts)}),
         }  # fmt: skip
 
     def _scans(self, robots: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:

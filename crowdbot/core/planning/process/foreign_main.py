@@ -150,10 +150,16 @@ class ForeignSide:
             raise TypeError(f"log: the name of a signal is text, not {name!r}")
         self._signals.append([name, float(value)])
 
-    def _draw(self, name: str, rows: Any) -> None:
+    def _draw(self, name: str, rows: Any, text: Any = None) -> None:
         if not isinstance(name, str) or not name:
             raise TypeError(f"draw: the name of a drawing is text, not {name!r}")
-        self._drawings.append([name, [[float(x) for x in row] for row in rows]])
+        drawing: list[Any] = [name, [[float(x) for x in row] for row in rows]]
+        if text is not None:
+            texts = [text] if isinstance(text, str) else text
+            if not isinstance(texts, (list, tuple)) or not all(isinstance(x, str) for x in texts):
+                raise TypeError(f"draw: '{name}' has one text or a list of texts, not {text!r:.40}")
+            drawing.append(text if isinstance(text, str) else list(text))
+        self._drawings.append(drawing)
 
     def _where(self, error: BaseException) -> str:
         """Return the innermost line in the planner's own files."""

@@ -10,7 +10,7 @@ import faulthandler
 import io
 import signal
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -71,7 +71,7 @@ class OwnSide:
         self._build: Callable[[], Planner] | None = None
         self._guarded: GuardedPlanner | None = None
         self._signals: list[tuple[str, float]] = []
-        self._drawings: list[tuple[str, list[list[float]]]] = []
+        self._drawings: list[list[Any]] = []
 
     def hello(self, sent: Mapping[str, Any]) -> dict[str, Any]:
         """Find the planner and return its description."""
@@ -134,9 +134,10 @@ class OwnSide:
     def _log(self, name: str, value: float) -> None:
         self._signals.append(named_signal(name, value))
 
-    def _draw(self, name: str, rows: ArrayLike) -> None:
-        name, table = named_drawing(name, rows)
-        self._drawings.append((name, table.tolist()))
+    def _draw(self, name: str, rows: ArrayLike, /, text: str | Sequence[str] | None = None) -> None:
+        name, table, texts = named_drawing(name, rows, text)
+        told = () if texts is None else (list(texts),)
+        self._drawings.append([name, table.tolist(), *told])
 
     def _file(self) -> _Found:
         path, name = Path(self._what["file"]), self._what["class"]

@@ -367,10 +367,13 @@ class ProcessPlanner:
             self._fail(f"step: 'signals' are pairs of a name and a number, not {signals!r:.80}")
         drawings = said.get("drawings") or ()
         try:
-            for name, rows in drawings:
-                obs.draw(name, rows)
-        except (TypeError, ValueError):
-            self._fail(f"step: 'drawings' are pairs of a name and rows, not {drawings!r:.80}")
+            for name, rows, *text in drawings:
+                obs.draw(name, rows, *text)
+        except (TypeError, ValueError) as error:
+            self._fail(
+                "step: 'drawings' are lists of a name, rows and perhaps texts, not "
+                f"{drawings!r:.80}: {error}"
+            )
 
     def _command(self, said: Mapping[str, Any]) -> Command:
         numbers = [said.get("v"), said.get("w"), said.get("vy", 0.0)]

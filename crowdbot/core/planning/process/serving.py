@@ -168,7 +168,7 @@ class Decoder:
         self,
         sent: dict[str, Any],
         log: Callable[[str, float], None],
-        draw: Callable[[str, Any], None],
+        draw: Callable[..., None],
     ) -> Any:
         """Return the planner's input in one step."""
         return self._types.Observation(

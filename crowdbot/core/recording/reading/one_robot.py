@@ -29,10 +29,11 @@ _CONTACT = ("t0", "t1", "agent", "impulse", "peak_force", "relative_speed", "bea
 
 
 class PlannerDrawing(NamedTuple):
-    """A planner's drawing: time (s) and rows (K, C) in the robot's base frame."""
+    """A planner's drawing: time (s), rows (K, C) in the robot's base frame, and K texts or none."""
 
     t: float
     rows: Array
+    texts: tuple[str, ...] | None = None
 
 
 class RobotRecords:
@@ -57,6 +58,7 @@ class RobotRecords:
         Topic.PLANNER_TIME: "crowdbot_msgs/msg/Series",
         Topic.TRACKS: "crowdbot_msgs/msg/Drawing",
         Topic.THOUGHTS: "crowdbot_msgs/msg/Drawing",
+        Topic.THOUGHT_TEXTS: "crowdbot_msgs/msg/DrawnTexts",
         Topic.END: "crowdbot_msgs/msg/RunEnd",
     }
 
@@ -160,15 +162,20 @@ class RobotRecords:
             InputError: a drawing is damaged.
         """
         found: dict[str, list[PlannerDrawing]] = {}
-        for topic in (Topic.TRACKS, Topic.THOUGHTS):
+        for topic in (Topic.TRACKS, Topic.THOUGHTS, Topic.THOUGHT_TEXTS):
             records = self._records[topic]
             for record, message in zip(records, self._messages(topic), strict=True):
-                columns = int(message.columns)
-                if columns < 1 or len(message.data) % columns:
-                    raise InputError(f"{self._path}: damaged: a drawing '{message.name:.40}'")
-                rows = np.asarray(message.data, np.float64).reshape(-1, columns)
-                found.setdefault(message.name, []).append(PlannerDrawing(record.ns / 1e9, rows))
-        return found
+                drawing = self._drawing(record.ns / 1e9, message)
+                found.setdefault(message.name, []).append(drawing)
+        return {name: sorted(drawn, key=lambda one: one.t) for name, drawn in found.items()}
+
+    def _drawing(self, t: float, message: Any) -> PlannerDrawing:
+        columns, texts = int(message.columns), getattr(message, "texts", None)
+        fits = columns >= 1 and not len(message.data) % columns
+        if not fits or (texts is not None and len(texts) != len(message.data) // columns):
+            raise InputError(f"{self._path}: damaged: a drawing '{message.name:.40}'")
+        rows = np.asarray(message.data, np.float64).reshape(-1, columns)
+        return PlannerDrawing(t, rows, None if texts is None else tuple(texts))
 
     @cached_property
     def people(self) -> Trajectories | None:

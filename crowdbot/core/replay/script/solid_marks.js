@@ -39,9 +39,9 @@ function addTrack(put, x, y, vx, vy) {
 /** Shows the latest drawing of each name. */
 function moveThoughts(lines, run, frame, shows) {
   moveLines(lines, (put) => {
-    for (const { t, starts, rows, tracks, columns: [x, y, vx, vy] } of shows ? run.drawings ?? [] : []) {
+    for (const { t, starts, rows, tracks, which, columns: [x, y, vx, vy] } of shows ? run.drawings ?? [] : []) {
       const j = lastBefore(t, frame.time);
-      if (j < 0 || frame.time - t[j] > THOUGHT_AGE) continue;
+      if (j < 0 || frame.time - t[j] > THOUGHT_AGE || which?.[starts[j]] >= 0) continue;
       for (let i = starts[j]; i < starts[j] + rows[j]; i++) {
         if (tracks) addTrack(put, x[i], y[i], vx[i], vy[i]);
         else if (i > starts[j]) put(x[i - 1], y[i - 1], ON_FLOOR, x[i], y[i], ON_FLOOR);

@@ -1,4 +1,4 @@
-// Draws what the planner thought at a time: the people that it tracks, paths and points.
+// Draws what the planner thought at a time: the people that it tracks, paths, points and texts.
 
 const THOUGHT_AGE = 0.5; // s; older drawings are not shown
 const AHEAD = 1; // s; a track's line ends where it would be then
@@ -9,7 +9,8 @@ function drawThoughts(g, run, time, px) {
     const j = lastBefore(drawing.t, time);
     if (j < 0 || time - drawing.t[j] > THOUGHT_AGE) continue;
     const [from, to] = [drawing.starts[j], drawing.starts[j] + drawing.rows[j]];
-    drawingOf(drawing)(g, drawing, from, to, px);
+    const show = drawing.which?.[from] >= 0 ? drawTexts : drawingOf(drawing);
+    show(g, drawing, from, to, px);
   }
 }
 
@@ -29,6 +30,28 @@ function drawPoints(g, { columns: [x, y] }, from, to, px) {
   }
   g.fillStyle = colours.thought;
   g.fill();
+}
+
+/** Writes a text at each row, upright whatever the scale. */
+function drawTexts(g, { columns: [x, y], texts, which }, from, to, px) {
+  g.font = "600 13px system-ui, sans-serif";
+  g.textAlign = "center";
+  g.textBaseline = "middle";
+  g.lineJoin = "round";
+  g.lineWidth = 4;
+  g.strokeStyle = colours.floor;
+  g.fillStyle = colours.thought;
+  for (let i = from; i < to; i++) {
+    g.save();
+    g.translate(x[i], y[i]);
+    g.scale(px, -px);
+    g.strokeText(texts[which[i]], 0, 0);
+    g.fillText(texts[which[i]], 0, 0);
+    g.restore();
+  }
+  g.textAlign = "start";
+  g.textBaseline = "alphabetic";
+  g.lineJoin = "miter";
 }
 
 /** Draws an arrow from each row to the next one, two rows each. */

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from numpy.typing import ArrayLike
-
+from crowdbot.core.planning.drawn import Drawn
 from crowdbot.core.planning.planner import TRACKS
 from crowdbot.core.recording.drawings import drawing_in_world
 from crowdbot.core.recording.header import RecordingHeader
@@ -15,8 +14,8 @@ from crowdbot.core.types.arrays import Array
 
 #: Takes a sample: time (s), the robot's row and the people, either missing.
 OnSample = Callable[[float, Sequence[float] | None, Array | None], None]
-#: Takes what a planner draws: time (s), name and rows in the robot's base frame.
-OnDrawing = Callable[[float, str, ArrayLike], None]
+#: Takes what a planner draws, and the time, s.
+OnDrawing = Callable[[float, Drawn], None]
 
 
 class WatchedRun:
@@ -53,12 +52,14 @@ class WatchedRun:
         if not self._watchers:
             return None
 
-        def on_drawing(t: float, name: str, rows: ArrayLike) -> None:
+        def on_drawing(t: float, drawn: Drawn) -> None:
             if (row := self._rows.get(robot)) is None:
                 return
-            columns = drawing_in_world(row[0], row[1], row[2], rows, tracks=name == TRACKS)
+            name, tracks = drawn.name, drawn.name == TRACKS
+            columns = drawing_in_world(row[0], row[1], row[2], drawn.rows, tracks=tracks)
+            more = () if drawn.texts is None else (drawn.texts,)
             for watcher in self._watchers:
-                watcher.drawing(t, robot, name, columns)
+                watcher.drawing(t, robot, name, columns, *more)
 
         return on_drawing
 

@@ -98,7 +98,7 @@ def test_who_comes_late_gets_the_map() -> None:
         assert _data(socket, 1)[13:] == still.data
 
 
-def test_what_a_planner_draws_is_a_marker_of_lines() -> None:
+def test_what_a_planner_draws_is_a_marker_of_lines_or_a_text() -> None:
     with _both() as (door, _, socket):
         header = header_of(random_run(2))
         door.begin(header, {"robot": header})
@@ -113,6 +113,9 @@ def test_what_a_planner_draws_is_a_marker_of_lines() -> None:
         marker = ros.from_cdr(frame[13:], "visualization_msgs/msg/Marker")
         assert (marker.ns, marker.type) == ("tracks", marker.LINE_LIST)
         assert [(p.x, p.y) for p in marker.points] == [(1.0, 2.0), (1.5, 2.0)]
+        door.drawing(2.1, "robot", "why", np.array([[1.0], [2.0]]), ["waits"])
+        said = ros.from_cdr(_data(socket, 1)[13:], "visualization_msgs/msg/Marker")
+        assert (said.ns, said.type, said.text) == ("why", said.TEXT_VIEW_FACING, "waits")
 
 
 def test_what_clients_send_does_not_reach_the_terminal_without_end(

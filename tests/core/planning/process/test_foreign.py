@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.planning.choice import PlannerPlace
+from crowdbot.core.planning.planner import named_drawing
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.errors import CrowdbotError, InputError, PlannerError
 from tests.core.planning.process.process_cases import (
@@ -42,6 +43,7 @@ class Mine:
         if obs.t > 1.0:
             raise ValueError("lost")
         obs.log("mine/nearest", min(obs.readings["front"].values))
+        obs.draw("why", [(1.0, 0.0)], text="waits")
         assert self.seed == 7 and self.task.start.x == 2.5 and self.limits.v_max == 0.65
         front = self.sensors["front"]
         assert len(front.angles) == 480 and front.camera is None and front.mount[0] == 0.2
@@ -80,15 +82,30 @@ def test_a_python_with_nothing_but_its_library(bare: Path) -> None:
     assert choice.spec_dump["parameters"] == {"speed": 0.5}
     assert not choice.in_process
     signals: list[tuple[str, float]] = []
+    drawings: list[tuple[Any, ...]] = []
     seen = observation(front=np.linspace(0.5, 3.0, 480))
     with hosted(choice, front=FRONT) as host:
         object.__setattr__(seen, "log", lambda name, value: signals.append((name, value)))
+        object.__setattr__(seen, "draw", lambda *drawn: drawings.append(drawn))
         assert host.step(seen).command == (0.5, 0.0, 0.0)
         assert signals == [("mine/nearest", 0.5)]
+        assert drawings == [("why", [[1.0, 0.0]], "waits")]
         assert host.step(observation(2.5, front=np.ones(480))).command == (0.0, 0.0, 0.0)
         assert host.stops == 1
         with pytest.raises(PlannerError, match=r"step: ValueError: lost \(.*mine\.py:16\)"):
             host.step(observation(1.5, front=np.ones(480)))
+
+
+def test_a_text_that_is_too_long_ends_the_planner(bare: Path) -> None:
+    file = bare.with_name("mine.py")
+    file.write_text(file.read_text().replace('"waits"', '["x" * 81]'))
+    seen = observation(front=np.ones(480))
+    object.__setattr__(seen, "draw", named_drawing)
+    with (
+        hosted(resolve_planner(str(bare), REGISTRY), front=FRONT) as host,
+        pytest.raises(PlannerError, match="a text of 'why' has at most 80 characters, not 81"),
+    ):
+        host.step(seen)
 
 
 def test_arrays_and_images_in_both_kinds_of_python(tmp_path: Path) -> None:

@@ -35,9 +35,10 @@ function takeFrame({ t, robots, people, scans, drawings }) {
 }
 
 /** Keeps the latest drawing of each name of a planner, as the replay page has them. */
-function takeDrawing({ robot, name, t, tracks, columns }) {
+function takeDrawing({ robot, name, t, tracks, columns, texts }) {
   const { drawings } = shown.run;
-  const drawing = { robot, name, tracks, t: [t], starts: [0], rows: [columns[0].length], columns };
+  const drawing = { robot, name, tracks, t: [t], starts: [0], rows: [columns[0].length], columns, texts };
+  if (texts) drawing.which = texts.map((_, k) => k);
   const i = drawings.findIndex((one) => one.robot === robot && one.name === name);
   drawings.splice(i < 0 ? drawings.length : i, i < 0 ? 0 : 1, drawing);
 }
