@@ -62,7 +62,7 @@ def texts_of_rows(name: str, count: int, text: str | Sequence[str]) -> tuple[str
 def _shown(name: str, text: object) -> str:
     """Return a text of one line without hidden characters."""
     if not isinstance(text, str):
-        raise TypeError(f"draw: '{name}' has a text that is none: {text!r:.40}")
+        raise TypeError(f"draw: '{name}' has {text!r:.40} in place of a text")
     if len(text) > _LONGEST_TEXT:
         raise ValueError(
             f"draw: a text of '{name}' has at most {_LONGEST_TEXT} characters, not {len(text)}"

@@ -73,7 +73,7 @@ def test_tracks_have_five_columns() -> None:
     [
         (3, "'why' has one text or a list of texts, not 3"),
         (["one"], "'why' has 2 rows, but 1 texts"),
-        (["one", None], "'why' has a text that is none: None"),
+        (["one", None], "'why' has None in place of a text"),
         ("x" * 81, "a text of 'why' has at most 80 characters, not 81"),
         (b"one", "one text or a list"),
     ],
