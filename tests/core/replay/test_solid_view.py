@@ -33,6 +33,7 @@ _SOLIDS = {
     "people": {"height": [1.6, 1.8], "look": []},
 }  # fmt: skip
 _INFO = "shown.panels[0].solid.renderer.info.render"
+_SIGNS = "shown.panels[0].solid.parts.signs.children.filter((sign) => sign.visible).length"
 _LINES = "shown.panels[0].solid.parts.{}.geometry.drawRange.count"
 
 
@@ -40,7 +41,15 @@ _LINES = "shown.panels[0].solid.parts.{}.geometry.drawRange.count"
 @needs_browser
 def test_each_view_shows_people_robot_sensors_and_tracks(tmp_path: Path) -> None:
     track = np.array([[3.0, 1.0, 0.5, 0.1, 0.0]])
-    drawn = {"tracks": [PlannerDrawing(t=t / 4, rows=track) for t in range(40)]}
+    times = [t / 4 for t in range(40)]
+    drawn = {
+        "tracks": [PlannerDrawing(t, track) for t in times],
+        "points": [PlannerDrawing(t, np.array([[1.0, 0.0], [2.0, 0.0]])) for t in times],
+        "arrows": [PlannerDrawing(t, np.zeros((4, 2))) for t in times],
+        "why": [
+            PlannerDrawing(t, np.array([[1.0, 0.0], [2.0, 0.0]]), ("", "waits")) for t in times
+        ],
+    }
     write_replay(tmp_path / "page.html", replace(passing(), solids=_SOLIDS, drawings=drawn))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=PROGRAM, args=_SOFTWARE)
@@ -50,8 +59,11 @@ def test_each_view_shows_people_robot_sensors_and_tracks(tmp_path: Path) -> None
                 before = page.evaluate("shown.panels[0].solid?.frames ?? 0")
                 page.select_option("#view", view)
                 until(page, f"(shown.panels[0].solid?.frames ?? 0) > {before}")
-                assert page.evaluate(_LINES.format("thoughts")) == 8  # a cross, a pole, its way
+                assert (
+                    page.evaluate(_LINES.format("thoughts")) == 8 + 8 + 4
+                )  # a cross, a pole, its way; points; arrows
                 assert page.evaluate(_LINES.format("points")) == 90
+                assert page.evaluate(_SIGNS) == 1
                 assert page.evaluate(_LINES.format("cones")) == 2 * 8
                 assert page.evaluate(f"{_INFO}.triangles") > 200
             assert page.evaluate(f"{_INFO}.calls") < 20

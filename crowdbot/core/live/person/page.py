@@ -13,7 +13,8 @@ Mode = Literal["drive", "walk"]
 _SHARED = (
     "element", "decode", "motion", "gaps", "colours", "canvas", "scenery", "people", "robots",
     "sensors", "thoughts", "pointers", "solid_load", "solid_place", "solid_figures", "solid_bodies",
-    "solid_people", "solid_robots", "solid_marks", "solid_eye", "solid", "solid_xr",
+    "solid_people", "solid_robots", "solid_marks", "solid_signs", "solid_eye", "solid",
+    "solid_xr",
 )  # fmt: skip
 _OWN = (
     "link", "latency", "keys", "pad", "gamepad", "hand", "live", "plan", "eyes", "hud", "main",

@@ -27,11 +27,11 @@ function makeSolid(canvas, run, bounds) {
   const solids = run.solids;
   const parts = {
     floor: makeFloor(bounds), obstacles: makeObstacles(solids), goals: makeGoals(run.robots),
-    people: makePeople(run.people, solids), points: pointCloud(), thoughts: markLines(), cones: markLines(),
+    people: makePeople(run.people, solids), points: pointCloud(), thoughts: markLines(), cones: markLines(), signs: makeSigns(),
     robots: run.robots.map((robot, i) => makeRobot(robot, solids.robots[i])), ways: run.robots.map(wayLine),
   };
   parts.wanted = makeWanted(run.robots, parts.goals.wanted, parts.people.height);
-  world.add(rig, parts.floor.group, parts.obstacles.group, parts.goals.group, parts.wanted, parts.people.group, parts.points, parts.thoughts, parts.cones, ...parts.robots, ...parts.ways);
+  world.add(rig, parts.floor.group, parts.obstacles.group, parts.goals.group, parts.wanted, parts.people.group, parts.points, parts.thoughts, parts.cones, parts.signs, ...parts.robots, ...parts.ways);
   const solid = { canvas, run, renderer, scene, rig, camera, upright, parts, frames: 0, before: 0, slow: 0, ratio: 1 };
   paintSolid(solid);
   return solid;
@@ -62,6 +62,7 @@ function paintSolid({ scene, parts, run }) {
   parts.points.material.color = colour("lidar");
   parts.thoughts.material.color = colour("thought");
   parts.cones.material.color = colour("sonar");
+  clearSigns(parts.signs);
   for (const way of parts.ways) way.material.color = colour("robot");
 }
 
@@ -86,6 +87,7 @@ function drawSolid(solid, frame, eye, options) {
   movePoints(parts.points, options.points ? frame.scans : [], lidarHeight(run));
   moveCones(parts.cones, options.cones ? frame.cones : [], lidarHeight(run));
   moveThoughts(parts.thoughts, run, frame, options.thoughts);
+  moveSigns(parts.signs, run, frame, options.thoughts);
   moveWays(parts.ways, run.robots, frame.k);
   renderer.render(solid.scene, solid.camera);
   solid.frames += 1;

@@ -36,15 +36,23 @@ function addTrack(put, x, y, vx, vy) {
   put(x, y, ON_FLOOR, x + AHEAD * vx, y + AHEAD * vy, ON_FLOOR);
 }
 
-/** Shows the latest drawing of each name. */
+/** A small cross on the floor. */
+function addPoint(put, x, y) {
+  const r = 0.05;
+  put(x - r, y, ON_FLOOR, x + r, y, ON_FLOOR);
+  put(x, y - r, ON_FLOOR, x, y + r, ON_FLOOR);
+}
+
+/** Shows the latest drawing of each name, but texts. */
 function moveThoughts(lines, run, frame, shows) {
   moveLines(lines, (put) => {
-    for (const { t, starts, rows, tracks, which, columns: [x, y, vx, vy] } of shows ? run.drawings ?? [] : []) {
+    for (const { name, t, starts, rows, tracks, which, columns: [x, y, vx, vy] } of shows ? run.drawings ?? [] : []) {
       const j = lastBefore(t, frame.time);
       if (j < 0 || frame.time - t[j] > THOUGHT_AGE || which?.[starts[j]] >= 0) continue;
       for (let i = starts[j]; i < starts[j] + rows[j]; i++) {
         if (tracks) addTrack(put, x[i], y[i], vx[i], vy[i]);
-        else if (i > starts[j]) put(x[i - 1], y[i - 1], ON_FLOOR, x[i], y[i], ON_FLOOR);
+        else if (name.startsWith("points")) addPoint(put, x[i], y[i]);
+        else if (name.startsWith("arrows") ? (i - starts[j]) % 2 : i > starts[j]) put(x[i - 1], y[i - 1], ON_FLOOR, x[i], y[i], ON_FLOOR);
       }
     }
   });
