@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import crowdbot.core.report.provenance as provenance
 from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.realism.near_robots.known import response_lines
 from crowdbot.core.registry.registry import Registry
@@ -109,10 +110,20 @@ class Contents:
         """Return the y of each planner's name in the plot of `pareto`, px."""
         return label_heights(self.pareto)
 
-    @property
+    @cached_property
     def seeds(self) -> list[int]:
         """All seeds, in order."""
         return sorted({a.seed for a in self.attempts})
+
+    @cached_property
+    def hashes(self) -> Mapping[str, str]:
+        """Return hashes of the data."""
+        return provenance.hashes(self.results.runs)
+
+    @cached_property
+    def facts(self) -> Mapping[str, Mapping[str, str]]:
+        """Return software, machine, plugins and conditions of the runs."""
+        return provenance.facts(self.results.runs)
 
     @cached_property
     def statuses(self) -> Mapping[str, int]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.report.packing import deflate, pack
+from crowdbot.core.report.packing import PackedNumbers, deflate
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
@@ -147,7 +147,7 @@ def encode_scores(
     ids = ["" if isinstance(a, Failure) else a.run_id for a in tried]
     columns = np.array([place_of.get(name, -1) for name in ids], np.intp)
     shape = (len(series), len(tried))
-    values, lower, upper = (np.full(shape, np.nan) for _ in range(3))
+    blobs = {name: PackedNumbers(len(series) * len(tried)) for name in ("values", "lower", "upper")}
     codes = np.full(shape, ABSENT, np.uint16)
     states: dict[tuple[str, str], int] = {OK: 0}
     failed = {
@@ -165,19 +165,20 @@ def encode_scores(
         here = np.flatnonzero(place >= 0)
         state = scores.state[place[here]]
         codes[s, here] = np.asarray(known, np.uint16)[state]
-        for blob, numbers in ((values, scores.value), (lower, scores.lower), (upper, scores.upper)):
-            blob[s, here] = numbers[place[here]]
+        values, lower, upper = numbers = np.full((3, len(tried)), np.nan)
+        for row, column in zip(numbers, (scores.value, scores.lower, scores.upper), strict=True):
+            row[here] = column[place[here]]
         shown = np.zeros(len(tried), np.bool_)
         shown[here] = is_ok[state]
         for r, code in failed.items():
             value = WITHOUT_RUN.get(one.metric) if isinstance(tried[r], Failure) else None
             if not shown[r]:
                 codes[s, r] = code if value is None else 0
-                values[s, r], lower[s, r], upper[s, r] = _number(value), np.nan, np.nan
+                values[r], lower[r], upper[r] = _number(value), np.nan, np.nan
+        for blob, row in zip(blobs.values(), numbers, strict=True):
+            blob.put(s * len(tried), row)
     return list(states), {
-        "values": pack(values),
-        "lower": pack(lower),
-        "upper": pack(upper),
+        **{name: blob.text() for name, blob in blobs.items()},
         "codes": deflate(codes.astype("<u2").tobytes()),
     }
 

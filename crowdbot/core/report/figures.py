@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.results import Results
+from crowdbot.core.results.score_columns import different
 from crowdbot.core.statistics import (
     Comparison,
     Estimate,
@@ -38,6 +39,7 @@ FIELDS = (
 )  # fmt: skip
 VERDICTS = ("better", "worse", "not distinguishable", "not ranked")
 
+_NO_LABELS: Mapping[str, str] = {}
 _Triple = tuple[float, float, float]
 _Numbers = NDArray[np.float64]
 
@@ -122,8 +124,10 @@ def _intervals(
 def _inside(table: Table, planner: str, selections: Sequence[str]) -> NDArray[np.bool_]:
     """Return a mask (selection, row) of the table's rows in each selection."""
     runs = [table.runs.get((planner, key)) for key in table.keys]
-    labels = [{f"{a}={x}" for a, x in run.axes.items()} if run else set() for run in runs]
-    return np.array([[selection in found for found in labels] for selection in selections])
+    named, which = different([run.axes if run else _NO_LABELS for run in runs])
+    labels = [{f"{a}={x}" for a, x in axes.items()} for axes in named]
+    found = [[selection in some for some in labels] for selection in selections]
+    return np.array(found, np.bool_)[:, which]
 
 
 def _by_label(

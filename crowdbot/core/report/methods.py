@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import crowdbot.core.report.provenance as provenance
 from crowdbot.core.report.contents import Contents
-from crowdbot.core.results.rows import RunRow
 from crowdbot.core.scoring.four_scores import is_main
 from crowdbot.core.support.text import plural
 from crowdbot.core.types.ending import Ending, shown
@@ -101,10 +99,9 @@ def _accepted(contents: Contents) -> list[str]:
 
 
 def _software(contents: Contents) -> str:
-    runs = [a for a in contents.attempts if isinstance(a, RunRow)]
-    versions = provenance.facts(runs).get("software", {})
+    versions = contents.facts.get("software", {})
     named = [f"{name} {versions[name]}" for name in _SOFTWARE if name in versions]
-    digest = provenance.hashes(runs)["sha256 of all run ids and trajectory hashes"]
+    digest = contents.hashes["sha256 of all run ids and trajectory hashes"]
     with_ = f"Simulated with {_and(named)}. " if named else ""
     return f"{with_}The data are identified by sha256 {digest[:16]}."
 

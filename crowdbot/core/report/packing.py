@@ -25,12 +25,26 @@ def pack(numbers: NDArray[np.float64]) -> str:
     second ones and so on, since similar bytes compress well together.
     """
     flat = np.asarray(numbers, float).ravel()
-    planes = np.empty((_PLANES, len(flat)), np.uint8)
+    packed = PackedNumbers(len(flat))
     for start in range(0, len(flat), _AT_ONCE):
-        part = slice(start, start + _AT_ONCE)
-        words = (_rounded(flat[part]) >> np.uint64(8 * _PLANES)).astype(">u4")
-        planes[:, part] = words.reshape(-1, 1).view(np.uint8).T
-    return deflate(planes.tobytes(), zlib.Z_RLE)
+        packed.put(start, flat[start : start + _AT_ONCE])
+    return packed.text()
+
+
+class PackedNumbers:
+    """Numbers that are packed as by `pack`, part by part: the whole need not be in memory."""
+
+    def __init__(self, count: int) -> None:
+        self._planes = np.empty((_PLANES, count), np.uint8)
+
+    def put(self, start: int, numbers: NDArray[np.float64]) -> None:
+        """Set some numbers (n,) from a place on."""
+        words = (_rounded(numbers) >> np.uint64(8 * _PLANES)).astype(">u4")
+        self._planes[:, start : start + len(words)] = words.reshape(-1, 1).view(np.uint8).T
+
+    def text(self) -> str:
+        """Return the packed numbers, once all are set."""
+        return deflate(self._planes.tobytes(), zlib.Z_RLE)
 
 
 def pack_whole(numbers: NDArray[np.float64]) -> str:

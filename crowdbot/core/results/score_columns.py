@@ -178,6 +178,16 @@ class Numbered(dict[_Value, int]):
         return self.setdefault(value, len(self))
 
 
+def different(objects: Sequence[_Value]) -> tuple[list[_Value], NDArray[np.intp]]:
+    """Return the different objects in order of first appearance, and the place of each (n,).
+
+    Equal objects count as different: runs of the index share theirs.
+    """
+    found = {id(one): one for one in objects}
+    places = {number: i for i, number in enumerate(found)}
+    return list(found.values()), np.array([places[id(one)] for one in objects], np.intp)
+
+
 def of_runs(scores: Sequence[ScoreRow], ids: Collection[str]) -> Sequence[ScoreRow]:
     """Return the scores of some runs."""
     if isinstance(scores, ScoreColumns):

@@ -396,19 +396,24 @@ def _stamp_if_run(folder: str) -> str:
     """Return the stamp of a run; empty if the folder is not a run, or its record cannot be read."""
     try:
         about = os.stat(f"{folder}/{files.RECORD}")  # noqa: PTH116  many files: a Path takes longer
-        return "" if stat.S_ISDIR(about.st_mode) else _stamp_of_run(folder)
+        return "" if stat.S_ISDIR(about.st_mode) else _stamp_of_run(folder, about)
     except OSError:
         return ""
 
 
-def _stamp(file: str | Path) -> str:
-    about = os.stat(file)  # noqa: PTH116  many files: a Path takes longer
+def _stamp(file: str | Path, known: os.stat_result | None = None) -> str:
+    about = known or os.stat(file)  # noqa: PTH116  many files: a Path takes longer
     return f"{about.st_mtime_ns} {about.st_size} {about.st_ino} {about.st_ctime_ns}"
 
 
-def _stamp_of_run(run: str | Path) -> str:
-    """Return a stamp that changes with each of its files; the time of a change cannot be set."""
-    parts = [_stamp(f"{run}/{files.RECORD}")]
+def _stamp_of_run(run: str | Path, known: os.stat_result | None = None) -> str:
+    """Return a stamp that changes with each of its files; the time of a change cannot be set.
+
+    Args:
+        run: its folder.
+        known: the status of its record, if that has been asked for.
+    """
+    parts = [_stamp(f"{run}/{files.RECORD}", known)]
     for name in (files.RECORDING, files.SCORES, files.SCENARIO):
         try:
             about = os.stat(f"{run}/{name}")  # noqa: PTH116

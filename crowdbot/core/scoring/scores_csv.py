@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import groupby
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main, main_first
@@ -38,6 +39,8 @@ COLUMNS = (
     "lower",
     "upper",
 )
+#: End of a line of CSV.
+_END = "\r\n"
 _VALUE_WIDTH, _WHOLE_NAMES = 20, 80
 #: Largest length of names in narrow terminals.
 _NAME_WIDTH = 14
@@ -85,9 +88,15 @@ def write_table(path: Path, rows: Iterable[Sequence[str]]) -> None:
 
 def csv_cells(cells: Sequence[str]) -> str:
     """Return cells as a part of a line of CSV, safe for spreadsheets."""
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="").writerow([safe_cell(cell) for cell in cells])
-    return text.getvalue()
+    return csv_lines([cells])[0]
+
+
+def csv_lines(rows: Iterable[Sequence[str]]) -> list[str]:
+    """Return rows of cells as lines of CSV without their ends, safe for spreadsheets."""
+    lines, safe = list[str](), _SafeCells()
+    writer = csv.writer(SimpleNamespace(write=lines.append))
+    writer.writerows([safe[cell] for cell in row] for row in rows)
+    return [line.removesuffix(_END) for line in lines]
 
 
 def safe_cell(cell: str) -> str:

@@ -95,22 +95,22 @@ _Effect = tuple[tuple[Level, ...], float | None, float | None, str]
 
 def _effect(order: Sequence[str], index: NDArray[np.intp], values: Floats) -> _Effect:
     known = np.isfinite(values)
-    count = np.bincount(index[known], minlength=len(order))
-    total = np.bincount(index[known], weights=values[known], minlength=len(order))
     runs = np.bincount(index, minlength=len(order))
+    index, values = index[known], values[known]
+    count = np.bincount(index, minlength=len(order))
+    total = np.bincount(index, weights=values, minlength=len(order))
     levels = tuple(
         Level(label=label, runs=int(runs[i]),
               mean=float(total[i] / count[i]) if count[i] else None)
         for i, label in enumerate(order)
     )  # fmt: skip
-    return levels, *_shares(values[known], index[known], len(order))
+    return levels, *_shares(values, index, count)
 
 
 def _shares(
-    values: Floats, index: NDArray[np.intp], labels: int
+    values: Floats, index: NDArray[np.intp], count: NDArray[np.intp]
 ) -> tuple[float | None, float | None, str]:
-    """Return eta squared and omega squared of a one-way layout."""
-    count = np.bincount(index, minlength=labels)
+    """Return eta squared and omega squared of a one-way layout; ``count``: values by label."""
     used = int(np.count_nonzero(count))
     if used < 2:
         return None, None, "fewer than two labels have a value"
@@ -119,7 +119,7 @@ def _shares(
         return None, None, "all values are equal"
     values = values / scale  # squares of large numbers overflow
     total = float(((values - values.mean()) ** 2).sum())
-    means = np.bincount(index, weights=values, minlength=labels) / np.maximum(count, 1)
+    means = np.bincount(index, weights=values, minlength=len(count)) / np.maximum(count, 1)
     within = float(((values - means[index]) ** 2).sum())
     eta = 1 - within / total
     freedom = len(values) - used

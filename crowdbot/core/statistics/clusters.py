@@ -104,8 +104,9 @@ class Clusters:
         kept = self.stratum[left]
         if len(kept) and np.bincount(kept)[kept].min() < 2:  # one draw gives no variance
             kept = np.zeros_like(kept)
-        names = self.names if len(left) == self.count else tuple(compress(self.names, there))
-        return Clusters((np.cumsum(there) - 1)[index], names, kept)
+        if len(left) == self.count:
+            return Clusters(index, self.names, kept)
+        return Clusters((np.cumsum(there) - 1)[index], tuple(compress(self.names, there)), kept)
 
     def sums(self, values: Floats) -> Floats:
         """Return the sum of each draw's values, (count,)."""

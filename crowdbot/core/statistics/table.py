@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import WITHOUT_RUN, RunRow, ScoreRow
-from crowdbot.core.results.score_columns import ColumnState, Numbered, ScoreColumns
+from crowdbot.core.results.score_columns import ColumnState, Numbered, ScoreColumns, different
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
@@ -250,10 +250,11 @@ class AxisLabels:
         """Collect them from the runs of all rows, None where there is none."""
         there = [(i, run) for i, run in enumerate(runs) if run is not None]
         axes = {}
-        for axis in dict.fromkeys(a for _, run in there for a in run.axes):
+        named, which = different([run.axes for _, run in there])
+        for axis in dict.fromkeys(a for labels in named for a in labels):
             order = Numbered[str]()
-            index = [order.place(run.axes.get(axis, "")) for _, run in there]
-            axes[axis] = tuple(order), np.array(index, np.intp)
+            index = [order.place(labels.get(axis, "")) for labels in named]
+            axes[axis] = tuple(order), np.array(index, np.intp)[which]
         density = [math.nan if run.density is None else run.density for _, run in there]
         rows = np.array([i for i, _ in there], np.intp)
         return AxisLabels(rows=rows, axes=axes, density=np.array(density, np.float64))

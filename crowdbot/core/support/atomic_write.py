@@ -50,5 +50,7 @@ def atomic_parts(path: Path, parts: Iterable[bytes]) -> None:
     Raises:
         InputError: the path cannot be written.
     """
-    with atomic_path(path) as part, part.open("wb") as file:
+    # Emptied, the file would be sent to the disk when it is closed.
+    with atomic_path(path) as part, part.open("r+b") as file:
         file.writelines(parts)
+        file.truncate()  # what a process of the same number left, if any
