@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +38,7 @@ def csv_parts(contents: Contents) -> Iterator[bytes]:
     Texts that many lines share are quoted once. NaN, a value that is not there, is an empty cell.
     """
     axes = [axis["name"] for axis in contents.axes]
-    lines = _Lines.of(ScoreColumns.of(contents.results.scores).by_run)
+    lines = _Lines(ScoreColumns.of(contents.results.scores).by_run)
     yield csv_cells((*_RUN, *(f"axis.{name}" for name in axes), *_SCORE)).encode() + _END
     attempts = iter(contents.attempts)
     while some := [*islice(attempts, _AT_ONCE)]:
@@ -51,84 +49,78 @@ def csv_parts(contents: Contents) -> Iterator[bytes]:
             yield own or _line_without_scores(head, attempt)
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Lines:
-    """Lines of scores that are ordered by run.
+    """Lines of scores that are ordered by run."""
 
-    Attributes:
-        place: id of a run -> its place; its scores are those from ``ends[place]`` on.
-        first: text in front of the first value of a run, by label.
-        between: text from behind a value to the next one, or to the end of the run's lines;
-            ``cut``: what is in it before the comma between bounds.
-        scores: the scores.
-        kind: (n,) place of each score's text in ``between``.
-    """
-
-    place: Mapping[str, int]
-    ends: Sequence[int]
-    first: Sequence[bytes]
-    between: Sequence[bytes]
-    cut: Sequence[int]
-    scores: ScoreColumns
-    kind: NDArray[np.intp]
-
-    @staticmethod
-    def of(scores: ScoreColumns) -> _Lines:
-        """Prepare scores that are ordered by run."""
+    def __init__(self, scores: ScoreColumns) -> None:
+        self._scores = scores
+        self._place = {name: i for i, name in enumerate(scores.run_ids)}
         ends = np.searchsorted(scores.run, np.arange(len(scores.run_ids) + 1))
-        first = [b"%b,%b," % (_START, csv_cells(label[:4]).encode()) for label in scores.labels]
-        state, pairs = _numbered(scores.label, scores.state, len(scores.states))
-        cells = csv_lines((*scores.labels[a][4:], *scores.states[b]) for a, b in pairs)
-        behind = [b",%b," % text.encode() for text in cells]
-        following = np.append(scores.label[1:], len(first))
-        following[ends[1:][ends[1:] > 0] - 1] = len(first)
-        kind, joints = _numbered(state, following, len(first) + 1)
-        before = [*first, b""]
-        return _Lines(
-            place={name: i for i, name in enumerate(scores.run_ids)},
-            ends=ends.tolist(),
-            first=first,
-            between=[b"%b,%b%b" % (behind[a], _END, before[b]) for a, b in joints],
-            cut=[len(behind[a]) for a, _ in joints],
-            scores=scores,
-            kind=kind,
-        )
+        self._ends: list[int] = ends.tolist()
+        firsts = [b"%b,%b," % (_START, csv_cells(label[:4]).encode()) for label in scores.labels]
+        self._firsts = [*firsts, b""]  # the last for the end of a run
+        self._behind = _Texts(self._make_behind)
+        self._between = _Texts(self._make_between)
 
     def of_runs(self, heads: Sequence[bytes], ids: Sequence[str | None]) -> Iterator[bytes]:
         """Yield the lines of some runs, each begun by its head; empty without scores."""
-        places = [None if name is None else self.place.get(name) for name in ids]
-        owns = [range(0) if p is None else range(*self.ends[p : p + 2]) for p in places]
+        places = [None if name is None else self._place.get(name) for name in ids]
+        owns = [range(0) if p is None else range(*self._ends[p : p + 2]) for p in places]
         rows = np.concatenate([np.arange(own.start, own.stop) for own in owns])
-        values, rest, labels = number_texts(self.scores.value[rows]), self._rest(rows), self.first
+        stops = np.cumsum([len(own) for own in owns if own], dtype=np.intp)
+        values, rest = number_texts(self._scores.value[rows]), self._rest(rows, stops)
         start = 0
         for head, own in zip(heads, owns, strict=True):
             stop = start + len(own)
             parts = [b""] * (1 + 2 * len(own))
             parts[1::2], parts[2::2] = values[start:stop], rest[start:stop]
             if own:
-                parts[0] = labels[self.scores.label[own.start]]
+                parts[0] = self._firsts[self._scores.label[own.start]]
             yield b"".join(parts).replace(_START, head)
             start = stop
 
-    def _rest(self, rows: NDArray[np.intp]) -> list[bytes]:
-        """Return the texts behind the values of some scores, with their bounds."""
-        lower, upper, kinds = self.scores.lower[rows], self.scores.upper[rows], self.kind[rows]
-        rest = [*map(self.between.__getitem__, kinds.tolist())]
+    def _rest(self, rows: NDArray[np.intp], stops: NDArray[np.intp]) -> list[bytes]:
+        """Return the texts behind the values of some scores, up to the next value or run.
+
+        Args:
+            rows: (n,) places of the scores.
+            stops: where each run ends among them.
+        """
+        scores = self._scores
+        label, lower, upper = (x[rows] for x in (scores.label, scores.lower, scores.upper))
+        pair = label.astype(np.intp) * len(scores.states) + scores.state[rows]
+        following = np.append(label[1:], 0)[: len(label)]
+        following[stops - 1] = len(scores.labels)
+        numbers = pair * len(self._firsts) + following
+        rest = [*map(self._between.__getitem__, numbers.tolist())]
         for i in (~(np.isnan(lower) & np.isnan(upper))).nonzero()[0].tolist():
+            behind = self._behind[int(pair[i])]
             bounds = b",".join(number_texts(np.array([lower[i], upper[i]])))
-            cut = self.cut[kinds[i]]
-            rest[i] = b"%b%b%b" % (rest[i][:cut], bounds, rest[i][cut + 1 :])
+            rest[i] = b"%b%b%b" % (behind, bounds, rest[i][len(behind) + 1 :])
         return rest
 
+    def _make_behind(self, pair: int) -> bytes:
+        """Return the text between a value and its bounds, by label and state."""
+        label, state = divmod(pair, len(self._scores.states))
+        cells = (*self._scores.labels[label][4:], *self._scores.states[state])
+        return b",%b," % csv_cells(cells).encode()
 
-def _numbered(
-    one: NDArray[np.integer[Any]], other: NDArray[np.integer[Any]], count: int
-) -> tuple[NDArray[np.intp], list[tuple[int, int]]]:
-    """Return the number of each pair (n,), and the different pairs; ``other`` is below count."""
-    pair = one.astype(np.intp) * max(1, count) + other
-    there = np.bincount(pair, minlength=1) > 0
-    pairs = [divmod(k, max(1, count)) for k in np.flatnonzero(there).tolist()]
-    return (np.cumsum(there) - 1)[pair], pairs
+    def _make_between(self, number: int) -> bytes:
+        """Return the text between a value without bounds and the next one, by pair and label."""
+        pair, following = divmod(number, len(self._firsts))
+        return b"%b,%b%b" % (self._behind[pair], _END, self._firsts[following])
+
+
+class _Texts(dict[int, bytes]):
+    """Texts by number, made when they are first asked for."""
+
+    def __init__(self, make: Callable[[int], bytes]) -> None:
+        super().__init__()
+        self._make = make
+
+    def __missing__(self, number: int) -> bytes:
+        self[number] = text = self._make(number)
+        return text
 
 
 def number_texts(numbers: NDArray[np.float64]) -> list[bytes]:

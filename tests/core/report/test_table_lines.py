@@ -54,3 +54,10 @@ def test_lines_are_those_of_a_plain_writer() -> None:
     again = io.StringIO(newline="")
     csv.writer(again).writerows([names, *rows])
     assert again.getvalue() == text
+
+
+def test_runs_without_any_score_have_a_line_each() -> None:
+    report = contents(_varied())
+    bare = replace(report, results=replace(report.results, scores=()))
+    _, *rows = csv.reader(io.StringIO(b"".join(csv_parts(bare)).decode(), newline=""))
+    assert [row[-3] for row in rows[:-1]] == ["not_scored"] * len(report.results.runs)
