@@ -385,11 +385,18 @@ def _listed(folder: str) -> tuple[list[str], set[str]]:
     names, below = list[str](), set[str]()
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
-            if not entry.is_dir():
+            if not _is_folder(entry):
                 names.append(entry.name)
             elif not entry.is_symlink():
                 below.add(entry.name)
     return names, below
+
+
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link to itself
+        return False
 
 
 def _stamp_if_run(folder: str) -> str:

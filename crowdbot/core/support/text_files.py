@@ -85,7 +85,7 @@ def _stands_for(content: bytes) -> str:
     begin = content[:200].removeprefix(b"\xef\xbb\xbf").lstrip().lower()
     if begin.startswith(b"version https://git-lfs"):
         return "it is a pointer of Git LFS; 'git lfs pull' fetches the file"
-    if begin.startswith((b"<!doctype html", b"<html")):
+    if begin.startswith((b"<!doctype", b"<html")):
         return "it is a web page, perhaps the message of a failed download"
     if begin.startswith(b"pk\x03\x04"):
         return "it is a spreadsheet or a zip archive, export or unpack it"
