@@ -27,7 +27,7 @@ class Draws:
     def step(self, obs):
         obs.draw("path", [[0.0, 0.0], [1.0, 0.5]])
         obs.draw("nothing", [])
-        obs.draw("why", [[1.0, 0.0], [2.0, 0.0]], text=["waits", "a\x1b[1m\nb"])
+        obs.draw("why", [[1.0, 0.0], [2.0, 0.0]], text=["waits", "a\\x1b[1m\\nb"])
         obs.draw("here", [[0.0, 0.0]], "one")
         return 0.2, 0.0
 """
