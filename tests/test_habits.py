@@ -8,6 +8,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import pytest
 from ruamel.yaml import YAML
 
 from tests.paths import ROOT
@@ -54,3 +55,19 @@ def test_the_fragments_become_an_entry_of_the_changelog() -> None:
 def test_the_changelog_has_the_place_where_releases_go() -> None:
     mark = PROJECT["tool"]["towncrier"]["start_string"]
     assert (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").count(mark) == 1
+
+
+#: What lies at the top of the repository; files that were tried out do not.
+TOP = {
+    ".ci", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff",
+    "CONTRIBUTING.md", "Containerfile", "LICENSE", "Makefile", "README.md", "benchmarks",
+    "changelog.d", "crowdbot", "docs", "hatch_build.py", "pyproject.toml", "requirements-pip.lock",
+    "requirements.lock", "scenario_specs", "scripts", "tests",
+}  # fmt: skip
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a clone")
+def test_nothing_else_lies_at_the_top() -> None:
+    command = ["git", "ls-files", "-z"]
+    names = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    assert {name.partition("/")[0] for name in names.split("\0") if name} == TOP
