@@ -36,6 +36,3 @@ def write_people(crowd: Indices, count: int, out: Array) -> None:
         out[i, 0], out[i, 1] = people[i].x, people[i].y
         out[i, 2], out[i, 3] = people[i].vx, people[i].vy
         out[i, 4] = traits[i].radius
-
-
-__all__ = ["write_people"]
