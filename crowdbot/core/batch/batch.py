@@ -76,6 +76,7 @@ class Batch:
         count, robots = self.drives.shape[:2]
         self.seen = np.zeros((count, 0, 5))
         self._all, self._slow = np.arange(count), np.zeros(count, np.bool_)
+        self._reads = np.zeros(count, np.bool_)
         self._crowds = np.zeros((count, len(CROWD_FIELDS), ENTRY), np.int64)
         self._robots = np.zeros((count, robots, len(ROBOT_FIELDS), ENTRY), np.int64)
         self._sound = np.ones(count, np.bool_)
@@ -120,6 +121,8 @@ class Batch:
         )  # fmt: skip
         for w in chosen[slow].tolist():
             self._step_slowly(w)
+        for w in fast[self._reads[fast]].tolist() if self._reads.any() else ():
+            self.worlds[w].read(int(self._table[w, k.NOW]))
         if not self._sound.all():
             self._refuse(int(np.flatnonzero(~self._sound)[0]))
 
@@ -158,11 +161,14 @@ class Batch:
         for _ in range(int(self._table[w, k.PERIOD])):
             world.advance_people()
             k.step_robots(w, self._table, self._crowds, self._robots, self._scanners, self.drives)
+            world.read(int(self._table[w, k.NOW]))
         k.meet_people(w, self._table, self._crowds, self.drives)
         self.people(self.seen, np.array([w]))
 
     def _read(self, which: Indices) -> None:
         k.read_scanners(which, self._table, self._crowds, self._scanners)
+        for w in which[self._reads[which]].tolist():
+            self.worlds[w].read(int(self._table[w, k.NOW]))
 
     def _lay_out(self) -> None:
         """Make room for the largest number of groups and scanners of a world."""
@@ -174,6 +180,7 @@ class Batch:
         """Begin a world: its tables, its time, its robots at rest."""
         self._show_tables(w)
         self._table[w, k.NOISE_KEY], self._table[w, k.NOW] = key % _MOST_KEY, 0
+        self.worlds[w].begin_noise(key % _MOST_KEY)
         self._sound[w] = True
         self.drives[w] = 0.0
         self.drives[w, :, _DRIVE["gap"]] = np.inf
@@ -181,7 +188,8 @@ class Batch:
 
     def _show_tables(self, w: int) -> None:
         world, (groups, scanners) = self.worlds[w], self._most
-        row, self._slow[w] = self._table[w], not world.compiled
+        row, self._slow[w] = self._table[w], not (world.compiled and world.steady)
+        self._reads[w] = world.reads
         row[k.FIRST_GROUP], row[k.GROUPS] = w * groups, len(world.groups)
         row[k.FIRST_SCANNER], row[k.SCANNERS] = w * scanners, len(world.scanners)
         row[k.PEOPLE], row[k.PERIOD] = world.people, world.blueprint.period

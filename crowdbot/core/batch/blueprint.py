@@ -27,8 +27,9 @@ from crowdbot.core.types.task import Task
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 
-#: Categories of sensors that batches of worlds simulate.
-SCANNERS = ("lidar", "lidar3d")
+#: Categories of sensors that batches of worlds simulate, and kinds that are called otherwise.
+DISTANCES = ("lidar", "lidar3d", "ultrasound", "infrared", "camera")
+_CATEGORIES = {"lidar2d": "lidar", "rgbd_camera": "camera"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +40,7 @@ class Blueprint:
         scenario: as it was written.
         parts: its place.
         names, models, tasks, tables: of its robots, in order.
-        sensors: lidars that are simulated.
+        sensors: those that are simulated.
         period: ticks between two commands.
     """
 
@@ -84,7 +85,7 @@ def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) ->
     """Resolve a scenario.
 
     Args:
-        sensors: names of the lidars that are simulated, or categories: the first one of each.
+        sensors: names of the sensors that are simulated, or categories: the first one of each.
 
     Raises:
         InputError: there is no robot, a robot lacks a sensor, or batches cannot simulate it.
@@ -100,7 +101,7 @@ def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) ->
             )
     parts = build_environment(registry, scenario.environment)
     models, tasks, tables, seen = [], [], [], []
-    for k, robot in enumerate(scenario.robots.values()):
+    for k, (called, robot) in enumerate(scenario.robots.items()):
         model = build_model(registry, robot.model)
         context = sensor_context(robot, model, parts)
         models.append(model)
@@ -110,7 +111,9 @@ def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) ->
         built = build_sensors(registry, robot.model_copy(update={"sensors": wanted}), context)
         for name, sensor in built.items():
             spec: Any = at_link(wanted[name], model)
-            seen.append(SeenSensor(name=name, robot=k, spec=spec, info=sensor.info()))
+            own = SeenSensor(name=name, robot=k, spec=spec, info=sensor.info(), sensor=sensor)
+            _check_distances(own, f"{scenario.id}: sensor '{name}' of robot '{called}'")
+            seen.append(own)
     return Blueprint(
         scenario=scenario,
         registry=registry,
@@ -128,7 +131,7 @@ def _chosen(scenario: Scenario, k: int, own: Any, wanted: Sequence[str]) -> dict
     """Return the specs of the sensors that are wanted, by name or category.
 
     Raises:
-        InputError: there is no such sensor, or it is not a lidar.
+        InputError: there is no such sensor.
     """
     robot, found = list(scenario.robots)[k], {}
     for name in wanted:
@@ -139,14 +142,25 @@ def _chosen(scenario: Scenario, k: int, own: Any, wanted: Sequence[str]) -> dict
                 f"{scenario.id}: robot '{robot}' has no sensor '{name}'; it has {known}"
             )
         n = name if name in fitting else next(iter(fitting))
-        if _category(fitting[n]) not in SCANNERS:
-            raise InputError(
-                f"{scenario.id}: sensor '{n}' of robot '{robot}' is of kind '{fitting[n].kind}'; "
-                f"batches of worlds simulate lidars only ({', '.join(SCANNERS)})"
-            )
         found[n] = fitting[n]
     return found
 
 
 def _category(spec: Any) -> str:
-    return "lidar" if spec.kind == "lidar2d" else str(spec.kind)
+    return _CATEGORIES.get(spec.kind, str(spec.kind))
+
+
+def _check_distances(seen: SeenSensor, where: str) -> None:
+    """Check that a sensor measures distances, and remembers nothing.
+
+    Raises:
+        InputError: it does not.
+    """
+    info = seen.info
+    if info.category not in DISTANCES or info.memory or info.privileged:
+        raise InputError(
+            f"{where} is of kind '{seen.spec.kind}'; batches of worlds simulate sensors of "
+            f"distances without memory only ({', '.join(DISTANCES)})"
+        )
+    if info.camera is not None and info.camera.colour:
+        raise InputError(f"{where} takes colour images, which batches of worlds do not draw")

@@ -20,7 +20,6 @@ from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.support.records import record_type, rows_of
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import SensorInfo
-from crowdbot.errors import InputError
 
 #: Arrays of a scanner, in the order of the columns below.
 SCANNER_FIELDS = (
@@ -36,6 +35,8 @@ SCANNER_FIELDS = (
     INCIDENCE, BODY,
 ) = range(len(SCANNER_FIELDS))  # fmt: skip
 
+#: Kinds of lidars that are cast in compiled code.
+COMPILED_KINDS = ("lidar2d", "lidar3d")
 #: Kinds of noise that are drawn in compiled code, with the fields of their specs.
 NOISE_KINDS = {
     "gaussian": ("mean", "std"),
@@ -50,12 +51,24 @@ O_ROBOT, O_DISC, O_PLATE, O_PLATES = range(4)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenSensor:
-    """A lidar of a robot: its name, the robot's index, what describes it."""
+    """A sensor of a robot: its name, the robot's index, what describes it, what a run reads."""
 
     name: str
     robot: int
     spec: Any
     info: SensorInfo
+    sensor: Any
+
+    @property
+    def compiled(self) -> bool:
+        """True for level lidars without errors whose noise, if any, is built in."""
+        spec = self.spec
+        return bool(
+            spec.kind in COMPILED_KINDS
+            and mount_tilt(spec.mount) == (0.0, 0.0)
+            and not spec.errors
+            and all(noise.kind in NOISE_KINDS for noise in spec.noise.values())
+        )
 
 
 class ScannerRecord:
@@ -66,7 +79,7 @@ class ScannerRecord:
         least, most: range, m; ``step`` is that of its digits, 0 for none.
         dropout: probability that a beam is lost.
         most_incidence: angle to the normal beyond which a surface is not seen, rad.
-        rate: Hz.
+        rate: Hz; 0 for a sensor that is read outside of compiled code.
         floor: 1 if it sees the floor.
         robot: row of its robot in the crowd's table.
         new: 1 if it was read since the step began.
@@ -93,30 +106,17 @@ SCANNER = record_type(ScannerRecord)
 def scanner_table(
     seen: SeenSensor, models: Sequence[RobotModel], scene: Scene, pool: ScratchPool
 ) -> ArrayTable:
-    """Return the arrays of a lidar.
+    """Return the arrays of a lidar that is `SeenSensor.compiled`.
 
     Args:
         seen: what describes it.
         models: of all robots.
         scene: people and place, with the other robots.
         pool: scratch.
-
-    Raises:
-        InputError: the lidar is tilted, or its noise is drawn by a plugin.
     """
     spec, robot = seen.spec, seen.robot
-    if mount_tilt(spec.mount) != (0.0, 0.0):
-        raise InputError(
-            f"sensor '{seen.name}' is tilted, and batches of worlds cast level fans only"
-        )
-    own = ArrayTable(SCANNER_FIELDS)
-    if spec.errors:
-        raise InputError(
-            f"sensor '{seen.name}' has errors ({', '.join(spec.errors)}), which batches of worlds "
-            "cannot add; they can add noise"
-        )
-    grid = _grid(seen.info)
-    own.put(own=_record(seen, models[robot]), noise=_noise(spec, seen.name))
+    own, grid = ArrayTable(SCANNER_FIELDS), _grid(seen.info)
+    own.put(own=_record(seen, models[robot]), noise=_noise(spec))
     fan = grid.arrays._asdict()
     pool.put(own, **{name: fan.pop(name) for name in ("work", "filled", "directions", "runs")})
     own.put(**fan)
@@ -155,19 +155,10 @@ def _record(seen: SeenSensor, model: RobotModel) -> Any:
     return row
 
 
-def _noise(spec: Any, name: str) -> Any:
-    """Table (K, 4) of a sensor's noise: its kind, and the fields of its spec.
-
-    Raises:
-        InputError: a kind is not drawn in compiled code.
-    """
+def _noise(spec: Any) -> Any:
+    """Table (K, 4) of a sensor's noise: its kind, and the fields of its spec."""
     rows = []
-    for entry, noise in spec.noise.items():
-        if noise.kind not in NOISE_KINDS:
-            raise InputError(
-                f"noise '{entry}' of sensor '{name}' is of kind '{noise.kind}', which batches of "
-                f"worlds cannot draw; they can {', '.join(NOISE_KINDS)}"
-            )
+    for noise in spec.noise.values():
         values = [float(getattr(noise, field)) for field in NOISE_KINDS[noise.kind]]
         rows.append([list(NOISE_KINDS).index(noise.kind), *values, *[0.0] * (3 - len(values))])
     return np.array(rows, np.float64).reshape(-1, 4)

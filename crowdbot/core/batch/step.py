@@ -170,5 +170,6 @@ def _read(world: Indices, crowd: Indices, scanners: Indices) -> None:
     rows = as_rows(floats2(crowd, c.ROBOTS), ROBOT)
     for k in range(world[SCANNERS]):
         own = scanners[world[FIRST_SCANNER] + k]
-        if is_due(world[NOW], as_record(floats1(own, OWN), SCANNER).rate):
+        rate = as_record(floats1(own, OWN), SCANNER).rate
+        if rate > 0.0 and is_due(world[NOW], rate):
             scan(own, people, rows, world[NOW], np.uint64(world[NOISE_KEY] + k))

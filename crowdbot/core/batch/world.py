@@ -17,6 +17,7 @@ from crowdbot.core.batch.crowd_tables import (
 )
 from crowdbot.core.batch.robot_tables import robot_table
 from crowdbot.core.batch.scanner_tables import others_of, scanner_table
+from crowdbot.core.batch.sensor_reader import SensorReader
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import R_YAW
 from crowdbot.core.sensing.scene import Scene
@@ -27,6 +28,8 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.task import Task
 
+_NOBODY = np.zeros((0, s.AGENT_COLUMNS))
+
 
 class BatchWorld:
     """People, robots and scanners of one world; begins at its initial state.
@@ -36,6 +39,7 @@ class BatchWorld:
         engine: its people; None without any.
         robots: (R, 8) rows of the robots as people feel them.
         compiled: True if people decide in compiled code alone.
+        steady: True if no sensor outside of compiled code is due within a step.
         crowd, groups, scanners: arrays for compiled code.
         root: root of the draw; None: the people of the scenario.
         tasks, tables: of its robots, in order; those of the blueprint until `place`.
@@ -70,9 +74,17 @@ class BatchWorld:
         self.groups = (
             group_tables(self.engine, self.robots, pool) if grouped and self.engine else []
         )
+        self._readers = {
+            k: SensorReader(seen, blueprint.names, models, self._scene(seen.robot))
+            for k, seen in enumerate(blueprint.sensors)
+            if not seen.compiled
+        }
+        self.steady = all(r.is_steady(blueprint.period) for r in self._readers.values())
         self.scanners = [
-            scanner_table(seen, models, self._scene(seen.robot), pool) for seen in blueprint.sensors
-        ]
+            self._readers[k].table if k in self._readers
+            else scanner_table(seen, models, self._scene(seen.robot), pool)
+            for k, seen in enumerate(blueprint.sensors)
+        ]  # fmt: skip
 
     @property
     def people(self) -> int:
@@ -96,6 +108,11 @@ class BatchWorld:
         )
         self._put_starts()
 
+    @property
+    def reads(self) -> bool:
+        """Return True if it has sensors outside of compiled code."""
+        return bool(self._readers)
+
     def reset(self) -> None:
         """Return to the initial state."""
         self.flat[:] = self._initial
@@ -105,17 +122,29 @@ class BatchWorld:
         for scanner in self.scanners:
             scanner.arrays["ranges"][:] = np.inf
 
+    def begin_noise(self, key: int) -> None:
+        """Set the key of the random numbers of sensors outside of compiled code."""
+        for reader in self._readers.values():
+            reader.begin(key)
+
+    def read(self, tick: int) -> None:
+        """Read the sensors outside of compiled code that are due at a tick."""
+        if self._readers:
+            rows = self.rows() if self.engine is not None else _NOBODY
+            for reader in self._readers.values():
+                reader.read(rows, self.robots, tick)
+
     def rows(self) -> Array:
         """Return the state of all people (N, C), see `crowdbot.core.crowd.state`; shared memory."""
         return s.view(self.flat)[1]
 
     def advance_people(self) -> None:
         """Advance people by a tick with `CrowdEngine`, who do not decide in compiled code alone."""
-        assert self.engine is not None
-        self.engine.advance(
-            self.flat, self.robots, self.outlines, numbers=np.arange(len(self.robots)),
-            stiffnesses=self.stiffnesses,
-        )  # fmt: skip
+        if self.engine is not None:
+            self.engine.advance(
+                self.flat, self.robots, self.outlines, numbers=np.arange(len(self.robots)),
+                stiffnesses=self.stiffnesses,
+            )  # fmt: skip
 
     def _check(self, tasks: Sequence[Task]) -> None:
         """Check that robots start clear of walls and people, and of each other."""

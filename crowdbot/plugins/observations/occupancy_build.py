@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.plugin.for_learning import LearningContext, RobotInputs, sensor_named
-from crowdbot.plugins.observations.goal_build import SIZE, bounds, goal_and_motion
+from crowdbot.plugin.for_learning import LearningContext, RobotInputs
+from crowdbot.plugins.observations.goal_build import SIZE, bounds, goal_and_motion, lidar_named
 from crowdbot.plugins.observations.occupancy import OccupancySpec
 
 
@@ -15,8 +15,7 @@ class OccupancyGrid:
 
     def __init__(self, spec: OccupancySpec, context: LearningContext) -> None:
         self._spec, self._limits = spec, context.limits
-        self._name = sensor_named(context.sensors, spec.sensor)
-        info = context.sensors[self._name]
+        self._name, info = lidar_named(context, spec.sensor)
         x, y, _, yaw = info.mount
         assert info.angles is not None
         beams = info.angles if info.angles.ndim == 1 else info.angles[..., 0].ravel()

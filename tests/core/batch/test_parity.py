@@ -150,9 +150,58 @@ def test_a_world_begins_again_as_it_began() -> None:
     assert np.array_equal(runs[0], runs[1])
 
 
+#: Sensors that are not cast in compiled code; noise and errors draw the numbers of a run's seed.
+OTHERS = {
+    "tilted": "{kind: lidar2d, rate: 16 Hz, mount: {z: 0.4 m, pitch: 10 deg}, angle_step: 4 deg}",
+    "erring": "{kind: lidar2d, rate: 8 Hz, angle_step: 5 deg, noise: 1 cm, dropout: 0.1, "
+    "mount: {z: 0.3 m}, errors: {a: {kind: gaussian, std: 0.1}}}",
+    "uneven": "{kind: lidar2d, rate: 10 Hz, angle_step: 5 deg, mount: {z: 0.3 m, roll: 5 deg}}",
+    "layers": "{kind: lidar3d, rate: 8 Hz, mount: {z: 0.5 m, pitch: -4 deg}, angle_step: 6 deg}",
+    "infrared": "{kind: infrared, rate: 16 Hz, range_max: 9 m, mount: {z: 0.3 m, yaw: 90 deg}}",
+    "sonar": "{kind: ultrasound, rate: 8 Hz, range_max: 4 m, mount: {z: 0.3 m, pitch: 5 deg}}",
+    "depth": "{kind: rgbd_camera, width: 32, height: 24, noise: 0.0014, mount: {z: 0.4 m}}",
+    "slanted": "{kind: rgbd_camera, width: 16, height: 12, mount: {z: 0.4 m, pitch: 15 deg}}",
+}
+
+
+def with_others() -> crowdbot.Scenario:
+    """The challenge with few people and sensors of many kinds."""
+    added = [f"robots.robot.sensors.{name}={text}" for name, text in OTHERS.items()]
+    return crowdbot.load(*CHALLENGE, set=[KINEMATIC, "crowd.flow.density=0.15", *added])
+
+
+@pytest.mark.parametrize("sensor", ["us0", "us7", *OTHERS])
+def test_any_other_sensor_of_distances_reads_what_it_reads_in_a_run(sensor: str) -> None:
+    found = compare(with_others(), 2.0, [sensor])
+    assert found["robot"] == 0.0
+    assert found["read"] > 0
+    assert found["ranges"] < 1e-9
+
+
+def test_sensors_of_all_kinds_are_read_side_by_side_in_worlds_of_several_threads() -> None:
+    plan = blueprint(with_others(), registry(), ["front_lidar", *OTHERS, "rear_lidar"])
+    pools = [ScratchPool(), ScratchPool()]
+    worlds = [BatchWorld(plan, root, pool) for root, pool in enumerate(pools)]
+    both, alone = Batches(worlds, [4, 5], 2), BatchWorld(plan, 1)
+    one = Batch([alone], [5])
+    for now in commands(20):
+        both.step(now[None].repeat(2, axis=0), np.arange(2))
+        one.step(now[None])
+    both.close()
+    for mine, other in zip(alone.scanners, worlds[1].scanners, strict=True):
+        assert np.array_equal(mine.arrays["ranges"], other.arrays["ranges"])
+    assert sum(np.isfinite(s.arrays["ranges"]).any() for s in alone.scanners) >= 8
+    assert not np.array_equal(
+        worlds[0].scanners[2].arrays["ranges"], worlds[1].scanners[2].arrays["ranges"]
+    )
+
+
 def test_a_sensor_that_batches_cannot_simulate_is_named() -> None:
-    scenario = crowdbot.load(*CHALLENGE)
-    with pytest.raises(InputError, match=r"sensor 'camera' .*rgbd_camera.*lidars only"):
+    colour = "robots.robot.sensors.camera.colour=true"
+    scenario = crowdbot.load(*CHALLENGE, set=colour)
+    with pytest.raises(InputError, match=r"sensor 'imu' .*kind 'imu'.*sensors of distances"):
+        blueprint(scenario, registry(), ["imu"])
+    with pytest.raises(InputError, match=r"sensor 'camera' .*takes colour images"):
         blueprint(scenario, registry(), ["camera"])
     with pytest.raises(InputError, match=r"no sensor 'radar'; it has 'camera'"):
         blueprint(scenario, registry(), ["radar"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 from crowdbot.core.learning.seen import LearningContext, RobotInputs
 from crowdbot.core.types.robot import RobotBody, RobotLimits
-from crowdbot.core.types.sensor import SensorInfo
+from crowdbot.core.types.sensor import Pinhole, SensorInfo
 from crowdbot.errors import InputError
 from crowdbot.plugins.observations.lidar_stack import LidarStackSpec
 from crowdbot.plugins.observations.lidar_stack_build import build
@@ -66,3 +67,22 @@ def test_further_lidars_follow_in_each_scan() -> None:
 def test_a_lidar_that_is_not_there_is_named() -> None:
     with pytest.raises(InputError, match="no sensor 'left'"):
         build(LidarStackSpec(sensor="front", others=("left",)), context())
+
+
+def test_a_depth_camera_sees_what_stands_but_not_the_floor() -> None:
+    camera = SensorInfo(
+        category="camera", frame="camera", mount=(0.0, 0.0, 0.4, 0.0), rate=8.0, shape=(2, 4),
+        ros_type="sensor_msgs/msg/Image", range_min=0.3,
+        camera=Pinhole(width=4, height=2, focal=2.0),
+    )  # fmt: skip
+    spec = LidarStackSpec(sensor="camera", sectors=4, scans=1, range=4.0)
+    observer = build(spec, replace(context(), sensors={"camera": camera}))
+    # The lower row looks down by 1 in 4: at 2 m it sees the floor, at 0.8 m what is 0.2 m high.
+    depth = np.array([[[2.0, np.inf, 3.0, 0.0], [2.0, 0.8, 2.0, 2.0]]])
+    seen = RobotInputs(
+        fresh=np.array([True]), stepped=np.array([False]), pose=np.zeros((1, 3)),
+        twist=np.zeros((1, 3)), goal=np.ones((1, 2)), readings={"camera": depth},
+    )  # fmt: skip
+    left = np.hypot(1.0, [0.75, 0.25, 0.25, 0.75])
+    wanted = left * [2.0, 0.8, 3.0, 0.3] / 4.0
+    assert observer.observe(seen)[0, :4] == pytest.approx(wanted[::-1])
