@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.batch import step_change as c
 from crowdbot.core.batch.parallel import Batches
-from crowdbot.core.batch.robot_tables import DRIVE_STATE
-from crowdbot.core.crowd.contact.robot_contact import R_W, R_YAW, RVX, RVY
-from crowdbot.core.learning.actions import action_size, commands_of
+from crowdbot.core.learning.actions import action_size, bounds_of, commands_between
 from crowdbot.core.learning.build import build_observer, build_reward
 from crowdbot.core.learning.conventions import Conventions, conventions_of
 from crowdbot.core.learning.seen import LearningContext, RobotInputs, StepChange
@@ -22,7 +22,23 @@ from crowdbot.core.types.task import Task
 from crowdbot.rl.env_setup import EnvSetup
 
 Vectors = NDArray[np.float32]
-_DRIVE = {name: column for column, name in enumerate(DRIVE_STATE.names)}
+
+
+@dataclass(frozen=True, slots=True)
+class StepResult:
+    """Outcome of a step, world by world; False and 0 where none was taken.
+
+    Attributes:
+        reward: (W,).
+        arrived: (W,) True where the robot has entered its goal zone in this step or before.
+        touched: (W,) True where a person touched it in this step.
+        late: (W,) True where its time is over and it has not arrived.
+    """
+
+    reward: Array
+    arrived: Mask
+    touched: Mask
+    late: Mask
 
 
 class Actor:
@@ -53,7 +69,7 @@ class Actor:
         self._observer = build_observer(setup.registry, setup.observation, self.context)
         self._reward = build_reward(setup.registry, setup.reward, self.context)
         self.low, self.high = self._observer.low, self._observer.high
-        self.size = action_size(model.limits)
+        self.size, self._bounds = action_size(model.limits), bounds_of(model.limits)
         self._goals, self._before = np.zeros((worlds, 2)), np.zeros((worlds, 3))
         self._distance, self._limits = np.zeros(worlds), np.zeros(worlds, np.int64)
 
@@ -72,52 +88,37 @@ class Actor:
 
     def commands(self, actions: Array) -> Array:
         """Return commands v, w, vy (W, 3) of actions (W, `size`), m/s and rad/s."""
-        return commands_of(actions, self.context.limits)
+        return commands_between(np.ascontiguousarray(actions, np.float64), *self._bounds)
 
-    def news(self, batches: Batches) -> Array:
-        """Return (W, D) `DriveStateRecord` of the robot after a step, a copy."""
-        return batches.drives[:, self._robot].copy()
-
-    def reward(self, news: Array, rows: Array, given: Array, here: Mask) -> Array:
-        """Return the rewards (W,) of a step; 0 where no step was taken.
+    def result(self, batches: Batches, rows: Array, given: Array, here: Mask) -> StepResult:
+        """Return the outcome of a step.
 
         Args:
-            news: as of `news`.
             rows: (W, R, 8) of all robots after it.
             given: (W, 3) commands.
             here: (W,) True for worlds that were stepped.
         """
-        away = self._goals - rows[:, self._robot, :2]
-        distance = np.hypot(away[:, 0], away[:, 1])
-        progress, self._distance = self._distance - distance, distance
-        ticks = self.context.step / TICK
+        found, happened = c.changes(self._worlds)
+        c.write_changes(
+            batches.drives, rows, self._robot, self._goals, self._distance, here,
+            batches.ticks, self._limits, self.context.step / TICK, found, happened,
+        )  # fmt: skip
+        arrived, touched, late = happened
         change = StepChange(
-            progress=progress,
-            distance=distance,
-            arrived=self.arrived(news) & here,
-            contact=news[:, _DRIVE["touched"]] / ticks,
-            wall=news[:, _DRIVE["blocked"]] / ticks,
-            gap=news[:, _DRIVE["gap"]],
-            advance=news[:, _DRIVE["advance"]],
-            work=news[:, _DRIVE["work"]],
+            progress=found[c.PROGRESS],
+            distance=found[c.DISTANCE],
+            arrived=arrived,
+            contact=found[c.CONTACT],
+            wall=found[c.WALL],
+            gap=found[c.GAP],
+            advance=found[c.ADVANCE],
+            work=found[c.WORK],
             command=given,
-            before=self._before,
+            before=self._before.copy(),
         )
-        found = np.where(here, self._reward.of(change), 0.0)
-        self._before = np.where(here[:, np.newaxis], given, self._before)
-        return np.asarray(found)
-
-    def arrived(self, news: Array) -> Mask:
-        """Return (W,) True where the robot has entered its goal zone in this step or before."""
-        return np.asarray(news[:, _DRIVE["arrived"]] >= 0.0)
-
-    def touched(self, news: Array) -> Mask:
-        """Return (W,) True where a person touched the robot in the last step."""
-        return np.asarray(news[:, _DRIVE["touched"]] > 0.0)
-
-    def late(self, batches: Batches) -> Mask:
-        """Return (W,) True where the time limit is over."""
-        return np.asarray(batches.now >= self._limits)
+        reward = np.where(here, self._reward.of(change), 0.0)
+        c.keep_commands(given, here, self._before)
+        return StepResult(reward, arrived, touched, late)
 
     def look(
         self, batches: Batches, rows: Array, fresh: Mask, stepped: Mask, people: Array
@@ -129,17 +130,13 @@ class Actor:
             fresh, stepped: (W,) as of `RobotInputs`.
             people: (W, M, 5) as of `RobotInputs`.
         """
-        own = rows[:, self._robot]
-        cos, sin = np.cos(own[:, R_YAW]), np.sin(own[:, R_YAW])
-        twist = np.empty((self._worlds, 3))
-        twist[:, 0] = cos * own[:, RVX] + sin * own[:, RVY]
-        twist[:, 1] = own[:, R_W]
-        twist[:, 2] = cos * own[:, RVY] - sin * own[:, RVX]
+        pose, twist = np.empty((2, self._worlds, 3))
+        c.write_motion(rows, self._robot, pose, twist)
         return self._observer.observe(
             RobotInputs(
                 fresh=fresh,
                 stepped=stepped,
-                pose=own[:, [0, 1, R_YAW]],
+                pose=pose,
                 twist=twist,
                 goal=self._goals,
                 readings={seen.name: self._ranges(batches, k, seen) for k, seen in self._sensors},

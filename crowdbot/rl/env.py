@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -29,6 +30,7 @@ class NavEnv(Env):
     metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": 16}
 
     def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
+        self._made = partial(type(self), render_mode=render_mode, **arguments)
         self._one = NavVectorEnv(1, autoreset_mode=DISABLED, render_mode=render_mode, **arguments)
         self.render_mode = render_mode
         self.observation_space = self._one.single_observation_space
@@ -64,6 +66,10 @@ class NavEnv(Env):
         return (
             observed[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first(infos),
         )  # fmt: skip
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the arguments alone: the copy has not begun yet."""
+        return self._made, ()
 
     def render(self) -> Any:
         """Return a picture (H, W, 3) uint8 of the world from above, if asked for."""

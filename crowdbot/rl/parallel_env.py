@@ -87,15 +87,14 @@ class ParallelNavEnv(ParallelEnv):
         rollout, here = self.rollout, np.ones(1, np.bool_)
         rollout.advance(np.stack(rows, axis=1), np.zeros(1, np.int64))
         going = {name: self._actors[name] for name in self.agents}
-        news = {n: a.news(rollout.batches) for n, a in going.items()}
-        rewards = {
-            n: float(a.reward(news[n], rollout.rows, given[n], here)[0]) for n, a in going.items()
+        found = {
+            n: a.result(rollout.batches, rollout.rows, given[n], here) for n, a in going.items()
         }
-        done = {n: bool(a.arrived(news[n])[0]) for n, a in going.items()}
-        late = {n: bool(a.late(rollout.batches)[0]) and not done[n] for n, a in going.items()}
+        rewards = {n: float(r.reward[0]) for n, r in found.items()}
+        done = {n: bool(r.arrived[0]) for n, r in found.items()}
+        late = {n: bool(r.late[0]) for n, r in found.items()}
         infos = {
-            n: {"is_success": done[n], "touched": bool(a.touched(news[n])[0])}
-            for n, a in going.items()
+            n: {"is_success": done[n], "touched": bool(r.touched[0])} for n, r in found.items()
         }
         observed = self._observe(fresh=False)
         self._show()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,26 +12,10 @@ from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.errors import InputError
-from crowdbot.rl.actor import Actor, Vectors
+from crowdbot.rl.actor import Actor, StepResult, Vectors
 from crowdbot.rl.env_setup import EnvSetup
 from crowdbot.rl.episodes import Episode, EpisodeCourse
 from crowdbot.rl.scatter import scatter
-
-
-@dataclass(frozen=True, slots=True)
-class StepResult:
-    """Outcome of a step, world by world.
-
-    Attributes:
-        reward: (W,).
-        arrived, touched, late: (W,) True for robots that arrived, that were touched in this step,
-            and whose time is over.
-    """
-
-    reward: Array
-    arrived: Mask
-    touched: Mask
-    late: Mask
 
 
 class Rollout:
@@ -101,7 +84,7 @@ class Rollout:
     def _gather(self) -> None:
         """Read robots and, if they are observed, people of worlds that have begun."""
         self.batches.robots(self.rows)
-        if self.setup.observation.privileged:
+        if self.setup.observation.privileged or self.setup.observation.tracks:
             most = int(self._people.max(initial=0))
             if self._seen.shape[1] != most:
                 self._seen = np.zeros((len(self._people), most, 5))
@@ -157,14 +140,7 @@ class Rollout:
         self.advance(given[:, np.newaxis], which)
         here = np.zeros(len(actions), np.bool_)
         here[which] = True
-        news = actor.news(batches)
-        arrived = actor.arrived(news) & here
-        return StepResult(
-            reward=actor.reward(news, self.rows, given, here),
-            arrived=arrived,
-            touched=actor.touched(news) & here,
-            late=actor.late(batches) & here & ~arrived,
-        )
+        return actor.result(batches, self.rows, given, here)
 
     def look(self, fresh: Mask, stepped: Mask, robot: int = 0) -> Vectors:
         """Return the observations (W, N) of a robot of each world.

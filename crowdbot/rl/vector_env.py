@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,12 +10,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core.types.arrays import Mask
 from crowdbot.errors import InputError
-from crowdbot.rl.actor import Vectors
+from crowdbot.rl.actor import StepResult, Vectors
 from crowdbot.rl.env_setup import resolve
 from crowdbot.rl.episodes import seeds_of
 from crowdbot.rl.libraries import DISABLED, NEXT_STEP, SAME_STEP, VectorEnv, gym
 from crowdbot.rl.picture import picture
-from crowdbot.rl.rollout import Rollout, StepResult
+from crowdbot.rl.rollout import Rollout
 from crowdbot.rl.window import RENDER_MODES, Window, check_render_mode
 
 
@@ -55,6 +56,10 @@ class NavVectorEnv(VectorEnv):
         if num_envs < 1 or threads < 1:
             raise InputError("num_envs and threads must be at least 1")
         check_render_mode(render_mode)
+        self._made = partial(
+            type(self), num_envs, autoreset_mode=autoreset_mode, threads=threads,
+            max_episode_steps=max_episode_steps, render_mode=render_mode, **arguments,
+        )  # fmt: skip
         mode = gym.vector.AutoresetMode(autoreset_mode)
         self.metadata = {**type(self).metadata, "autoreset_mode": mode}  # type: ignore[misc]
         self.num_envs, self.render_mode, self.autoreset_mode = num_envs, render_mode, mode
@@ -177,11 +182,12 @@ class NavVectorEnv(VectorEnv):
         touched = none if result is None else result.touched
         values = {
             "t": self.rollout.time,
-            "is_success": arrived.copy(),
-            "touched": touched.copy(),
+            "is_success": arrived,
+            "touched": touched,
             "scenario": self.rollout.scenarios.copy(),
         }
-        return {**values, **{f"_{name}": which.copy() for name in values}}
+        here = which.copy()
+        return {**values, **{f"_{name}": here for name in values}}
 
     def _mask(self, given: Any) -> Mask:
         if given is None:
@@ -200,6 +206,10 @@ class NavVectorEnv(VectorEnv):
         if self.render_mode != "rgb_array":
             return None
         return tuple(picture(self.rollout, w) for w in range(self.num_envs))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the arguments alone: the copy has not begun yet."""
+        return self._made, ()
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""

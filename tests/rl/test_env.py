@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 from typing import Any
@@ -190,7 +191,8 @@ def test_levels_choose_scenarios() -> None:
     [
         ({"observation": "lidarstack"}, "unknown observation 'lidarstack'; did you mean"),
         ({"reward": {"kind": "progress", "tme": 1}}, "reward 'progress': tme"),
-        ({"observation": {"kind": "lidar_stack", "sensor": "us0"}}, "ultrasound.*lidars only"),
+        ({"observation": {"kind": "occupancy", "sensor": "us0"}}, "a lidar is wanted"),
+        ({"observation": {"kind": "lidar_stack", "sensor": "imu"}}, "kind 'imu'.*of distances"),
         ({"draws": 0}, "at least 1"),
         ({"contact": "stop"}, "'go_on' or 'end'"),
         ({"scenario": "nowhere"}, "nowhere"),
@@ -211,6 +213,16 @@ def test_wrong_actions_are_named() -> None:
         env.step(np.zeros((3, 2)))
     with pytest.raises(InputError, match="not finite"):
         env.step(np.full((2, 2), np.nan))
+
+
+@pytest.mark.parametrize("made", [lambda: rl.NavEnv(**FEW), lambda: rl.NavVectorEnv(2, **FEW)])
+def test_a_pickled_environment_begins_anew_with_the_same_arguments(made: Any) -> None:
+    env = made()
+    again = pickle.loads(pickle.dumps(env))  # noqa: S301 - our own
+    for one in (env, again):
+        one.reset(seed=3)
+    action = np.full(env.action_space.shape, 0.3)
+    assert np.array_equal(env.step(action)[0], again.step(action)[0])
 
 
 def test_crowdbot_does_not_import_gymnasium() -> None:

@@ -82,3 +82,21 @@ def test_what_it_learns_is_a_planner_in_both_forms(tmp_path: Path) -> None:
     other = rl.StableVecEnv(1, **{**FEW, "observation": "lidar_stack"})
     with pytest.raises(InputError, match=r"does not take observations|returns shape"):
         rl.save_onnx(model, other, tmp_path / "wrong.onnx")
+
+
+@pytest.mark.slow
+def test_worlds_in_processes_of_their_own_are_the_same() -> None:
+    from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv
+
+    seen: list[Any] = []
+    for kind in (DummyVecEnv, SubprocVecEnv):
+        worlds = kind([_nav, _nav])
+        worlds.seed(5)
+        seen.append([worlds.reset(), *(worlds.step(np.full((2, 2), 0.3))[0] for _ in range(3))])
+        worlds.close()
+    assert np.array_equal(*seen)
+    assert not np.array_equal(seen[0][0][0], seen[0][0][1])
+
+
+def _nav() -> Any:
+    return rl.NavEnv(**FEW)

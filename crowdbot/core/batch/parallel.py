@@ -98,6 +98,11 @@ class Batches:
         return np.concatenate([batch.commands for batch in self._batches])
 
     @property
+    def ticks(self) -> Indices:
+        """Return what `now` returns, shared memory."""
+        return self._shared.table[:, NOW]
+
+    @property
     def now(self) -> Indices:
         """Return (W,) ticks of 1/128 s since each world began, a copy."""
         return self._shared.table[:, NOW].copy()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotLimits
 
@@ -18,11 +19,26 @@ def commands_of(actions: Array, limits: RobotLimits) -> Array:
 
     -1 is the least of a limit, 1 its largest.
     """
+    return commands_between(np.ascontiguousarray(actions, np.float64), *bounds_of(limits))
+
+
+def bounds_of(limits: RobotLimits) -> tuple[Array, Array]:
+    """Return the least and the largest v, w, vy (3,), m/s and rad/s."""
     least = np.array([limits.v_min, -limits.w_max, -limits.vy_max])
-    most = np.array([limits.v_max, limits.w_max, limits.vy_max])
-    shares = np.full((len(actions), 3), 0.5)
-    shares[:, : actions.shape[1]] = 0.5 * (np.clip(actions, -1.0, 1.0) + 1.0)
-    return np.asarray(least + shares * (most - least))
+    return least, np.array([limits.v_max, limits.w_max, limits.vy_max])
+
+
+@array_kernel
+def commands_between(actions: Array, least: Array, most: Array) -> Array:
+    """As `commands_of`, between bounds (3,)."""
+    found = np.empty((actions.shape[0], 3))
+    for w in range(actions.shape[0]):
+        for k in range(3):
+            share = 0.5
+            if k < actions.shape[1]:
+                share = 0.5 * (min(1.0, max(-1.0, actions[w, k])) + 1.0)
+            found[w, k] = least[k] + share * (most[k] - least[k])
+    return found
 
 
 def actions_of(commands: Array, limits: RobotLimits) -> Array:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.learning.bounded import write_bounded
 from crowdbot.core.learning.seen import LearningContext, RobotInputs, StepChange
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
@@ -16,6 +17,8 @@ from crowdbot.dsl.spec.component_specs import ObservationSpec, RewardSpec
 from crowdbot.errors import PluginError
 
 Vectors = NDArray[np.float32]
+#: Numbers of a person.
+_PERSON = 5
 
 
 class Observer(Protocol):
@@ -50,7 +53,8 @@ class CheckedObserver:
 
     def __init__(self, observer: Observer, worlds: int, call: PluginCall) -> None:
         self._observer, self._worlds, self._call = observer, worlds, call
-        self.low, self.high = observer.low, observer.high
+        self.low = np.ascontiguousarray(observer.low)
+        self.high = np.ascontiguousarray(observer.high)
 
     @property
     def size(self) -> int:
@@ -67,9 +71,27 @@ class CheckedObserver:
             found = np.asarray(self._observer.observe(seen), np.float32)
         if found.shape != (self._worlds, self.size):
             self._call.fail(f"observed shape {found.shape}, not {(self._worlds, self.size)}")
-        if not np.isfinite(found).all():
+        bounded = np.empty_like(found, order="C")
+        if not write_bounded(np.ascontiguousarray(found), self.low, self.high, bounded):
             self._call.fail("observed a number that is not finite")
-        return cast(Vectors, np.clip(found, self.low, self.high))
+        return bounded
+
+    def tracker(self) -> Callable[[Any], Array]:
+        """Return a tracker: from an observation of a planner to people (M, 5) as of `RobotInputs`.
+
+        Only for observations whose spec has ``tracks``.
+        """
+        with self._call("tracker"):
+            follow = cast(Any, self._observer).tracker()
+
+        def people(obs: Any) -> Array:
+            with self._call("tracker", obs.t):
+                found = np.asarray(follow(obs), np.float64)
+            if found.ndim != 2 or found.shape[1] != _PERSON or not np.isfinite(found).all():
+                self._call.fail(f"followed people of shape {found.shape}, not (M, {_PERSON})")
+            return found
+
+        return people
 
 
 class CheckedReward:
@@ -104,6 +126,8 @@ def build_observer(
     """
     call = registry.plugin_call(spec)
     built = registry.build(spec, _checked_observer, context, call=call)
+    if spec.tracks:
+        _need(built, "tracker")
     return CheckedObserver(built, context.worlds, call)
 
 

@@ -260,6 +260,9 @@ class ObservationSpec(ComponentSpec):
     category: ClassVar[str] = "observation"
     #: True if it holds what no real sensor measures; a planner that observes so is privileged.
     privileged: ClassVar[bool] = False
+    #: True if it holds people whom the people tracker follows in its lidars; in a batch of worlds,
+    #: where there is no tracker, it gets all people instead.
+    tracks: ClassVar[bool] = False
 
     @property
     def needs(self) -> tuple[str, ...]:

@@ -20,6 +20,9 @@ class ProgressSpec(RewardSpec):
     arrival: Amount = Field(default=5.0, description="For arriving, a number.")
     time: Amount = Field(default=0.05, description="Taken off for each second, 1/s.")
     contact: Amount = Field(default=5.0, description="Taken off for each second of contact, 1/s.")
+    touch: Amount = Field(
+        default=0.0, description="Taken off for each step in which a person touches it, a number."
+    )
     wall: Amount = Field(
         default=1.0, description="Taken off for each second stopped by a wall, 1/s."
     )

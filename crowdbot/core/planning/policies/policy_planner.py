@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from crowdbot.core.learning.conventions import Conventions
 from crowdbot.core.learning.seen import LearningContext, RobotInputs
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.support.immutable import immutable
+from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command
 from crowdbot.core.types.robot import RobotBody, RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
@@ -40,6 +43,7 @@ class PolicyPlanner:
         self._policy, self._conventions, self._name = policy, conventions, name
         self._registry = registry
         self._observer: CheckedObserver | None = None
+        self._people: Callable[[Any], Array] | None = None
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -67,8 +71,11 @@ class PolicyPlanner:
                 f"{self._name} acts by {', '.join(own.action)}, and this robot's commands have "
                 f"{action_size(limits)} numbers"
             )
-        self._limits, self._sensors, self._observer = limits, tuple(used), observer
+        observer.observe(_nothing(used, own.observation.tracks))  # compiles what is not yet
+        self._observer = build_observer(self._registry, own.observation, context)
+        self._limits, self._sensors = limits, tuple(used)
         self._steps = 0
+        self._people = observer.tracker() if own.observation.tracks else None
 
     def step(self, obs: Observation) -> Command:
         """Return the command of the policy's action.
@@ -92,6 +99,8 @@ class PolicyPlanner:
             pose = truth.pose
             rows = [truth.people, truth.people_velocity, truth.people_radius[:, np.newaxis]]
             people = np.concatenate(rows, axis=1)[np.newaxis]
+        elif self._people is not None:
+            people = self._people(obs)[np.newaxis]
         readings = {
             name: obs.readings[name].values[np.newaxis]
             for name in self._sensors
@@ -109,3 +118,16 @@ class PolicyPlanner:
             readings=readings,
             people=people,
         )
+
+
+def _nothing(sensors: Mapping[str, SensorInfo], tracks: bool) -> RobotInputs:
+    """Return what a robot sees that has nothing around it."""
+    return RobotInputs(
+        fresh=np.array([True]),
+        stepped=np.array([False]),
+        pose=np.zeros((1, 3)),
+        twist=np.zeros((1, 3)),
+        goal=np.ones((1, 2)),
+        readings={n: immutable(np.full((1, *i.shape), np.inf)) for n, i in sensors.items()},
+        people=np.zeros((1, int(tracks), 5)),
+    )
