@@ -22,10 +22,12 @@ BIN := .venv/bin
 WORKERS = $(shell $(PYTHON) -c "import os; print(1 + (os.cpu_count() or 1))")
 READY := .venv/ready-$(shell cat requirements-pip.lock requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
-# pip would use one core for this, for half of the set-up; a third are tests of packages. It fails
-# where a package has templates, which are not Python. Ours too: where the environment forbids
-# Python to write byte code, each process would translate all of it.
-BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/'
+# pip would use one core for this, for half of the set-up; a third are tests of packages, and half
+# of the rest is what few processes import, if any, which write it then. It fails where a package
+# has templates, which are not Python. Ours too: where the environment forbids Python to write byte
+# code, each process would translate all of it.
+SELDOM := IPython|autobahn|casadi|coacd|dask|debugpy|distributed|docutils|duckdb|fontTools|gymnasium|jedi|mosek|mypyc?|onnxruntime|pandas|pip|playwright|prompt_toolkit|setuptools|snowballstemmer|sphinx|tornado|twisted
+BYTE_CODE := $(BIN)/python -m compileall -qq -j 0 -x '/tests?/|/site-packages/($(SELDOM))/'
 
 JS := scripts/js
 JS_READY := $(JS)/node_modules/.package-lock.json
