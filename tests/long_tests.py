@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-#: The longest tests, 11 minutes of processor time together.
+#: The longest tests, 12 minutes of processor time together.
 LONG = (
     "tests/core/statistics/test_power.py::test_so_many_draws_find_it_in_four_cases_of_five",
     "tests/core/support/test_gc_throttle.py::test_many_new_objects_are_made_without_a_collection",
@@ -71,10 +71,32 @@ LONG = (
     "tests/dsl/test_mutations.py::test_refused_or_understood",
     "tests/dsl/test_safety.py::test_document",
     "tests/dsl/schema/test_documents.py::test_what_the_schema_refuses_validate_refuses",
+    "tests/cli/test_campaign.py::test_killed_and_resumed_it_ends_the_same",
+    # A quicker test of `make test` guards most of what these do.
+    "tests/cli/test_hostile_packages.py::test_a_build_that_does_not_resolve",
+    "tests/cli/test_planner_processes.py::test_the_planner_is_killed",
+    "tests/cli/test_planner_processes.py::test_the_simulator_is_killed",
+    "tests/cli/test_planner_safety.py::test_nothing_that_a_planner_says_reaches_stdout",
+    "tests/cli/test_plugin_paths.py::test_without_pytest_the_checks_say_what_is_missing",
+    "tests/cli/test_verify_command.py::test_foreign_versions_are_compared_within_tolerance",
+    "tests/cli/test_verify_command.py::test_runs_made_from_python_are_verified",
+    "tests/core/planning/test_host.py::test_a_stubborn_step_ends_the_process",
+    "tests/core/support/compiling/test_compile_parts.py::test_a_caller_is_compiled_of_what_was_read",
+    "tests/core/support/compiling/test_compile_parts.py::test_reading_leaves_out_what_only",
+    "tests/core/support/test_compile_cache.py::test_a_class_that_was_renamed_is_compiled_again",
 )
 
 #: More cases of what `make test` tries with a few: 55 s of processor time.
 VARIANTS = (
+    "tests/cli/test_failing_components.py::test_the_message_names_the_component[metric is not",
+    "tests/cli/test_failing_components.py::test_the_message_names_the_component[metric leaves",
+    "tests/cli/test_failing_components.py::test_the_message_names_the_component[policy overflows",
+    "tests/cli/test_failing_components.py::test_the_message_names_the_component[reading without",
+    "tests/cli/test_failing_components.py::test_the_message_names_the_component[sensor leaves",
+    "tests/cli/test_plugin_paths.py::test_a_project_or_its_package[src-True]",
+    "tests/cli/test_plugin_paths.py::test_projects_without_a_plugin[= 3-",
+    # .ci/run simulates with plain numba, too.
+    "tests/core/support/compiling/test_compile.py::test_plain_numba_leaves_compile_parts_out[True]",
     "tests/core/planning/containment/test_contained.py::test_an_older_landlock_denies_as_much[4]",
     "tests/core/planning/containment/test_contained.py::test_an_older_landlock_denies_as_much[5]",
     "tests/core/planning/containment/test_what_is_left.py::test_what_is_left[killed1]",

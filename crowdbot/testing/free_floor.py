@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections import deque
+from functools import cached_property
 
 import numpy as np
+from scipy.ndimage import label
 
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 
 #: Side of a grid cell; radius of the robot for the check, m.
 CELL = 0.1
-_AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1))
 #: Largest number of cells along a side; larger places get larger cells.
 _MOST = 600
 _BEAMS = 360
@@ -84,26 +84,28 @@ class FreeFloorGrid:
         x, y = centres[int(np.argmax(gap))].tolist()
         return x, y
 
+    @cached_property
+    def _areas(self) -> tuple[Array, Array]:
+        """Return the centres (nx, ny, 2) of all cells, and a number for each connected free area.
+
+        Zero where something stands.
+        """
+        centres, shape = self.cells()
+        numbers, _ = label((self.clearance(centres) > CELL).reshape(shape))
+        return centres.reshape(*shape, 2), np.asarray(numbers)
+
     def way_out(self, x: float, y: float) -> tuple[float, float] | None:
         """Return where a robot that starts at a point leaves the walls' box; None if it cannot."""
-        centres, shape = self.cells()
-        free = (self.clearance(centres) > CELL).reshape(shape)
-        start = np.argmin(np.hypot(centres[:, 0] - x, centres[:, 1] - y))
-        first = divmod(int(start), shape[1])
-        seen = np.zeros(shape, np.bool_)
-        queue = deque([first])
-        seen[first] = True
-        while queue:
-            i, j = queue.popleft()
-            if i in (0, shape[0] - 1) or j in (0, shape[1] - 1):
-                out = centres[i * shape[1] + j]
-                return float(out[0]), float(out[1])
-            for di, dj in _AROUND:
-                there = (i + di, j + dj)
-                if free[there] and not seen[there]:
-                    seen[there] = True
-                    queue.append(there)
-        return None
+        centres, areas = self._areas
+        distance = np.hypot(centres[..., 0] - x, centres[..., 1] - y)
+        nearest = int(np.argmin(np.where(areas > 0, distance, np.inf)))
+        border = np.ones(areas.shape, np.bool_)
+        border[1:-1, 1:-1] = False
+        outside = border & (areas > 0) & (areas == areas.flat[nearest])
+        if not outside.any():
+            return None
+        out = centres.reshape(-1, 2)[int(np.argmin(np.where(outside, distance, np.inf)))]
+        return float(out[0]), float(out[1])
 
 
 def viewpoints(parts: EnvironmentParts) -> list[tuple[float, float]]:
