@@ -27,7 +27,6 @@ def print_result(run: Run, *, as_json: bool, everything: bool) -> None:
     """Print a run on stdout.
 
     Args:
-        run: the run.
         as_json: True for its record and scores as JSON.
         everything: True for all scores, otherwise four.
     """

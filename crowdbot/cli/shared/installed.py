@@ -17,7 +17,6 @@ def installed(
     """Return the registry for a command.
 
     Args:
-        plugin: paths of plugins.
         no_plugins: ignore installed plugins.
         strict: raise for a given plugin that failed; otherwise list it as failed.
 

@@ -79,7 +79,6 @@ def find_targets(
 
     Args:
         scenario: with its robots.
-        parts: its environment.
         people: drawn from it.
 
     Raises:

@@ -37,7 +37,6 @@ class PersonWatch:
 
         Args:
             t: s.
-            robot: its state.
             crowd: the flat state of the crowd.
         """
         person = person_in(crowd, self._target)

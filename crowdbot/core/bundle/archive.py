@@ -151,6 +151,21 @@ class Archive:
             raise InputError(f"{self.path}: {name} is damaged: {error}") from None
 
 
+def open_zip(path: Path, what: str) -> zipfile.ZipFile:
+    """Open a zip file; ``what`` it is to be stands in errors.
+
+    Raises:
+        InputError: missing file, or not a zip file.
+    """
+    try:
+        open_file(path).close()
+        return zipfile.ZipFile(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from None
+    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+        raise InputError(f"{path} is not {what}: {error}") from None
+
+
 @contextmanager
 def open_archive(path: Path) -> Iterator[Archive]:
     """Open a bundle; names, sizes and the manifest are checked before anything else.
@@ -158,14 +173,7 @@ def open_archive(path: Path) -> Iterator[Archive]:
     Raises:
         InputError: missing file, not a bundle, or not written by crowdbot.
     """
-    try:
-        open_file(path).close()
-        file = zipfile.ZipFile(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from None
-    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
-        raise InputError(f"{path} is not a bundle: {error}") from None
-    with file:
+    with open_zip(path, "a bundle") as file:
         _check_bounds(path, file)
         _check_listing(path, file)
         try:

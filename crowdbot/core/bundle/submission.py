@@ -21,6 +21,7 @@ from zlib import error as ZlibError  # noqa: N812 - not one of ours
 from annotated_types import Ge
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from crowdbot.core.bundle.archive import open_zip
 from crowdbot.core.bundle.manifest import Name
 from crowdbot.core.bundle.verification import content_hash
 from crowdbot.core.support.atomic_write import atomic_path
@@ -153,14 +154,7 @@ def _unpack(
 
 @contextmanager
 def _opened(path: Path) -> Iterator[zipfile.ZipFile]:
-    try:
-        open_file(path).close()
-        file = zipfile.ZipFile(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from None
-    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
-        raise InputError(f"{path} is not a sealed submission: {error}") from None
-    with file:
+    with open_zip(path, "a sealed submission") as file:
         infos = file.infolist()
         if problem := _listing_problem(infos):
             raise InputError(f"{path}: {problem}")

@@ -35,7 +35,6 @@ def execute(
     """Execute one job; any error is part of the result.
 
     Args:
-        job: the job.
         progress: called several times per simulated second.
         on_hang: called if a planner cannot be interrupted; should end the process.
     """

@@ -41,7 +41,6 @@ def outline_map(parts: EnvironmentParts, inside: Iterable[Point]) -> OutlineMap:
     """Return the polygons of an environment.
 
     Args:
-        parts: the environment.
         inside: positions on the floor, such as zones and robots' starts; without any, all enclosed
             areas are floor.
     """

@@ -6,11 +6,9 @@ Shipped files have both, so both are accepted here, and named in the report.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.source import source_of
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
 from crowdbot.errors import SpecError
 
@@ -27,18 +25,12 @@ _NEAR = 4000
 _LINES = 40
 
 
-def read_xml(path: Path) -> tuple[list[Item], list[tuple[Mark, str]]]:
+def parse_xml(text: str, source: Source) -> tuple[list[Item], list[tuple[Mark, str]]]:
     """Return the root elements of a file, and what is wrong with it but was accepted.
 
     Raises:
-        SpecError: E401, it cannot be read, is not XML, or is hostile.
+        SpecError: E401, it is not XML, or is hostile.
     """
-    source, text = source_of(path)
-    return parse_xml(text, source)
-
-
-def parse_xml(text: str, source: Source) -> tuple[list[Item], list[tuple[Mark, str]]]:
-    """As `read_xml`, with the text of the file."""
     text, odd = _without_comments(text, source)
     roots: list[Item] = []
     start = line = 0

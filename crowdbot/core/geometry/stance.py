@@ -123,7 +123,6 @@ def place_beside(
 
     Args:
         task: what to do, with the person's radius.
-        body: of the robot.
         x, y, heading: of the person; heading NaN: no front.
         robot: where the robot is: it decides the side, and the direction where there is no front.
     """

@@ -40,7 +40,6 @@ def realise(scenario: Scenario, parts: EnvironmentParts | None = None) -> Realis
     """Sample the crowd from its named streams; return an empty table without a crowd.
 
     Args:
-        scenario: the scenario.
         parts: its environment: people are not placed in walls or sent to unreachable goals; None
             ignores walls.
 

@@ -126,7 +126,6 @@ def measure(
 
     Args:
         name: name of the crowd.
-        model: model of the crowd.
         reference: recorded people.
         seeds: seeds of positions and speeds.
         walk: function that simulates a model for each seed; default: in this process, one by one.

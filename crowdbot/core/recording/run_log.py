@@ -39,7 +39,6 @@ class RunLog:
         """Start a log.
 
         Args:
-            writer: writer of the recording.
             agent_id: (N,) numbers of the people.
             sideways: True if the robot's velocity may differ from its heading.
             people: True to record people and their trips, False to record only contacts with them:

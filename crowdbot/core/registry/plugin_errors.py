@@ -23,7 +23,6 @@ def describe_error(error: BaseException, sources: Collection[str] = ()) -> str:
     """Return type, text and place of an error.
 
     Args:
-        error: the exception.
         sources: the plugin's known files; frames in them, beside them, or outside libraries are
             preferred.
     """

@@ -74,7 +74,6 @@ def deflate(data: bytes, strategy: int = zlib.Z_DEFAULT_STRATEGY) -> str:
     """Compress bytes with zlib and base64.
 
     Args:
-        data: the bytes.
         strategy: of zlib. In planes of numbers only runs of equal bytes repeat: `zlib.Z_RLE` takes
             a tenth of the time of a search for longer repetitions, and leaves no more.
     """

@@ -6,7 +6,7 @@ Rows as objects would take a few hundred bytes each, and a campaign has hundreds
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -124,11 +124,6 @@ class ScoreColumns(Sequence[ScoreRow]):
         """Return the scores of some runs."""
         chosen = np.array([name in ids for name in self.run_ids], np.bool_)
         return self if chosen.all() else self._part(np.flatnonzero(chosen[self.run]))
-
-    def of_metrics(self, wanted: Callable[[str], bool]) -> ScoreColumns:
-        """Return the scores of metrics whose name is wanted."""
-        chosen = np.array([wanted(label.metric) for label in self.labels], np.bool_)
-        return self if chosen.all() else self._part(np.flatnonzero(chosen[self.label]))
 
     @cached_property
     def by_name(self) -> dict[tuple[str, str], NDArray[np.intp]]:

@@ -21,7 +21,6 @@ def add_piece(geometry: Xml.Element, corners: Array, name: str) -> None:
     """Add a piece to a ``<geometry>``.
 
     Args:
-        geometry: the element.
         corners: (N, 3) points whose convex hull it is, in the collision's frame, m.
         name: of the piece.
     """

@@ -19,8 +19,6 @@ def mean_density(run: Trajectories, scenario: Scenario, parts: EnvironmentParts)
 
     Args:
         run: a run with people, world frame.
-        scenario: its scenario.
-        parts: its environment.
 
     Returns:
         None without people or area.

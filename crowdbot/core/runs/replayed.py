@@ -135,8 +135,6 @@ def shown_run(
     Args:
         scenario: what was run.
         seen, models: of each robot by name, in the scenario's order.
-        parts: the environment.
-        record: of the run.
         scores: of the run.
         images: what cameras saw.
         people: the agents.

@@ -136,7 +136,6 @@ def changed(directory: Path, record: Mapping[str, Any], names: Sequence[str]) ->
 
     Args:
         directory: of a run, or of a calibration run.
-        record: its record.
         names: files to look at, if they are there.
     """
     hashed = _mapping(record, "digests")

@@ -76,7 +76,6 @@ def solids_of(
     """Return the numbers for JSON; walls say what they stop, as in `encode.scenery_numbers`.
 
     Args:
-        parts: the environment.
         robots: model and sensors of each, in the order of the page's robots.
         people: their bodies; None without people.
     """

@@ -20,7 +20,7 @@ from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo, SensorMessage
-from crowdbot.dsl.spec.component_specs import NoiseSpec, SensorSpec
+from crowdbot.dsl.spec.component_specs import SensorSpec
 from crowdbot.errors import PluginError, hidden_character
 
 #: Largest number of values in a reading: 100 images of a million pixels.
@@ -44,15 +44,6 @@ def build_sensor(
     sensor = registry.build(spec, lambda built: checked_sensor(built, call), context, call=call)
     errors = [spec.errors[name] for name in sorted(spec.errors)]
     return ErringSensor(sensor, errors) if errors else sensor
-
-
-def build_noise(registry: Registry, spec: NoiseSpec) -> NoiseGenerator:
-    """Return the noise generator that a spec describes.
-
-    Raises:
-        PluginError: it cannot be built.
-    """
-    return registry.build(spec, checked_noise)
 
 
 def checked_noise(noise: object) -> NoiseGenerator:

@@ -75,7 +75,6 @@ class People:
         """Return the ground truth: the robot and all people present.
 
         Args:
-            robot: its state.
             crowd: the flat state of the crowd, or empty.
             others: states of the other robots; None for one that has left.
         """

@@ -184,7 +184,6 @@ def make_run(
     """Simulate and score one run of a prepared scenario; see `simulate`.
 
     Args:
-        request: the request.
         prepared: its scenario.
         keep: object kept alive with the result.
         builts: result of `preflight` for the request, if the caller has it; not reusable.

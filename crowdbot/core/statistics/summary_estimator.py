@@ -47,7 +47,6 @@ def planner_mean(
     Args:
         table: table of the runs.
         name: the score.
-        planner: the planner.
         level: confidence level of the interval.
         rows: (n,) mask of rows to use; default all.
     """

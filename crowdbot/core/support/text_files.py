@@ -27,7 +27,6 @@ def input_text(file: Path, most: int = LARGEST, name: str = "") -> str:
     """Return the text of a file that the user named, without a byte order mark.
 
     Args:
-        file: the file.
         most: largest size, bytes.
         name: its name for messages; empty: its path.
 
@@ -41,7 +40,6 @@ def input_bytes(file: Path, most: int = LARGEST, name: str = "", *, text: bool =
     """Return the content of a file that the user named.
 
     Args:
-        file: the file.
         most: largest size, bytes.
         name: its name for messages; empty: its path.
         text: True if it has to be UTF-8.

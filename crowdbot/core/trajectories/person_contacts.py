@@ -59,7 +59,6 @@ def person_contacts(
     """Return contacts of a run that has a robot and ends at its arrival.
 
     Args:
-        run: the run.
         jump_speed: speed that detects teleports if none were recorded, m/s.
         contact_tol, release_gap: for contacts from samples, m; see `encounters.contact_onsets`. A
             table has its own rule for the end of a contact.

@@ -26,7 +26,6 @@ def to_image(
     """Return an image of the drawing's size.
 
     Args:
-        drawing: the drawing.
         colours: `LIGHT` or `DARK`.
         ground: what `ground_of` returns for the same size: the shapes are painted over it.
     """

@@ -110,5 +110,4 @@ def test_columns_read_like_rows(root: Path) -> None:
     assert list(scores[2:4]) == rows[2:4]
     some = {rows[0].run_id}
     assert list(scores.of_runs(some)) == [s for s in rows if s.run_id in some]
-    assert {s.metric for s in scores.of_metrics("risk".__eq__)} == {"risk"}
     assert scores.metrics == {"risk", "spl"}

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.sensing.build import build_noise, build_sensor
+from crowdbot.core.sensing.build import build_sensor, checked_noise
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.range_model import RangeModel
 from crowdbot.plugins.noise.gaussian import GaussianSpec
@@ -29,7 +29,7 @@ def errors(tick: int = 0, **options: Any) -> Array:
         {"kind": "ultrasound", "range_min": 0.0, "range_max": 10.0, **options}
     )
     assert isinstance(spec, UltrasoundSpec)
-    noise = [build_noise(REGISTRY, spec.noise[name]) for name in sorted(spec.noise)]
+    noise = [REGISTRY.build(spec.noise[name], checked_noise) for name in sorted(spec.noise)]
     distance = np.full(BEAMS, AT)
     return RangeModel(spec, noise).measure(distance, sensor_rng(0, "r", "s", tick)) - AT
 

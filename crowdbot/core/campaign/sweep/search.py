@@ -104,7 +104,6 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
     """Run all trials, then the best ones on other people; runs that exist are skipped.
 
     Args:
-        request: the request.
         registry: the installed components.
         execute: executes a plan; with a title.
 

@@ -6,7 +6,6 @@ import json
 import sys
 from typing import Any, Literal
 
-import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.live.message import LiveMessage
@@ -70,15 +69,3 @@ def _ros1_bytes(message: LiveMessage) -> bytes:
     from crowdbot.core.recording.messages import to_ros1
 
     return to_ros1(message.data, message.msgtype)
-
-
-def as_numbers(value: Any) -> Any:
-    """Return a CBOR value with typed arrays as lists."""
-    import cbor2
-
-    if isinstance(value, cbor2.CBORTag):
-        kinds = {tag: kind for kind, tag in _TAGS.items()}
-        if value.tag in kinds and isinstance(value.value, bytes):
-            return np.frombuffer(value.value, f"<{kinds[value.tag]}").tolist()
-        return value.value
-    return value

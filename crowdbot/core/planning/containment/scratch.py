@@ -51,11 +51,6 @@ def use_scratch(folder: str) -> None:
         numba.config.CACHE_DIR = compiled
 
 
-def compiled_folder(scratch: str) -> Path:
-    """Return the folder of the functions that numba compiled in a planner's process."""
-    return Path(scratch, _COMPILED)
-
-
 def remove_scratch(folder: str) -> None:
     """Delete a planner's folder, whatever it left there; its processes have ended."""
     if not folder:

@@ -88,7 +88,6 @@ class Renderer:
 
         Args:
             scene: walls, pillars and sizes of people; these do not change.
-            camera: the camera.
             mount: x, y, z, yaw from base_link, m and rad.
             tilt: roll and pitch of the mount, rad.
             robots: appearance of the other robots in the scene.

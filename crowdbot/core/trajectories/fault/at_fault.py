@@ -21,7 +21,6 @@ def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_spe
     Args:
         run: the run of ``found``.
         found: from `person_contacts`.
-        rule: the fault rule.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     key = "at_fault", rule, jump_speed, found.recorded, len(found)

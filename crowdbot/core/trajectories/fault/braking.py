@@ -60,7 +60,6 @@ def braked_in_time(
 
     Args:
         run: a run with a robot.
-        rule: the fault rule.
         onset: (K,) times of the contacts, s.
         sample: (K,) the last sample before each contact.
         agent: (K,) column of the person; -1: unknown, counts as not braked.

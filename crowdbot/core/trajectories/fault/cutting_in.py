@@ -24,8 +24,6 @@ def cut_in(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed
 
     Args:
         run: the run of ``found``.
-        found: its contacts.
-        rule: the fault rule.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     return np.array([_cuts(run, found, k, rule, jump_speed) for k in range(len(found))], dtype=bool)

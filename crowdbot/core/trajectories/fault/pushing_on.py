@@ -23,8 +23,6 @@ def pushed_on(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_sp
 
     Args:
         run: the run of ``found``.
-        found: its contacts.
-        rule: the fault rule.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     lasting = [_during(run, found, k) for k in range(len(found))]

@@ -33,8 +33,6 @@ def swerved(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_spee
 
     Args:
         run: the run of ``found``.
-        found: its contacts.
-        rule: the fault rule.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     moves = (found.closing > rule.speed) & (found.agent >= 0)

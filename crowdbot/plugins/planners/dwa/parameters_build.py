@@ -18,7 +18,6 @@ def parameters_of(spec: DwaSpec, limits: RobotLimits, radius: float, reach: floa
 
     Args:
         spec: of the planner.
-        limits: of the robot.
         radius: rounding of its outline, m.
         reach: radius of the disc that holds it, m.
     """

@@ -82,7 +82,6 @@ class LearnedPlanner(VelocityPlanner):
         """Return the worth (A,) of each action: its reward and the discounted value after it.
 
         Args:
-            robot: the robot.
             choices: (A, 2) speeds and directions.
             people: (N, 5) at the end of the step, N > 0.
         """

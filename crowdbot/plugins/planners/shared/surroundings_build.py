@@ -85,7 +85,6 @@ class PlannerSurroundings:
 
         Args:
             sensors: description of each sensor that the planner gets.
-            body: of the robot.
         """
         truth = self._spec.localisation == "truth"
         self._stuck = Stuck(self._spec.robot_radius, body, sensors, slips=not truth)

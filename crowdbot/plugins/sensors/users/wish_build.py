@@ -51,7 +51,6 @@ def wish(
     """Return the user's wish.
 
     Args:
-        body: of the robot.
         goal: world frame, m.
         most: speed (m/s) and yaw rate (rad/s) of the stick's full deflection.
     """
