@@ -82,6 +82,7 @@ def write_film(to: str, recording: Path, out: Path, options: FilmOptions) -> Non
 
 
 def _filmed(recording: Path, options: FilmOptions, to: str) -> Filmed:
+    from crowdbot.core.recording.placed_drawings import placed_drawings
     from crowdbot.core.recording.recording import Recording
     from crowdbot.core.view.film import Filmed
     from crowdbot.core.view.shapes import DARK, LIGHT
@@ -89,6 +90,10 @@ def _filmed(recording: Path, options: FilmOptions, to: str) -> Filmed:
     with Recording(recording) as opened:
         names = tuple(opened.robots)
         tracks = tuple(opened.trajectories(name) for name in names or (None,))
+        drawings = [
+            placed_drawings(run, opened.drawings(name))
+            for run, name in zip(tracks, names or (None,), strict=True)
+        ]
         title = opened.header.scenario
     return Filmed(
         tracks=tracks,
@@ -96,6 +101,7 @@ def _filmed(recording: Path, options: FilmOptions, to: str) -> Filmed:
         width=options.width or _WIDTH.get(to, 960),
         follow=options.follow,
         colours=DARK if options.dark else LIGHT,
+        drawings=drawings,
     )
 
 

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.planning.planner import TRACKS
-from crowdbot.core.recording.drawings import drawing_in_world
+from crowdbot.core.recording.placed_drawings import columns_in_world
 from crowdbot.core.recording.reading.one_robot import PlannerDrawing
 from crowdbot.core.replay.pack import pack_words
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.types.arrays import Array
 
 
 def encode_drawings(
@@ -28,7 +27,7 @@ def encode_drawings(
     if run.robot is None:
         return {"drawings": about}, blobs
     for name, drawn in sorted(drawings.items()):
-        rows = [_in_world(run, one, tracks=name == TRACKS) for one in drawn]
+        rows = [columns_in_world(run, one, tracks=name == TRACKS) for one in drawn]
         columns = np.concatenate(rows, axis=1)
         blobs[f"drawing{len(about)}"] = pack_words(columns.astype("<f4"))
         about.append(
@@ -54,12 +53,3 @@ def _texts(drawn: Sequence[PlannerDrawing]) -> dict[str, Any]:
         else:
             which += [numbers.setdefault(text, len(numbers)) for text in one.texts]
     return {"texts": list(numbers), "which": which}
-
-
-def _in_world(run: Trajectories, drawing: PlannerDrawing, *, tracks: bool) -> Array:
-    """Return x and y (2, K) of rows, with the velocities of tracks (4, K)."""
-    assert run.robot is not None
-    at = int(np.argmin(np.abs(run.t - drawing.t)))
-    yaw = float(run.robot.theta[at])
-    x, y = float(run.robot.x[at]), float(run.robot.y[at])
-    return drawing_in_world(x, y, yaw, drawing.rows, tracks=tracks)

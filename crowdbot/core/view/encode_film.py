@@ -89,14 +89,15 @@ def _ffmpeg() -> str:
     """
     try:
         import imageio_ffmpeg
-    except ImportError:
+
+        return str(imageio_ffmpeg.get_ffmpeg_exe())
+    except (ImportError, RuntimeError):  # the package has no ffmpeg for some machines
         found = shutil.which("ffmpeg")
         if found is None:
             raise MissingLibraryError(
                 "films need ffmpeg; install it with 'pip install crowdbot[film]', or write a .gif"
             ) from None
         return found
-    return str(imageio_ffmpeg.get_ffmpeg_exe())
 
 
 def write_png(path: Path, images: Sequence[Image.Image]) -> None:

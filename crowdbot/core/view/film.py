@@ -9,10 +9,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from PIL import Image
 
+from crowdbot.core.recording.placed_drawings import PlacedDrawing
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.view.raster import ground_of, to_image
 from crowdbot.core.view.shapes import LIGHT, Drawing, Path, Shape, Text
 from crowdbot.core.view.snapshot import ground, people_at, robot_at, sample_at
+from crowdbot.core.view.thoughts import thoughts_at
 from crowdbot.core.view.world import LEFT, Map
 from crowdbot.errors import InputError
 
@@ -32,6 +34,7 @@ class Filmed:
         width: of a picture, px.
         follow: True to follow the first robot, False to show all; None: all if that is small.
         colours: `LIGHT` or `DARK`.
+        drawings: what the planners of all robots drew, once for each robot, in the order of time.
     """
 
     tracks: Sequence[Trajectories]
@@ -39,6 +42,7 @@ class Filmed:
     width: int = 960
     follow: bool | None = None
     colours: Mapping[str, str] = field(default_factory=lambda: LIGHT)
+    drawings: Sequence[Sequence[PlacedDrawing]] = ()
 
     @property
     def end(self) -> float:
@@ -58,7 +62,10 @@ class Filmed:
         """
         until = self.end if last is None else min(last, self.end)
         if not 0.0 <= first < until:
-            raise InputError(f"nothing to film from {first:g} to {until:g} s of {self.end:g} s")
+            raise InputError(
+                f"there is nothing to film from {first:g} s to {until:g} s: the run lasts "
+                f"{self.end:g} s"
+            )
         count = math.ceil((until - first) * rate / speed)
         return [first + i * speed / rate for i in range(count)]
 
@@ -91,6 +98,8 @@ class Filmed:
         for run in self.tracks:
             if run.robot is not None:
                 shapes += robot_at(run, sample_at(run, t), world)
+        thoughts = [shape for drawn in self.drawings for shape in thoughts_at(drawn, t, world)]
+        shapes += sorted(thoughts, key=lambda shape: isinstance(shape, Text))
         shapes.append(Text(at=(x, y - 11.0), text=self.title, role="text-strong", size=13.0))
         clock = Text(at=(x + width, y - 11.0), text=f"{t:.1f} s", role="text-muted", size=13.0,
                      anchor="end")  # fmt: skip

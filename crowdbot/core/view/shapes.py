@@ -80,12 +80,14 @@ LIGHT = {
     "ink": "#22262b", "muted": "#6a6f76", "wall": "#3a3f46", "zone": "#8a8577",
     "portal": "#8459a8", "robot": "#f08a24", "robot_edge": "#3d2205", "goal": "#2e9e5b",
     "sensor": "#00929c", "person_edge": "#2b4a68", "arrow": "#2b4a68", "route": "#b0518f",
+    "thought": "#b25a00",
 }  # fmt: skip
 DARK = {
     "page": "#14171b", "floor": "#1c2025", "grid": "#23282e", "grid_strong": "#313840",
     "ink": "#e8e6e1", "muted": "#99a0a8", "wall": "#b9c0c8", "zone": "#8f8b80",
     "portal": "#b48be0", "robot": "#ff9f40", "robot_edge": "#2a1600", "goal": "#4cc77f",
     "sensor": "#35d0d8", "person_edge": "#0f1b28", "arrow": "#9fc3e6", "route": "#e08cc2",
+    "thought": "#ffb454",
 }  # fmt: skip
 
 #: Colours of people from slow to fast, the same in light and dark mode.
@@ -128,6 +130,8 @@ STYLES = {
     "wanted": Style(stroke="goal", width=3.0),
     "involved": Style(stroke="route", width=2.5),
     "arrow": Style(stroke="arrow", width=1.4),
+    "thought": Style(stroke="thought", width=2.0),
+    "thought-dot": Style(fill="thought"),
     "robot": Style(fill="robot", stroke="robot_edge", width=1.8),
     "robot-nose": Style(stroke="robot_edge", width=2.2),
     "scale": Style(stroke="ink", width=2.5),
@@ -138,5 +142,6 @@ STYLES = {
     "text-portal": Style(fill="portal", bold=True),
     "text-goal": Style(fill="goal", bold=True),
     "text-route": Style(fill="route", bold=True),
+    "text-thought": Style(fill="thought", bold=True),
     "text-robot": Style(fill="robot", bold=True),
 }

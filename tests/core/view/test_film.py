@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
+import types
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from crowdbot.core.recording.placed_drawings import PlacedDrawing
 from crowdbot.core.view import encode_film
 from crowdbot.core.view.film import Filmed
 from crowdbot.core.view.raster import to_image
@@ -49,13 +53,31 @@ def test_a_robot_that_is_followed_stays_in_the_middle() -> None:
         assert x == pytest.approx(image.width / 2, abs=4)
 
 
+def test_what_the_planner_draws_is_filmed_for_half_a_second() -> None:
+    def drawn(name: str, *rows: tuple[float, float], texts: object = None) -> PlacedDrawing:
+        return PlacedDrawing(1.0, name, np.array(rows).T, texts)  # type: ignore[arg-type]
+
+    tracks = PlacedDrawing(1.0, "tracks", np.array([[2.0], [0.5], [0.5], [0.0]]), None)
+    for one in (
+        drawn("path", (0.0, 0.0), (2.0, 0.5)),
+        drawn("points", (1.0, 0.5), (2.0, 0.5)),
+        drawn("arrows", (1.0, 0.5), (2.0, 0.5)),
+        drawn("why", (1.0, 0.5), texts=("waits",)),
+        tracks,
+    ):
+        before, during, late = filmed(drawings=[[one]]).images([0.9, 1.4, 1.6])
+        assert not len(near(before, LIGHT["thought"]))
+        assert len(near(during, LIGHT["thought"])) > 10, one.name
+        assert not len(near(late, LIGHT["thought"]))
+
+
 def test_times_of_a_film() -> None:
     film = filmed()
     assert film.end == 4.0
     assert film.times(1.0, 2.0, 4.0, 1.0) == [1.0, 1.25, 1.5, 1.75]
     assert film.times(1.0, None, 2.0, 3.0) == [1.0, 2.5]
     for first, last in ((2.0, 1.0), (9.0, None), (-1.0, 2.0)):
-        with pytest.raises(InputError, match="nothing to film"):
+        with pytest.raises(InputError, match=r"nothing to film .* the run lasts 4 s"):
             film.times(first, last, 4.0, 1.0)
 
 
@@ -79,15 +101,34 @@ def test_pictures_stand_side_by_side(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["mp4", "webm"])
-def test_video(tmp_path: Path, suffix: str) -> None:
+def test_video_has_all_pictures(tmp_path: Path, suffix: str) -> None:
     try:
-        encode_film._ffmpeg()
+        encoder = encode_film._ffmpeg()
     except MissingLibraryError:
-        pytest.skip("there is no ffmpeg")
+        pytest.skip("the extra film is not installed")
     path = tmp_path / f"a.{suffix}"
-    encode_film.write_video(path, filmed().images([0.0, 1.0]), 25.0)
+    images = list(filmed().images([0.0, 1.0, 2.0]))
+    encode_film.write_video(path, images, 25.0)
     head = path.read_bytes()[:64]
     assert (b"ftyp" in head) if suffix == "mp4" else head.startswith(b"\x1a\x45\xdf\xa3")
+    asked = [encoder, "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    done = subprocess.run(asked, capture_output=True, check=True)
+    about = done.stderr.decode()
+    assert f"Video: {'h264' if suffix == 'mp4' else 'vp9'}" in about
+    assert "25 fps" in about
+    found = np.frombuffer(done.stdout, np.uint8).reshape(3, *images[0].size[::-1], 3)
+    for drawn, image in zip(found, images, strict=True):
+        assert np.abs(drawn.astype(int) - np.asarray(image).astype(int)).mean() < 6.0
+
+
+def test_a_package_without_ffmpeg_for_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none() -> str:
+        raise RuntimeError("No ffmpeg exe could be found")
+
+    package = types.SimpleNamespace(get_ffmpeg_exe=none)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", package)
+    monkeypatch.setattr(shutil, "which", lambda _: "/there/ffmpeg")
+    assert encode_film._ffmpeg() == "/there/ffmpeg"
 
 
 def test_what_ffmpeg_says_is_the_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -100,7 +141,7 @@ def test_what_ffmpeg_says_is_the_error(monkeypatch: pytest.MonkeyPatch, tmp_path
 
 
 def test_without_ffmpeg_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     with pytest.raises(MissingLibraryError, match=r"crowdbot\[film\]"):
         encode_film._ffmpeg()
@@ -129,5 +170,7 @@ def test_options_of_other_formats_are_refused(tmp_path: Path) -> None:
         ["--to", "csv", "--dark"],
         ["--to", "png", "--from", "1"],
         ["--to", "gif", "--at", "1"],
+        ["--to", "mp4", "--out", str(tmp_path / "a.avi")],
+        ["--to", "png", "--out", str(tmp_path / "picture")],
     ):
         assert cli.main(["export", str(tmp_path / "run.mcap"), *argv]) == 2

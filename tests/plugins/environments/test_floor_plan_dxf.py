@@ -181,7 +181,9 @@ class TestRead:
         assert not found.contains(shapely.Point(4.5, 2.5))
 
     @pytest.mark.parametrize(("content", "why"), [
-        (b"AutoCAD Binary DXF\r\n\x1a\0", "is binary DXF; save it as ASCII DXF"),
+        (b"AutoCAD Binary DXF\r\n\x1a\0", "is not a DXF drawing, or is cut off"),
+        (b"AC1027\0\0\0" + bytes(99), "is a DWG drawing; save it as DXF"),
+        (b"PK\3\4" + bytes(99), "is not a DXF drawing.*Invalid group code"),
         (b"hello\nworld\n", "is not a DXF drawing"),
         (b"0\nSECTION\n2\nENT", "is not a DXF drawing|is empty|neither a floor"),
         (b"", "is not a DXF drawing|is empty"),

@@ -136,6 +136,7 @@ def export(
     All runs of a campaign: crowdbot export runs --to minari
     """
     from crowdbot.cli.output.film import FILMS, PICTURE, FilmOptions, write_film
+    from crowdbot.cli.shared.options import check_ending
     from crowdbot.core.recording.export.bag import BagOptions
     from crowdbot.core.runs.run_directory import RECORDING
     from crowdbot.errors import InputError
@@ -145,6 +146,8 @@ def export(
         dark=dark,
     )  # fmt: skip
     film.check(to.value)
+    if to.value in (*FILMS, PICTURE):
+        check_ending(out, f".{to.value}")
     if to in _SETS and run.is_dir():
         target = out or _target(run, to)
         _data_set(to, run, target, robot)

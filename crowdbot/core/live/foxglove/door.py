@@ -11,6 +11,7 @@ from typing import Any, cast
 
 from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.commands import twist
+from crowdbot.core.live.foxglove.drawn import THOUGHTS
 from crowdbot.core.live.foxglove.gate import FoxgloveGate
 from crowdbot.core.live.foxglove.parameters import parameters, set_parameters
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
@@ -33,8 +34,6 @@ SEEN = (
     OfferedTopic(str(Topic.PEOPLE_MARKER), MARKER),
     OfferedTopic(str(Topic.PEOPLE_MARKERS), ARROWS_TYPE),
 )
-#: Lines and texts of what a robot's planner draws.
-THOUGHTS = "/thoughts_marker"
 _POSE = "geometry_msgs/msg/PoseStamped"
 #: Largest command and request of a client, bytes; largest number of its command topics.
 _COMMAND, _REQUEST, _MOST_TOPICS = 4096, 64 << 10, 16

@@ -1,9 +1,15 @@
-"""Play back a finished run in Foxglove, with pause and seek from the viewer."""
+"""Play back a finished run in Foxglove, with pause and seek from the viewer.
+
+What planners drew is in their robot's frame, of a type of our own: it is placed in the world and
+shown as markers, on the topics of a live run.
+"""
 
 from __future__ import annotations
 
+import heapq
 import threading
 import time
+from bisect import bisect_left
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
@@ -11,8 +17,11 @@ from typing import Any, cast
 from mcap.reader import SeekingReader
 
 from crowdbot.core.live.admission import Admission
+from crowdbot.core.live.foxglove.drawn import drawn_messages, latest_drawn
 from crowdbot.core.live.foxglove.gate import FoxgloveGate
+from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.container.records import Record, Records
+from crowdbot.core.recording.people import MARKER
 from crowdbot.core.recording.reading.contents import contents
 from crowdbot.errors import InputError
 
@@ -43,8 +52,12 @@ class FoxglovePlayback:
         few = {t.name for t in found.topics if t.count < _FEW}
         self._context = foxglove.Context()
         self._channels: dict[str, Any] = {}
+        self._markers: dict[str, Any] = {}  # topic -> channel of what planners drew
         self._rare: list[Record] = []
         self._prepare(few)
+        self._drawn = drawn_messages(path)
+        for one in self._drawn:
+            self._offer_markers(one.topic)
         self._changed = threading.Condition()
         self._now, self._speed, self._playing, self._stopped = 0, 1.0, False, False
         self._sought = True
@@ -91,6 +104,16 @@ class FoxglovePlayback:
                 )
             if record.topic in few and record.topic in self._channels:
                 self._rare.append(record)
+
+    def _offer_markers(self, topic: str) -> None:
+        """Create the channel of a robot's drawings."""
+        from foxglove import Channel, Schema
+
+        if topic not in self._markers:
+            schema = Schema(name=MARKER, encoding="ros2msg", data=ros.definition(MARKER))
+            self._markers[topic] = Channel(
+                topic, message_encoding="cdr", schema=schema, context=self._context
+            )
 
     # ------------------------------------------------------------------ the server's threads
     def on_subscribe(self, client: Any, channel: Any) -> None:
@@ -146,15 +169,17 @@ class FoxglovePlayback:
             latest[topic] = (at, data)
         for topic, (at, data) in latest.items():
             self._channels[topic].log(data, log_time=at)
+        for one in latest_drawn(self._drawn, ns):
+            self._markers[one.topic].log(one.data, log_time=one.ns)
         self._server.broadcast_time(ns)
 
     def _play(self, begin: int) -> None:
         """Play until there is a request, or the end."""
         started, speed = time.monotonic(), self._speed
-        for topic, ns, data in self._messages(begin + 1, self._end + 1):
+        for topic, ns, data in self._all_messages(begin + 1, self._end + 1):
             if not self._wait(started + (ns - begin) / 1e9 / speed, speed):
                 return
-            self._channels[topic].log(data, log_time=ns)
+            (self._channels.get(topic) or self._markers[topic]).log(data, log_time=ns)
             if ns > self._now:
                 self._now = ns
                 self._server.broadcast_time(ns)
@@ -173,6 +198,13 @@ class FoxglovePlayback:
                 if left <= 0.0:
                     return True
                 self._changed.wait(min(left, 1.0))
+
+    def _all_messages(self, begin: int, end: int) -> Iterator[tuple[str, int, bytes]]:
+        """Yield topic, time (ns) and bytes of messages and of what planners drew, in order."""
+        first = bisect_left(self._drawn, begin, key=lambda one: one.ns)
+        last = bisect_left(self._drawn, end, key=lambda one: one.ns)
+        drawn = ((one.topic, one.ns, one.data) for one in self._drawn[first:last])
+        return heapq.merge(self._messages(begin, end), drawn, key=lambda one: one[1])
 
     def _messages(self, begin: int, end: int) -> Iterator[tuple[str, int, bytes]]:
         """Yield topic, time (ns) and bytes between two times, in order."""
