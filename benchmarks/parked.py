@@ -1,4 +1,4 @@
-r"""Does anybody touch a robot that stands at its start?
+r"""Do people touch a robot that stands at its start?
 
 Runs the crowds of suites at the real time steps, without Drake, beside the suite's own robots, and
 prints each touch. Scenarios that share their people, or are further draws of one condition, are run

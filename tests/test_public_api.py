@@ -123,7 +123,7 @@ def test_a_wrong_option_is_a_type_error() -> None:
 @pytest.mark.parametrize(("options", "message"), [
     ({"seed": -1}, "at least 0, not -1"),
     ({"record": "some"}, "record must be 'all' or 'used' or 'none', not 'some'"),
-    ({"suite": "../elsewhere"}, "'../elsewhere' is not the name of a folder"),
+    ({"suite": "../elsewhere"}, "'../elsewhere' must be usable as the name of a folder"),
     ({"step_budget": 0.0}, "above 0 and below"),
     ({"metrics": "risks"}, "unknown metric 'risks'"),
     ({"planner": "dwaa"}, "unknown planner 'dwaa'"),

@@ -66,7 +66,9 @@ def run_episode(run: Path, registry: Registry) -> RunEpisode:
     (scenario,) = open_spec(str(run / SCENARIO), registry).scenarios
     plan = blueprint(scenario, registry, ())
     if len(plan.models) != 1 or plan.models[0].limits.vy_max > 0.0:
-        raise InputError(f"{run}: an episode is of one robot with commands v, w")
+        raise InputError(
+            f"{run}: only runs of one robot that is driven by v and w can be an episode"
+        )
     with Recording(run / RECORDING) as opened:
         found = opened.trajectories()
     return _Reader(run, plan, registry, found).episode()

@@ -87,7 +87,7 @@ class EpisodeRecorder(Wrapper):
 
     def _begun(self) -> EpisodeLog:
         if self._log is None:
-            raise InputError("reset() begins the first episode")
+            raise InputError("call reset() first: it begins an episode")
         return self._log
 
 

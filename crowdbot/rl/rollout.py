@@ -131,10 +131,10 @@ class Rollout:
             which: rows of the worlds.
 
         Raises:
-            InputError: an action is not finite.
+            InputError: an action has a number that is infinite or not a number.
         """
         if not np.isfinite(actions[which]).all():
-            raise InputError("an action is not finite")
+            raise InputError("an action has a number that is infinite or not a number")
         (actor,), batches = self.actors, self.batches
         given = actor.commands(actions)
         self.advance(given[:, np.newaxis], which)

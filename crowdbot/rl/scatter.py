@@ -56,7 +56,7 @@ def _check_reach(world: BatchWorld, tasks: Sequence[Task]) -> None:
             ("goal", before.goal, task.goal),
         ):
             if _crosses(np.array(a), np.array(b), walls):
-                raise InputError(f"the {what} would be behind a wall")
+                raise InputError(f"the {what} would lie behind a wall")
 
 
 def _crosses(a: Array, b: Array, walls: Array) -> bool:

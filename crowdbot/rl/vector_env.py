@@ -135,7 +135,7 @@ class NavVectorEnv(VectorEnv):
         if given.shape != wanted:
             raise InputError(f"actions have shape {wanted}, not {given.shape}")
         if not self._begun:
-            raise InputError("reset() begins the first episodes")
+            raise InputError("call reset() first: it begins the episodes")
         again = self._ended.copy()
         if again.any():
             if self.autoreset_mode.value == DISABLED:
@@ -195,7 +195,7 @@ class NavVectorEnv(VectorEnv):
         mask = np.asarray(given)
         if mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
             raise InputError(
-                f"reset_mask is a bool array of shape {(self.num_envs,)} with a true value"
+                f"reset_mask must be a bool array of shape {(self.num_envs,)} with at least one True"
             )
         return mask
 

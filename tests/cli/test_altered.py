@@ -77,8 +77,20 @@ def test_results_leave_them_out_and_say_so(root: Path, told: Tell) -> None:
     out, message = told(
         "results", "--runs", str(root), "--metric", "success", "--json", "--altered"
     )
-    assert planners(out) == [2]
+    assert planners(out) == [1, 1]
     assert "left out" not in message
+    suites = {line["suite"] for line in json.loads(out)}
+    assert {name.rpartition("-")[0] or name for name in suites} == {
+        "scenarios", "scenarios+time_limit=0.25_s",
+    }  # fmt: skip
+    by_suite = told("results", "--runs", str(root), "--altered", "--by", "suite", "--json")[0]
+    assert {line["suite"] for line in json.loads(by_suite)} == suites
+
+
+def test_the_table_names_what_was_altered(root: Path, told: Tell) -> None:
+    out, _ = told("results", "--runs", str(root), "--metric", "success", "--altered")
+    assert "scenarios+time_limit=0.25_s-" in out
+    assert "suite" not in told("results", "--runs", str(root), "--metric", "success")[0]
 
 
 def test_a_metric_that_no_run_has_is_told_where_all_are_left_out(

@@ -64,7 +64,9 @@ def _check_name(name: str, registry: Registry) -> None:
             f"letter{advice}"
         )
     if name == BUILTIN or keyword.iskeyword(name):
-        raise InputError(f"'{name}' cannot be the name of a plugin: it means something else")
+        raise InputError(
+            f"'{name}' cannot be the name of a plugin: Python or crowdbot uses it; choose another name"
+        )
     taken: dict[str, Plugin] = {p.name: p for p in (*registry.plugins, *registry.excluded)}
     if name in taken:
         raise InputError(f"'{name}' is the name of a plugin of {taken[name].distribution} already")

@@ -32,7 +32,9 @@ def lines_of(
         known = {".".join(n) for n in table.names}
         raise UnknownNameError("score", ".".join(name), known)
     if table.exposure_name(name) is not None:
-        raise UsageError(f"{'.'.join(name)} is a rate; use a score of single runs")
+        raise UsageError(
+            f"{'.'.join(name)} is a rate over all runs; name a score that each run has"
+        )
     axes = dict.fromkeys(axis for run in results.runs for axis in run.axes)
     if axis and axis not in axes:
         raise UnknownNameError("axis", axis, axes)

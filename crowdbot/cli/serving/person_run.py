@@ -102,7 +102,7 @@ def page_of(seat: Seat, mode: Mode, scenario: str, doors: PageDoors) -> Iterator
     from crowdbot.core.live.person.page_server import PageServer
 
     if not math.isfinite(doors.rate):
-        raise UsageError("--rate is a number")
+        raise UsageError("--rate wants a number, such as --rate 0.5")
     with ExitStack() as stack:
         name = "teleop" if mode == "drive" else "walk"
         server = PageServer(seat, render_person_page(mode, scenario), doors.port, name)

@@ -49,7 +49,7 @@ def changed(text: str, changes: Sequence[Edit]) -> str:
     except YAMLError as error:
         raise InputError(f"the text is not YAML: {str(error).splitlines()[0]}") from None
     if not isinstance(root, Mapping):
-        raise InputError("the text is not a map")
+        raise InputError("the text has no fields: a scenario begins with 'crowdbot: 1'")
     for change in changes:
         _make(root, list(change.path), change.value)
     stream = io.StringIO()
@@ -59,7 +59,7 @@ def changed(text: str, changes: Sequence[Edit]) -> str:
 
 def _make(root: Any, path: list[str | int], value: Any) -> None:
     if not path:
-        raise InputError("a change without a path")
+        raise InputError("a change does not say which field it changes: its path is missing")
     inherits = "extends" in root or "extends" in (root.get("scenario") or {})
     parent, last = _descend(root, path, create=value is not None or inherits)
     if parent is None:
@@ -101,7 +101,9 @@ def _descend(root: Any, path: list[str | int], *, create: bool) -> tuple[Any, An
             node, left = node[left[0]], left[1:]
             continue
         if not isinstance(node, Mapping):
-            raise InputError(f"'{'.'.join(map(str, path))}' leads through a value, not a map")
+            raise InputError(
+                f"'{'.'.join(map(str, path))}' is no field: what comes before it is a single value"
+            )
         if isinstance(left[0], int):
             raise InputError(f"'{_dotted(path)}': these rows are in a table, which is edited there")
         count = next((n for n in range(len(left), 0, -1) if _dotted(left[:n]) in node), 0)
@@ -151,7 +153,7 @@ def _plain(value: Any) -> Any:
         return found
     if isinstance(value, float):
         if not math.isfinite(value):
-            raise InputError("a number is not finite")
+            raise InputError("a number is infinite or not a number")
         rounded = round(value, 6)
         return int(rounded) if rounded == int(rounded) else rounded
     return value

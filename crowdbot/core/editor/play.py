@@ -42,7 +42,9 @@ def play(text: str, file: Path, robots: list[str]) -> dict[str, Any]:
                 timeout=_PATIENCE, check=False,
             )  # fmt: skip
         except subprocess.TimeoutExpired:
-            raise InputError(f"the simulation took more than {_PATIENCE:g} s") from None
+            raise InputError(
+                f"the simulation took more than {_PATIENCE:g} s and was ended; play fewer people or a shorter time"
+            ) from None
         finally:
             aside.unlink(missing_ok=True)
         recordings = sorted(Path(folder).rglob(RECORDING))

@@ -93,7 +93,7 @@ def _polygon(name: str, corners: Array) -> None:
     _table(name, corners, (max(3, len(corners)), 2))
     x, y = corners.T
     if not np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) > 0.0:
-        raise PluginError(f"{name} must be counter-clockwise")
+        raise PluginError(f"{name}: its corners must run counter-clockwise")
 
 
 def _box(name: str, box: object) -> None:

@@ -69,7 +69,7 @@ class ServiceType:
         try:
             message = _store().deserialize_cdr(data, self._request)
         except Exception as error:  # generated code with untrusted input
-            raise InputError(f"not a request of {self.kind}") from error
+            raise InputError(f"the request does not fit the service {self.kind}") from error
         return to_plain(message, 2, json_array)
 
     def response(self, values: Mapping[str, Any]) -> bytes:

@@ -45,7 +45,7 @@ def _of_document(path: Path) -> set[Path]:
     """Return files in the folder of a document that it names."""
     document, folder = read_document(path, str(path)), path.resolve().parent
     if not isinstance(document, dict):
-        raise InputError(f"{path}: a planner is a mapping")
+        raise InputError(f"{path}: a file of a planner has fields, such as 'kind: dwa'")
     words = document.get("command") or [document.get("python")]
     named = [folder / w for w in words if isinstance(w, str)] if isinstance(words, list) else []
     found = {file for file in named if file.is_file() and file.resolve().is_relative_to(folder)}

@@ -61,7 +61,7 @@ def _sized(rows: tuple[Numbers, ...], count: int, name: str) -> tuple[Numbers, .
 
 def _read_look(text: str) -> str:
     if text not in get_args(AppearanceName):
-        raise ValueError(f"unknown look '{text}'")
+        raise ValueError(f"'{text}' is not a look of people")
     return text
 
 

@@ -143,7 +143,7 @@ class Realisation:
         """Build a table from rows with the keys `COLUMNS` and any of `OPTIONAL`."""
         keys = {row["goal_key"] for row in rows}
         if len(keys) > 1:
-            raise InputError("an agents table has one goal_key")
+            raise InputError("an agents table must have exactly one goal_key")
 
         columns: dict[str, Any] = {
             name: np.array([row[name] for row in rows], dtype=np.float64) for name in _NUMBERS

@@ -118,7 +118,7 @@ def reference_of(
         InputError: there is nothing to compare.
     """
     if not tracks:
-        raise InputError("a reference needs one recording at least")
+        raise InputError("a reference needs at least one recording")
     halves = _halved(tracks[0]) if len(tracks) == 1 else _alternate(tracks)
     found = RealismReference(
         halves=(statistics_of(halves[0]), statistics_of(halves[1])),

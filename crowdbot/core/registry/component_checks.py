@@ -137,4 +137,4 @@ def _try_models(specs: tuple[type[ComponentSpec], ...]) -> None:
         Annotated[Union[members], Field(discriminator="kind")]  # noqa: UP007
     )
     if not adapter.pydantic_complete:
-        raise TypeError("a field has a type that is not defined")
+        raise TypeError("a field of the spec has a type that Python does not find")

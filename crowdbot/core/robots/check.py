@@ -152,7 +152,7 @@ def _check_wheels(model: RobotModel, drive: DifferentialDrive, described: Descri
     if not math.isclose(track, drive.track, rel_tol=_SHARE):
         raise PluginError(f"track is {drive.track:g} m; the wheels are {track:g} m apart")
     if drive.left_joint == drive.right_joint:
-        raise PluginError(f"both wheels are '{drive.left_joint}'")
+        raise PluginError(f"the left and the right wheel are the same joint, '{drive.left_joint}'")
 
 
 def _skid_steer(drive: DifferentialDrive, described: Description) -> str:

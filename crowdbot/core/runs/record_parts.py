@@ -22,7 +22,7 @@ Seconds = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
 def _complete(ending: Ending) -> Ending:
     if not ending.complete:
-        raise ValueError(f"a complete run ends as {', '.join(COMPLETE)}")
+        raise ValueError(f"a run that is complete must end as {', '.join(COMPLETE)}")
     return ending
 
 

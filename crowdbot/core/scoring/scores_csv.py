@@ -133,7 +133,7 @@ def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a table of scores: {error}") from error
+        raise InputError(f"{path}: is not a table of scores: {error}") from error
     return parse_scores(text, path)
 
 
@@ -150,7 +150,7 @@ def parse_scores(text: str, name: str | os.PathLike[str]) -> list[RunScore]:
             raise InputError(f"{path}:1: not a table of scores: expected {','.join(COLUMNS)}")
         return [_row(path, reader.line_num, cells) for cells in reader if cells]
     except csv.Error as error:
-        raise InputError(f"{path}: not a table of scores: {error}") from error
+        raise InputError(f"{path}: is not a table of scores: {error}") from error
 
 
 def cells_of(score: Score) -> list[str]:
@@ -165,7 +165,7 @@ def cells_of(score: Score) -> list[str]:
 def _row(path: str, line: int, cells: Sequence[str]) -> RunScore:
     try:
         if len(cells) != len(COLUMNS):
-            raise ValueError(f"a row has {len(COLUMNS)} cells")
+            raise ValueError(f"a row must have {len(COLUMNS)} cells")
         scenario, planner, seed, *texts, reason, lower, upper = cells
         value = texts.pop(_VALUE)
         about = _texts((*texts, reason))

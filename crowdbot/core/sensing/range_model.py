@@ -134,8 +134,8 @@ def _check_hits(errors: Array, largest: float, who: str) -> None:
     wrong = errors[np.abs(errors) > largest]
     if len(wrong):
         raise ValueError(
-            f"{who}: errors returned {wrong[0]:.3g} m for what was hit; {largest:.3g} m, which no "
-            "distance within the sensor's range adds anything to, is too much"
+            f"{who}: errors returned {wrong[0]:.3g} m for what was hit; write at most "
+            f"{largest:.3g} m, beyond which every reading is out of range"
         )
 
 

@@ -397,7 +397,7 @@ class Session:
 
 def _choice(sensors: Sequence[str] | None, *, privileged: bool) -> PlannerChoice:
     def build() -> Planner:
-        raise InputError("the planner of a session is the caller that steps it")
+        raise InputError("a session takes no planner: your own program calls step() with commands")
 
     return PlannerChoice(
         name="session",

@@ -172,7 +172,7 @@ def _check_suite(suite: str) -> None:
     """
     expect("suite", suite, str)
     if suite != Path(suite).name or path_problem(suite):
-        raise InputError(f"suite '{suite}' is not the name of a folder")
+        raise InputError(f"suite '{suite}' must be usable as the name of a folder")
 
 
 def make_run(

@@ -102,7 +102,7 @@ class StudySpec(Spec):
         if isinstance(value, tuple) and len(set(value)) < len(value):
             raise ValueError("two participants have the same pseudonym")
         if isinstance(value, tuple) and not 1 <= len(value) <= _MOST:
-            raise ValueError(f"1 to {_MOST} participants are wanted")
+            raise ValueError(f"write 1 to {_MOST} participants")
         return value
 
     @property
@@ -167,7 +167,9 @@ def planner_text(study: Study, condition: StudyCondition, registry: Registry) ->
     what = condition.planner
     if isinstance(what, dict):
         if set(what) != {"kind"}:
-            raise InputError("a planner with parameters has a file of its own")
+            raise InputError(
+                "a planner with parameters needs a file of its own: write its fields there, and name the file here"
+            )
         what = str(what["kind"])
     path, colon, name = what.rpartition(":")
     text = f"{study.beside(path)}{colon}{name}" if path else study.beside(what)

@@ -252,7 +252,9 @@ class Agent(Spec):
     @model_validator(mode="after")
     def _portals_have_no_end(self) -> Agent:
         if self.portals and self.at_goal:
-            raise ValueError("who walks through portals has no 'at_goal'")
+            raise ValueError(
+                "people who walk through portals leave at their goal: leave out 'at_goal'"
+            )
         return self
 
 

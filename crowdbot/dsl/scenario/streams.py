@@ -188,7 +188,7 @@ class QueueStream(Stream):
         if (self.count is None) == (self.arrivals is None):
             raise ValueError("write one of 'count' and 'arrivals'")
         if self.groups:
-            raise ValueError("a queue has no groups")
+            raise ValueError("people in a queue come one by one: leave out groups")
         return self
 
     @property

@@ -57,7 +57,7 @@ class Round(Spec):
     @model_validator(mode="after")
     def _in_order(self) -> Round:
         if self.opens and self.closes and self.begin >= self.end:
-            raise ValueError("a round closes after it opens")
+            raise ValueError("a round must close after it opens")
         return self
 
     @property

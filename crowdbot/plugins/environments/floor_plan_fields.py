@@ -102,9 +102,9 @@ class FloorPlanFields(EnvironmentSpec):
         if (self.file is None) == (self.wkt is None):
             raise ValueError("write one of 'file' and 'wkt'")
         if self.wkt is not None and self.format not in ("auto", "wkt"):
-            raise ValueError(f"format '{self.format}' belongs to a file")
+            raise ValueError(f"format '{self.format}' needs a 'file', not 'wkt'")
         if self.layers and (self.file is None or self.read_as != "dxf"):
-            raise ValueError("'layers' belongs to DXF")
+            raise ValueError("'layers' is for DXF files only: leave it out")
         if self.file is not None and self.format == "auto" and self._suffix not in _SUFFIXES:
             known = ", ".join(sorted(_SUFFIXES))
             raise ValueError(f"the name of file ends in none of {known}; write its 'format'")

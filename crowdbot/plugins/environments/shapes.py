@@ -43,7 +43,7 @@ class UprightSpec(Spec):
     @model_validator(mode="after")
     def _base_below_top(self) -> UprightSpec:
         if self.base < 0.0:
-            raise ValueError("base must not be below the floor")
+            raise ValueError("base must not be below the floor, 0 m")
         if self.height is not None and not self.base < self.height:
             raise ValueError(f"base {self.base:g} m must be below height {self.height:g} m")
         return self

@@ -45,7 +45,7 @@ class LidarSpec(RangeSensorSpec):
         if not self.angle_min < self.angle_max:
             raise ValueError("angle_min must be below angle_max")
         if self.angle_max - self.angle_min > 2.0 * math.pi + _SLACK:
-            raise ValueError("a scan is at most one turn")
+            raise ValueError("a scan covers at most one turn, 360 deg")
         if self.beams > MOST_RAYS:
             raise ValueError(f"{self.beams} beams, more than {MOST_RAYS}: angle_step is too small")
         return self

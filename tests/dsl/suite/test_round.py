@@ -55,7 +55,7 @@ def test_it_is_read_and_changes_no_hash(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "says"),
     [
-        ("round: {opens: 2027-02-01, closes: 2027-01-01}", "a round closes after it opens"),
+        ("round: {opens: 2027-02-01, closes: 2027-01-01}", "a round must close after it opens"),
         ("round: {closes: soon}", "write a day such as 2027-01-31"),
         ("round: {closes: 2027-01-31T12:00}", "write a day such as 2027-01-31"),
         ("round: {planners: glued}", "planners"),

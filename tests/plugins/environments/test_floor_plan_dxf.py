@@ -71,7 +71,7 @@ HALL = box("FLOOR", 0, 0, 10, 6)
 
 
 def test_layers_belong_to_dxf() -> None:
-    with pytest.raises(ValueError, match="'layers' belongs to DXF"):
+    with pytest.raises(ValueError, match="'layers' is for DXF files only"):
         FloorPlanSpec.model_validate({"wkt": "POLYGON ((0 0, 9 0, 9 5, 0 0))",
                                       "layers": {"A": "walls"}})  # fmt: skip
     plain = FloorPlanSpec.model_validate({"wkt": "POLYGON ((0 0, 9 0, 9 5, 0 0))"})

@@ -110,7 +110,10 @@ def check(
     suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
     commitment: Annotated[
         str | None,
-        typer.Option(metavar="sha256:HEX", help="What the organiser published before."),
+        typer.Option(
+            metavar="sha256:HEX",
+            help="The hash that the organiser published before the draws were revealed.",
+        ),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

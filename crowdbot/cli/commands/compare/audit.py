@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def audit(
-    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File or name.")],
+    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
     scenarios: Annotated[
         int | None,
         typer.Option(

@@ -57,7 +57,9 @@ def show(
     out: _Out = _ROOT,
     metric: Annotated[
         list[str] | None,
-        typer.Option(metavar="GLOB", help="Default: the suite's, and a few; repeatable."),
+        typer.Option(
+            metavar="GLOB", help="A metric to show; default: the suite's, and a few; repeatable."
+        ),
     ] = None,
     variant: Annotated[
         str | None,
@@ -112,6 +114,8 @@ def show(
         print_lines(_worst(found, metric[0], variant, worst), as_csv=as_csv, as_json=as_json)
         return
     groups = [name.strip() for name in by.split(",") if name.strip()]
+    if "suite" not in groups and any(run.changes for run in found.runs):
+        groups.append("suite")  # each change to a scenario is a suite of its own
     known = metrics_of(found.scores)
     first = [*named_metrics(found.runs), *_HEADLINES]
     wanted = metric or [m for m in dict.fromkeys(first) if m in known]

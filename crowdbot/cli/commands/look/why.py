@@ -46,7 +46,7 @@ def why(
     check_ending(out, ".html")
     if (path / RECORD).is_file():
         if planner:
-            raise UsageError(f"--planner: {path} is one run")
+            raise UsageError(f"--planner is for a folder of runs, and {path} is one run")
         one = explain(path, robot)
         _write(out, one.title, [one], [])
         _tell([one.as_json()] if as_json else [one.title, *one.sentences], out, as_json)

@@ -38,7 +38,7 @@ _Metrics = Annotated[
         help="Which metrics; default: all but experimental ones; repeatable.",
     ),
 ]
-_Variant = Annotated[str, typer.Option(metavar="NAME|all", help="Which variants.")]
+_Variant = Annotated[str, typer.Option(metavar="NAME|all", help="Which variants of metrics.")]
 _Experimental = Annotated[
     bool, typer.Option("--experimental", help="Score experimental metrics, too.")
 ]

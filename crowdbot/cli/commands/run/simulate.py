@@ -65,7 +65,10 @@ def simulate(
     replace_draws: ReplaceDraws = 0,
     duration: Annotated[
         float | None,
-        typer.Option(metavar="SECONDS", help="Of people alone, without a robot; default 60."),
+        typer.Option(
+            metavar="SECONDS",
+            help="How long people walk in a scenario without a robot; default 60.",
+        ),
     ] = None,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,

@@ -37,7 +37,7 @@ def teleop(
         list[str] | None,
         typer.Option(
             metavar="NAME|ROBOT=NAME",
-            help="Planner that shares control: it reads the joystick. With ROBOT=, of another one.",
+            help="Planner that shares control with you; or ROBOT=PLANNER for another robot.",
         ),
     ] = None,
     planner_set: Annotated[
@@ -71,7 +71,10 @@ def teleop(
         RecordChoice, typer.Option(help="Sensors to simulate and record.")
     ] = RecordChoice.used,
     references: Annotated[
-        bool, typer.Option(help="First simulate the people alone, unless done before.")
+        bool,
+        typer.Option(
+            help="Simulate the people without the robot first, to compare with; once is enough."
+        ),
     ] = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

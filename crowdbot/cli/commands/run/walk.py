@@ -48,7 +48,7 @@ def walk(
         list[str] | None,
         typer.Option(
             metavar="[ROBOT=]NAME|FILE|file.py:Class",
-            help="The planner of the robot, dwa by default; repeatable with the names of robots.",
+            help="The planner of the robot; default dwa. With several robots ROBOT=PLANNER; repeatable.",
         ),
     ] = None,
     planner_set: Annotated[
@@ -120,7 +120,7 @@ def _point(option: str, text: str | None) -> tuple[float, float] | None:
     except ValueError:
         raise UsageError(f"{option} {text}: a place is X,Y in m, such as 6,-0.5") from None
     if not (abs(x) < 1e6 and abs(y) < 1e6):
-        raise UsageError(f"{option} {text}: that is not a place")
+        raise UsageError(f"{option} {text}: is too far away; write numbers below 1 000 000 m")
     return x, y
 
 

@@ -45,7 +45,7 @@ class PageClient:
             said = json.loads(frame)
             op = self._ops.get(said.get("op", "")) if isinstance(said, dict) else None
             if op is None:
-                raise InputError("unknown message")
+                raise InputError("the page sent a message of an unknown kind")
             op(said)
         except InputError as error:
             self.say("error", text=str(error))

@@ -42,7 +42,9 @@ def policy_choice(text: str, given: Mapping[str, Any], registry: Registry) -> Pl
     if not path.is_file():
         raise InputError(f"{path}: no such file{suggest_files(path)}")
     if given:
-        raise InputError(f"{path}: a policy has no parameter '{next(iter(given))}'")
+        raise InputError(
+            f"{path}: a trained policy takes no parameters; leave out '{next(iter(given))}'"
+        )
     _, conventions = _load(text, registry)
     sha256 = sha256_of(path)
 

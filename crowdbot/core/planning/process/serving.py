@@ -41,7 +41,7 @@ class Line:
             return None
         (size,) = _HEAD.unpack(head)
         if size > _LONGEST:
-            raise ValueError(f"a message of {size} bytes")
+            raise ValueError(f"a message is too large: {size} bytes")
         raw = self._bytes(size)
         if raw is None:
             return None

@@ -171,7 +171,9 @@ class TablePickle:
             raise TypeError("something is set in what is not a mapping")
         for key, value in zip(items[::2], items[1::2], strict=True):
             if not isinstance(key, str | int):
-                raise TypeError("a key is neither text nor a number")
+                raise TypeError(
+                    "the file of weights is not one: a name in it is neither text nor a number"
+                )
             found[key] = value
 
     # ---------------------------------------------------------------------------- memo
@@ -210,14 +212,18 @@ class TablePickle:
     def _do_reduce(self, _: Any) -> None:
         arguments, name = self._pop(), self._pop()
         if not isinstance(name, _Name) or name.call is None or not isinstance(arguments, tuple):
-            raise TypeError("something is called that cannot be")
+            raise TypeError(
+                "the file of weights is not one: it calls something that is no function"
+            )
         self._stack.append(name.call(arguments))
 
     def _do_build(self, _: Any) -> None:
         """Drop the state of an ordered mapping: versions of PyTorch's modules."""
         state = self._pop()
         if not isinstance(self._stack[-1], dict) or not isinstance(state, dict):
-            raise TypeError("something has a state that is not a mapping")
+            raise TypeError(
+                "the file of weights is not one: a part of it has a state without names"
+            )
 
     def _do_binpersid(self, _: Any) -> None:
         word, kind, key, _place, count, *rest = self._pop()
@@ -233,7 +239,9 @@ def _ordered(arguments: tuple[Any, ...]) -> dict[Any, Any]:
     for pairs in arguments:
         for key, value in pairs:
             if not isinstance(key, str | int):
-                raise TypeError("a key is neither text nor a number")
+                raise TypeError(
+                    "the file of weights is not one: a name in it is neither text nor a number"
+                )
             found[key] = value
     return found
 
@@ -248,7 +256,7 @@ def _tensor(arguments: tuple[Any, ...]) -> TensorView:
 
 def _parameter(arguments: tuple[Any, ...]) -> TensorView:
     if not isinstance(arguments[0], TensorView):
-        raise TypeError("a parameter is not a tensor")
+        raise TypeError("the file of weights is not one: a parameter in it is not a tensor")
     return arguments[0]
 
 

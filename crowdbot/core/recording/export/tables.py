@@ -160,7 +160,9 @@ def trajnet(runs: Iterable[tuple[Trajectories, str]]) -> str:
     for number, (run, name) in enumerate(runs):
         rows = [_row(frame + f, who + p, x, y) for f, p, x, y in _trajnet_rows(run)]
         if not rows:
-            raise InputError(f"{name}: no second sample at 2.5 frames a second")
+            raise InputError(
+                f"{name}: is too short for trajnet, which needs two frames 0.4 s apart"
+            )
         last = max(row["track"]["f"] for row in rows)
         scene = {"id": number, "p": who, "s": frame, "e": last, "fps": TRAJNET_RATE, "tag": name}
         scenes.append({"scene": scene})

@@ -111,7 +111,7 @@ class StatesReader:
         """Return all samples of a run.
 
         Raises:
-            InputError: samples are missing or inconsistent.
+            InputError: parts of the recording are missing or inconsistent.
         """
         parts = [self._of_message(message) for message in messages]
         if len({part.robot.shape[1] for part in parts}) > 1:
@@ -128,7 +128,7 @@ class StatesReader:
         from crowdbot.core.recording.motion.codec import Packed  # like `_codec`
 
         if message.first != self._read:
-            raise InputError(f"sample {self._read} is missing")
+            raise InputError(f"a part of the recording is missing: sample {self._read}")
         count = len(message.t)
         goals = None if self._goals is None else self._goals.goals(self._read, count)
         self._read += count
@@ -136,7 +136,7 @@ class StatesReader:
         bits = np.unpackbits(message.jump, count=count * self._people) if has_jump.any() else None
         zero = np.zeros((count, self._people), np.bool_)
         if count == 0 or len(has_jump) != count or len(message.robot) % count:
-            raise InputError("samples are missing")
+            raise InputError("parts of the recording are missing")
         return States(
             message.t,
             message.robot.reshape(count, -1),

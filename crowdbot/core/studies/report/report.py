@@ -47,7 +47,7 @@ def findings_of(
         UnknownNameError: no drive has a score.
     """
     if not rows:
-        raise InputError(f"{study.path}: nothing was driven yet")
+        raise InputError(f"{study.path}: there are no runs in it yet")
     there = {n for row in rows for n, v in row.items() if "." in n and v is not None}
     for name in scores:
         if name not in there:

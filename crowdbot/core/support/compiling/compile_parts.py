@@ -155,7 +155,7 @@ class KernelDispatcher(CPUDispatcher):
         """
         with global_compiler_lock, seldom_collected():
             if not self._can_compile:
-                raise RuntimeError("compilation disabled")
+                raise RuntimeError("compiling is switched off, by NUMBA_DISABLE_JIT")
             with self._compiling_counter:
                 arguments = tuple(normalize_signature(sig)[0])
                 known: Any = self.overloads.get(arguments)
