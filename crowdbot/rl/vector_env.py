@@ -195,7 +195,8 @@ class NavVectorEnv(VectorEnv):
         mask = np.asarray(given)
         if mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
             raise InputError(
-                f"reset_mask must be a bool array of shape {(self.num_envs,)} with at least one True"
+                f"reset_mask must be a bool array of shape {(self.num_envs,)} with at least one "
+                "True"
             )
         return mask
 

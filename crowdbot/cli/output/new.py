@@ -65,7 +65,8 @@ def _check_name(name: str, registry: Registry) -> None:
         )
     if name == BUILTIN or keyword.iskeyword(name):
         raise InputError(
-            f"'{name}' cannot be the name of a plugin: Python or crowdbot uses it; choose another name"
+            f"'{name}' cannot be the name of a plugin: Python or crowdbot uses it; choose "
+            "another name"
         )
     taken: dict[str, Plugin] = {p.name: p for p in (*registry.plugins, *registry.excluded)}
     if name in taken:

@@ -43,7 +43,8 @@ def play(text: str, file: Path, robots: list[str]) -> dict[str, Any]:
             )  # fmt: skip
         except subprocess.TimeoutExpired:
             raise InputError(
-                f"the simulation took more than {_PATIENCE:g} s and was ended; play fewer people or a shorter time"
+                f"the simulation took more than {_PATIENCE:g} s and was ended; play fewer people "
+                "or a shorter time"
             ) from None
         finally:
             aside.unlink(missing_ok=True)

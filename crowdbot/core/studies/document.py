@@ -168,7 +168,8 @@ def planner_text(study: Study, condition: StudyCondition, registry: Registry) ->
     if isinstance(what, dict):
         if set(what) != {"kind"}:
             raise InputError(
-                "a planner with parameters needs a file of its own: write its fields there, and name the file here"
+                "a planner with parameters needs a file of its own: write its fields there, and "
+                "name the file here"
             )
         what = str(what["kind"])
     path, colon, name = what.rpartition(":")

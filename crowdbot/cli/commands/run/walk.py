@@ -48,7 +48,7 @@ def walk(
         list[str] | None,
         typer.Option(
             metavar="[ROBOT=]NAME|FILE|file.py:Class",
-            help="The planner of the robot; default dwa. With several robots ROBOT=PLANNER; repeatable.",
+            help="The planner of the robot; default dwa. ROBOT=PLANNER for several; repeatable.",
         ),
     ] = None,
     planner_set: Annotated[
