@@ -102,7 +102,7 @@ def _descend(root: Any, path: list[str | int], *, create: bool) -> tuple[Any, An
             continue
         if not isinstance(node, Mapping):
             raise InputError(
-                f"'{'.'.join(map(str, path))}' is no field: what comes before it is a single value"
+                f"'{'.'.join(map(str, path))}' is not a field: a single value comes before it"
             )
         if isinstance(left[0], int):
             raise InputError(f"'{_dotted(path)}': these rows are in a table, which is edited there")

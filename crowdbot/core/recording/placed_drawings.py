@@ -1,4 +1,4 @@
-"""What a planner drew, placed in the world: for films, pages and viewers of a finished run."""
+"""Drawings of a planner, placed in the world: for films, pages and viewers of a finished run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a planner drew, as shapes on a map: as the replay shows it."""
+"""Drawings of a planner as shapes on a map, as the replay shows them."""
 
 from __future__ import annotations
 

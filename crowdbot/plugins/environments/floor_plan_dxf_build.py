@@ -201,9 +201,8 @@ def _courses(entity: Any, chord: float) -> Iterator[list[_Point]]:
 def _is_periodic(spline: Any) -> bool:
     """Return True if the curve is defined between inner knots only, as closed ones are."""
     knots, degree = spline.knots, spline.dxf.degree
-    return len(knots) > 2 * degree and (
-        knots[0] != knots[degree] or knots[-1] != knots[-1 - degree]
-    )
+    known = len(knots) > 2 * degree
+    return bool(known and (knots[0] != knots[degree] or knots[-1] != knots[-1 - degree]))
 
 
 def _periodic(spline: Any, chord: float) -> list[_Point]:

@@ -89,7 +89,7 @@ def sorted_plan(
     """
     aside = Counter() if aside is None else aside
     if all(shape.is_empty for shape, _ in found):
-        raise InputError(f"{name}: there are no shapes in the plan")
+        raise InputError(f"{name}: the plan is empty")
     found = [one for one in found if _is_of_place(*one, name, aside)]
     if aside:
         listed = ", ".join(f"{count} feature(s) {what}" for what, count in sorted(aside.items()))
@@ -118,7 +118,7 @@ def _features(content: Any, name: str, aside: Counter[str]) -> Iterator[_Found]:
         if not isinstance(features, list):
             raise InputError(f"{name}: is not GeoJSON: 'features' is not a list")
         if not features:
-            raise InputError(f"{name}: there are no shapes in the plan: it has no features")
+            raise InputError(f"{name}: the plan is empty: it has no features")
         for feature in features:
             yield from _features(feature, name, aside)
     elif kind == "Feature":

@@ -226,7 +226,7 @@ def test_a_refused_plan_is_read_once_and_one_that_could_not_be_opened_again(
     [
         ({}, "write one of 'file' and 'wkt'"),
         ({"file": "x.geojson", "wkt": L_SHAPE}, "write one of"),
-        ({"wkt": L_SHAPE, "format": "ros_map"}, "belongs to a file"),
+        ({"wkt": L_SHAPE, "format": "ros_map"}, "needs a .file."),
         ({"file": "x.dwg"}, "write its 'format'"),
     ],
 )

@@ -1,4 +1,4 @@
-"""What the planners of a finished run drew, as the messages of a live run."""
+"""Drawings of the planners of a finished run, as the messages of a live run."""
 
 from __future__ import annotations
 

@@ -213,7 +213,7 @@ class TablePickle:
         arguments, name = self._pop(), self._pop()
         if not isinstance(name, _Name) or name.call is None or not isinstance(arguments, tuple):
             raise TypeError(
-                "the file of weights is not one: it calls something that is no function"
+                "the file of weights is not one: it calls something that is not a function"
             )
         self._stack.append(name.call(arguments))
 
