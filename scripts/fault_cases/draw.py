@@ -43,7 +43,11 @@ RULES = {
         "within `fault_reaction`",
         False,
     ),
-    "shoved": ("another person touches the robot from the other side meanwhile", False),
+    "shoved": (
+        "another person touches the robot from the other side meanwhile; before a contact this "
+        "excuses only a robot that stood until then",
+        False,
+    ),
     "stands": ("none of these", False),
 }
 

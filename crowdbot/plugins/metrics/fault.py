@@ -36,7 +36,7 @@ class ContactsAtFaultSpec(MetricSpec):
 CONTACTS_AT_FAULT = declare(
     ContactsAtFaultSpec,
     symbol="C_af",
-    spec_version=4,
+    spec_version=5,
     unit="1",
     better="lower",
     minimum=0.0,
@@ -64,7 +64,7 @@ class ContactsPerKmSpec(MetricSpec):
 CONTACTS_PER_KM = declare(
     ContactsPerKmSpec,
     symbol="C_km",
-    spec_version=5,
+    spec_version=6,
     unit="1/km",
     better="lower",
     minimum=0.0,

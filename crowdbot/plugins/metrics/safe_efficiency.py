@@ -47,7 +47,7 @@ class SafeEfficiencySpec(MetricSpec):
 SAFE_EFFICIENCY = declare(
     SafeEfficiencySpec,
     symbol="E_s",
-    spec_version=5,
+    spec_version=6,
     unit="1",
     better="higher",
     minimum=0.0,

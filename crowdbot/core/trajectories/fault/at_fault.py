@@ -5,6 +5,7 @@ from __future__ import annotations
 from crowdbot.core.trajectories.fault.braking import FaultRule, braked_in_time
 from crowdbot.core.trajectories.fault.cutting_in import cut_in
 from crowdbot.core.trajectories.fault.pushing_on import pushed_on
+from crowdbot.core.trajectories.fault.shoved import shoved_into
 from crowdbot.core.trajectories.fault.swerving import swerved
 from crowdbot.core.trajectories.person_contacts import PersonContacts
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -16,7 +17,8 @@ def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_spe
 
     It moved towards the person with the touching point although it could have braked, it came over
     by a turn or a start, it pushed on while the contact lasted, or it cut in before a faster
-    person. If the direction or the person is unknown, a moving robot is at fault.
+    person; not if it stood, and another person shoves it into this one. If the direction or the
+    person is unknown, a moving robot is at fault.
 
     Args:
         run: the run of ``found``.
@@ -32,4 +34,5 @@ def _at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_sp
     driven = ~(found.closing <= rule.speed) & ~braked
     pushed = pushed_on(run, found, rule, jump_speed)
     came = swerved(run, found, rule, jump_speed)
-    return driven | came | pushed | cut_in(run, found, rule, jump_speed)
+    moved = (driven | came) & ~shoved_into(run, found, rule, jump_speed)
+    return moved | pushed | cut_in(run, found, rule, jump_speed)

@@ -1,0 +1,52 @@
+"""Contacts into which another person shoves a robot that stood."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.trajectories.encounters import encounter, people_velocities, robot_velocities
+from crowdbot.core.trajectories.fault.braking import FaultRule
+from crowdbot.core.trajectories.fault.touch_point import TouchPoint, touch_point
+from crowdbot.core.trajectories.person_contacts import PersonContacts
+from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.arrays import Mask
+
+
+def shoved_into(
+    run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float
+) -> Mask:
+    """Return a mask of contacts (K,) into which another person shoves the robot.
+
+    The robot stood before the other person touched it; that contact lasts, is on the other side,
+    and that person moves at least as fast towards the first one as the robot does. A robot that
+    drove before is not excused, nor is one that leaves the person behind it.
+
+    Args:
+        run: the run of ``found``.
+        found: its contacts.
+        rule: the fault rule.
+        jump_speed: speed that detects teleports if none were recorded, m/s.
+    """
+    shoved = np.zeros(len(found), dtype=bool)
+    speed = np.hypot(*robot_velocities(run, jump_speed))
+    for k in np.flatnonzero(found.agent >= 0):
+        others = (found.agent >= 0) & (found.agent != found.agent[k])
+        others &= (found.time < found.time[k]) & (found.end >= found.time[k])
+        others &= speed[found.sample] <= rule.speed
+        if others.any():
+            at = found.sample[k : k + 1]
+            there = touch_point(run, at, found.agent[k : k + 1], jump_speed)
+            pushes = [_pushes(run, int(a), there, int(at[0]), rule, jump_speed)
+                      for a in found.agent[others]]  # fmt: skip
+            shoved[k] = any(pushes)
+    return shoved
+
+
+def _pushes(
+    run: Trajectories, agent: int, there: TouchPoint, sample: int, rule: FaultRule, jump: float
+) -> bool:
+    """Return True if a person is on the other side, and follows as fast as the robot moves."""
+    pair, nx, ny = encounter(run, jump), there.nx[0], there.ny[0]
+    vx, vy = (v[sample, agent] for v in people_velocities(run, jump))
+    behind = pair.px[sample, agent] * nx + pair.py[sample, agent] * ny < 0.0
+    return bool(behind and vx * nx + vy * ny >= there.closing[0] - rule.speed)
