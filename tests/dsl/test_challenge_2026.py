@@ -34,10 +34,13 @@ def crowds(suite: Expansion) -> dict[str, Crowd]:
     return {one.id: one.crowd for one in suite.scenarios if one.crowd is not None}
 
 
-def test_nine_draws_of_each_condition(suite: Expansion) -> None:
+def test_eight_conditions_have_eighteen_draws_and_seven_are_controls(suite: Expansion) -> None:
     conditions = Counter(id_.rpartition("-")[0] for id_ in crowds(suite))
-    assert len(conditions) == 18
-    assert set(conditions.values()) == {9}
+    tell = {k for k in conditions if not k.startswith("in-") and not k.endswith("attentive")}
+    assert len(conditions) == 15
+    assert {k for k, draws in conditions.items() if draws == 18} == tell
+    assert sum(draws for k, draws in conditions.items() if k not in tell) == 18
+    assert min(conditions.values()) == 2, "a stratum needs two draws"
     hashes = {content_hash(one, REGISTRY.spec_versions(one)) for one in suite.scenarios}
     assert len(hashes) == 162
 
@@ -46,8 +49,8 @@ def test_no_two_runs_share_a_draw(suite: Expansion) -> None:
     assert len({crowd.seed for crowd in crowds(suite).values()}) == 162
 
 
-def test_the_densest_counterflow_has_27_runs(suite: Expansion) -> None:
-    assert sum(id_.startswith("counter-d040-") for id_ in crowds(suite)) == 27
+def test_the_densest_counterflow_has_39_runs(suite: Expansion) -> None:
+    assert sum(id_.startswith("counter-d040-") for id_ in crowds(suite)) == 39
 
 
 def test_labels_and_titles_say_the_density_that_is_realised(suite: Expansion) -> None:
@@ -63,12 +66,12 @@ def test_labels_and_titles_say_the_density_that_is_realised(suite: Expansion) ->
 
 
 @pytest.mark.parametrize(
-    ("label", "ignoring", "late"),
-    [("attentive", 0.0, 0.0), ("late", 0.0, 0.4), ("never", 0.1, 0.4)],
+    ("label", "ignoring", "late", "runs"),
+    [("attentive", 0.0, 0.0, 14), ("late", 0.0, 0.4, 74), ("never", 0.1, 0.4, 74)],
 )
-def test_attention(suite: Expansion, label: str, ignoring: float, late: float) -> None:
+def test_attention(suite: Expansion, label: str, ignoring: float, late: float, runs: int) -> None:
     found = [crowd.robot_response for id_, crowd in crowds(suite).items() if f"-{label}-" in id_]
-    assert len(found) == 54
+    assert len(found) == runs
     assert {(r.kind, r.ignoring, r.late) for r in found} == {("giving_way", ignoring, late)}
 
 
