@@ -19,6 +19,8 @@ from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.errors import InputError
 
 SHIPPED = "recorded_corridors.json"
+#: With this many recordings each is compared with the rest; else halves are.
+_FEWEST_FOLDS = 3
 #: Names of the floors: people without avoidance, and straight lines through each other.
 FLOORS: Mapping[str, CrowdModel] = {
     "avoid nobody": CrowdModel(policy=avoid_nobody),
@@ -28,29 +30,31 @@ FLOORS: Mapping[str, CrowdModel] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealismReference:
-    """Recorded people in two halves, which are also compared with each other.
+    """Recorded people, part of whom are also compared with the others.
 
     Attributes:
-        halves: statistics of alternating recordings; a crowd is compared with both.
+        halves: statistics of alternating recordings.
         whole: statistics of all recordings.
         floors: name -> statistics of people without avoidance.
         sources: sources of the recordings.
+        folds: pairs of what crowds are compared with, and the other recordings, which are compared
+            with it in the same way: each recording and the rest, or each half and the other.
     """
 
     halves: tuple[Statistics, Statistics]
     whole: Statistics
     floors: Mapping[str, Statistics]
     sources: tuple[str, ...]
+    folds: tuple[tuple[Statistics, Statistics], ...]
 
     def score(self, crowd: Statistics, seed: int = 0) -> RealismScore:
-        """Return the mean of the scores against both halves."""
-        return _mean([score(crowd, half, seed) for half in self.halves])
+        """Return the mean of the scores against the first of each fold."""
+        return _mean([score(crowd, one, seed) for one, _ in self.folds])
 
     @property
     def ceiling(self) -> RealismScore:
-        """Return one half's score against the other: the level of recorded people."""
-        a, b = self.halves
-        return _mean([score(a, b), score(b, a)])
+        """Return the score of the other recordings in place of a crowd."""
+        return _mean([score(others, one) for one, others in self.folds])
 
     @property
     def floor(self) -> RealismScore:
@@ -75,6 +79,7 @@ class RealismReference:
             halves=(first, second),
             whole=self.whole.within(cells),
             floors={name: floor.within(cells) for name, floor in self.floors.items()},
+            folds=tuple((a.within(cells), b.within(cells)) for a, b in self.folds),
         )
 
     def as_json(self) -> dict[str, Any]:
@@ -95,6 +100,7 @@ class RealismReference:
             whole=Statistics.from_json(data["whole"]),
             floors={name: Statistics.from_json(f) for name, f in data["floors"].items()},
             sources=tuple(data["sources"]),
+            folds=((first, second), (second, first)),
         )
 
 
@@ -112,7 +118,8 @@ def reference_of(
 ) -> RealismReference:
     """Build a reference from tracks; alternating tracks go to the two halves.
 
-    One recording alone is halved in time.
+    Each of three recordings or more is compared with all others, so that few or short ones lower
+    the ceiling less than halves would. One recording alone is halved in time.
 
     Raises:
         InputError: there is nothing to compare.
@@ -120,15 +127,22 @@ def reference_of(
     if not tracks:
         raise InputError("a reference needs at least one recording")
     halves = _halved(tracks[0]) if len(tracks) == 1 else _alternate(tracks)
+    first, second = (statistics_of(half) for half in halves)
     found = RealismReference(
-        halves=(statistics_of(halves[0]), statistics_of(halves[1])),
+        halves=(first, second),
         whole=statistics_of(tracks),
         floors=shipped().floors if floors is None else floors,
         sources=tuple(sources),
+        folds=_folds(tracks) or _shared([(first, second), (second, first)]),
     )
     if not any(compared_cells(half) for half in found.halves):
         raise InputError(
             f"{', '.join(sources)}: no one walks among 0.3 to 2.4 people per m² in windows of 4 m"
+        )
+    if not found.folds:
+        raise InputError(
+            f"{', '.join(sources)}: no two parts have people at the same density, so that nothing "
+            "says how alike recorded people are; give more or longer recordings"
         )
     return found
 
@@ -161,6 +175,26 @@ def _alternate(
         first += some[::2]
         second += some[1::2]
     return first, second
+
+
+def _folds(tracks: Sequence[CorridorTracks]) -> tuple[tuple[Statistics, Statistics], ...]:
+    """Return each recording with all others; none if there are two."""
+    if len(tracks) < _FEWEST_FOLDS:
+        return ()
+    return _shared(
+        [
+            (statistics_of([own]), statistics_of([t for k, t in enumerate(tracks) if k != i]))
+            for i, own in enumerate(tracks)
+        ]
+    )
+
+
+def _shared(
+    pairs: Sequence[tuple[Statistics, Statistics]],
+) -> tuple[tuple[Statistics, Statistics], ...]:
+    """Return the pairs in cells that both have, without those that share none."""
+    both = [[c for c in compared_cells(a) if c in compared_cells(b)] for a, b in pairs]
+    return tuple((a.within(c), b) for (a, b), c in zip(pairs, both, strict=True) if c)
 
 
 def _halved(tracks: CorridorTracks) -> tuple[Sequence[CorridorTracks], Sequence[CorridorTracks]]:

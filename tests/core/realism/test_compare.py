@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ from hypothesis import strategies as st
 
 from crowdbot.core.realism.bins import FEATURES
 from crowdbot.core.realism.compare import beside, compared_cells, score, similarity
+from crowdbot.core.realism.corridor import Corridor, simulate
 from crowdbot.core.realism.features import NEAREST, SPEED, features
-from crowdbot.core.realism.reference import RealismReference, shipped
+from crowdbot.core.realism.model import CrowdModel, ghosts
+from crowdbot.core.realism.reference import RealismReference, reference_of, shipped
 from crowdbot.core.realism.statistics import Statistics, statistics_of
 from crowdbot.core.realism.tables import real_beside
 from crowdbot.core.realism.tracks import CorridorTracks, tracks_of
@@ -137,3 +140,26 @@ def test_recorded_people_are_as_recorded_people() -> None:
     assert beside(whole, whole).diagram_error == pytest.approx(0.0)
     nothing = Statistics(histograms={}, diagram={}, lanes={}, nearest={}, pairs={})
     assert score(nothing, whole).score == 0.0
+
+
+def of_one_kind(count: int, flow: str = "uni") -> list[CorridorTracks]:
+    """Short recordings of people who are alike."""
+    places = (Corridor(flow=flow, density=0.9, seed=k, duration=5.0) for k in range(count))
+    return [simulate(CrowdModel(policy=ghosts), place) for place in places]
+
+
+def test_few_recordings_of_the_same_people_are_about_as_good_as_people() -> None:
+    """Halves of few recordings are less alike than each is with the rest, so the index rises."""
+    runs = of_one_kind(8)
+    reference = reference_of(runs[:5], ["five runs"], floors={"none": statistics_of([])})
+    same = statistics_of(runs[5:])
+    halves = replace(reference, folds=(reference.halves, reference.halves[::-1]))
+    assert len(reference.folds) == 5
+    assert reference.ceiling.score > halves.ceiling.score
+    assert reference.score(same).score <= reference.ceiling.score + 0.03
+
+
+def test_recordings_without_a_density_in_common_are_refused() -> None:
+    runs = [*of_one_kind(1), *of_one_kind(1, "counter")]
+    with pytest.raises(InputError, match="no two parts have people at the same density"):
+        reference_of(runs, ["a.csv", "b.csv"])
