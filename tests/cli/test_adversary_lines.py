@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from crowdbot import cli
 from crowdbot.cli.output.adversary_lines import adversary_lines, adversary_text
 from crowdbot.core.results.results import Results
 from crowdbot.errors import InputError
@@ -38,3 +41,19 @@ def test_without_an_adversary_or_a_careful_planner() -> None:
         runs = tuple(changed(r, role=role) for r in found.runs)
         with pytest.raises(InputError, match=f"no {missing} was run"):
             adversary_lines(replace(found, runs=runs), ())
+
+
+def test_other_planners_are_careful_if_they_are_named() -> None:
+    found = results(0.1)
+    runs = tuple(changed(r, role="candidate") if r.planner == "b" else r for r in found.runs)
+    lines = adversary_lines(replace(found, runs=runs), ("b",))
+    assert [(x["careful"], x["standing"]) for x in lines] == [("b", "ahead")]
+
+
+def test_the_audit_runs_people_mpc_beside_the_adversaries(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    argv = ["audit", "challenge-2026", "--adversaries", "--only", "counter-d040-never-n01"]
+    assert cli.main([*argv, "--dry-run", "--json", "--out", str(tmp_path)]) == 0
+    adversaries, careful = 15, ("dwa", "people_mpc", "stop_and_go")
+    assert json.loads(capsys.readouterr().out)["runs"] == adversaries + len(careful)

@@ -17,7 +17,7 @@ def adversary_lines(results: Results, seeing: Collection[str]) -> list[dict[str,
 
     Args:
         results: runs of one suite.
-        seeing: labels of the floors that read sensors; they and the baselines are careful.
+        seeing: labels of planners that are careful besides the baselines.
 
     Raises:
         InputError: there is no adversary, or no careful planner.

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from crowdbot.core.results.results import Results
     from crowdbot.core.statistics.audit import Audit
 
+#: Planners besides baselines and floors that no adversary may be ahead of.
+_CAREFUL = ("people_mpc",)
+
 
 def audit(
     suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
@@ -68,7 +71,7 @@ def audit(
     registry = installed(plugin, no_plugins)
     request = CampaignRequest(
         suites=[suite],
-        planners=_seeing_floors(registry) if adversaries else (),
+        planners=(*_seeing_floors(registry), *_CAREFUL) if adversaries else (),
         roles=("baseline", "adversary") if adversaries else ("floor", "baseline", "ceiling"),
         seeds=read_seeds(seeds),
         only=only or (),
@@ -113,7 +116,7 @@ def _tell_adversaries(plan: Plan, registry: Registry, exit_code: int, *, as_json
     from crowdbot.core.scoring.score_scale import score_scales
 
     results = replace(_of(Results.open(plan.out), plan), scales=score_scales(registry))
-    lines = adversary_lines(results, _seeing_floors(registry))
+    lines = adversary_lines(results, (*_seeing_floors(registry), *_CAREFUL))
     say(json.dumps(lines, indent=1) if as_json else adversary_text(lines))
     if exit_code or any(line["standing"] == "ahead" for line in lines):
         raise typer.Exit(exit_code or 1)
