@@ -85,8 +85,11 @@ def rows(out: Path) -> Iterator[tuple[str, Scored]]:
 
 
 def scored(folder: Path, changed: Mapping[str, float]) -> Scored:
-    """Return the scores of all runs below a folder, with parameters changed."""
-    found: Scored = {}
+    """Return the scores of runs below a folder, with parameters changed.
+
+    Only scenarios that all of its planners have run count.
+    """
+    found: dict[str, dict[str, tuple[float, float]]] = {}
     for record in sorted(folder.glob("sensitive/*/*/seed-*/run.json")):
         run = crowdbot.Run.open(record.parent)
         scores = crowdbot.score(
@@ -95,8 +98,10 @@ def scored(folder: Path, changed: Mapping[str, float]) -> Scored:
         )  # fmt: skip
         numbers = (scores.find(name, "corrected").value for name in (EFFICIENCY, FAULTS))
         safe, faults = (float("nan") if x is None else x for x in numbers)
-        found.setdefault(record.parts[-3], []).append((safe, faults))
-    return found
+        scenario = record.parts[-4].partition("+")[0]
+        found.setdefault(record.parts[-3], {})[scenario] = safe, faults
+    shared = sorted(set[str].intersection(*map(set, found.values()))) if found else []
+    return {p: [runs[k] for k in shared] for p, runs in found.items()} if shared else {}
 
 
 def turned(own: Mapping[str, float], other: Mapping[str, float], close: float) -> list[str]:
