@@ -1,19 +1,24 @@
 """Train a policy by PPO of Stable-Baselines3, and save it as a planner, with its learning curve.
 
-    python benchmarks/train_ppo.py --minutes 25 --out policy.onnx
+    python benchmarks/train_ppo.py --minutes 6 --out first.onnx
+    python benchmarks/train_ppo.py --start first.zip --noise 0.2 --minutes 5 --out policy.onnx
 
 It learns in short corridors that no edition has, among few people first and many later: the next
-level begins once nine of ten episodes arrive, or when its share of the time is over. Beside the
-policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and ``policy.svg``, its
-learning curve. Time is the processor time of this process.
+level begins once nine of ten episodes arrive, or when its share of the time is over. ``--start``
+goes on from a policy at the last level, with less noise in its actions: what drives well among
+people in spite of much noise keeps too far away without it. Beside the policy stand
+``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and ``policy.svg``, its learning curve.
+Time is the processor time of this process.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import math
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,35 +34,39 @@ from crowdbot.rl import StableVecEnv, conventions, save_onnx
 #: Worlds, what is seen of them, and what they are worth.
 WORLDS: dict[str, Any] = {
     "suite": str(Path(__file__).parent / "training" / "nav-training.yaml"),
-    "levels": ["*-d000-*", "*-d005-*", ["*-d005-*", "*-d010-*"], ["*-d010-*", "*-d020-*"]],
-    "set": [f"robots.robot.sensors.{name}_lidar.angle_step=1 deg" for name in ("front", "rear")],
-    "observation": {
-        "kind": "lidar_stack", "sensor": "front_lidar", "others": ["rear_lidar"], "sectors": 30,
-        "scans": 3, "stride": 4,
-    },
-    "start_spread": {"x": 0.5, "y": 3.5, "yaw": 3.14},
+    "levels": [["counter-d000-*", "counter-d005-*"], "counter-d010-*",
+               ["counter-d010-*", "counter-d020-*"]],
+    "set": ["rates.planner=4 Hz", *(f"robots.robot.sensors.{name}_lidar.{field}"
+            for name in ("front", "rear") for field in ("angle_step=3 deg", "rate=4 Hz"))],
+    "observation": {"kind": "free_velocities", "sensor": "front_lidar", "others": ["rear_lidar"]},
+    "start_spread": {"x": 0.5, "y": 3.5, "yaw": 2.0},
     "reward": {
-        "kind": "comfort", "advance": 2.0, "contact": 60.0, "arrival": 10.0, "change": 0.02,
-        "wall": 5.0,
+        "kind": "comfort", "advance": 2.0, "contact": 0.0, "touch": 12.0, "arrival": 5.0,
+        "change": 0.02, "wall": 5.0, "time": 0.1,
     },
     "contact": "end",
-    "draws": 200,
+    "draws": 24,
 }  # fmt: skip
 COLUMNS = ("processor_s", "steps", "level", "episodes", "reward", "arrived", "touched", "seconds")
 #: Share of the time after which each level ends at the latest.
-ENDS = (0.05, 0.2, 0.5, 1.0)
+ENDS = (0.15, 0.4, 1.0)
 READY = 0.9
 
 
 class Course(BaseCallback):
     """Writes the curve, raises the level, saves the policy and stops when the time is over."""
 
-    def __init__(self, minutes: float, out: Path) -> None:
+    def __init__(self, minutes: float, out: Path, before: Sequence[tuple[float, ...]]) -> None:
         super().__init__()
-        self._budget, self._out, self._level = 60.0 * minutes, out, 0
+        self._budget, self._out, self._rate = 60.0 * minutes, out, 1e-4 if before else 3e-4
+        self._level = len(ENDS) - 1 if before else 0
         self._ended: list[tuple[float, bool, bool, float]] = []
-        self._rows: list[tuple[float, ...]] = []
+        self._rows, self._earlier = list(before), before[-1][:2] if before else (0.0, 0)
         self._begun = time.process_time()
+
+    def _on_training_start(self) -> None:
+        env: Any = self.training_env
+        env.set_level(self._level)
 
     @property
     def used(self) -> float:
@@ -78,7 +87,14 @@ class Course(BaseCallback):
         if len(self._ended) < self.training_env.num_envs // 2:
             return
         means = np.mean(np.array(self._ended, float), axis=0)
-        row = (self.used, self.num_timesteps, self._level, len(self._ended), *means.tolist())
+        spent, steps = self._earlier
+        row = (
+            spent + self.used,
+            steps + self.num_timesteps,
+            self._level,
+            len(self._ended),
+            *means.tolist(),
+        )
         self._rows.append(row)
         self._ended.clear()
         print("  ".join(f"{name} {value:.6g}" for name, value in zip(COLUMNS, row, strict=True)),
@@ -88,7 +104,7 @@ class Course(BaseCallback):
             self.save()
 
     def _learn_more_slowly(self) -> None:
-        rate = 3e-4 * max(0.1, 1.0 - self.used / self._budget)
+        rate = self._rate * max(0.1, 1.0 - self.used / self._budget)
         self.model.lr_schedule = lambda _: rate
 
     def _raise_level(self, arrived: float) -> None:
@@ -128,31 +144,44 @@ def draw(curve: Path, out: Path) -> None:
     figure.savefig(out, metadata={"Date": None})
 
 
-def train(minutes: float, worlds: int, threads: int, out: Path, seed: int = 1) -> None:
+def train(given: argparse.Namespace) -> None:
     """Train for some processor time and save the policy."""
     torch.set_num_threads(1)
-    env = StableVecEnv(worlds, threads=threads, **WORLDS)
-    model = PPO(
-        "MlpPolicy", env, n_steps=128, batch_size=4096, n_epochs=5, gamma=0.99, gae_lambda=0.95,
-        learning_rate=3e-4, seed=seed, device="cpu",
-        policy_kwargs={"net_arch": [128, 128], "log_std_init": -0.7},
-    )  # fmt: skip
-    course = Course(minutes, out)
+    env = StableVecEnv(given.worlds, threads=given.threads, **WORLDS)
+    before: list[tuple[float, ...]] = []
+    if given.start:
+        model = PPO.load(given.start, env, device="cpu")
+        model.policy.log_std.data.fill_(math.log(given.noise))
+        rows = np.loadtxt(given.start.with_suffix(".csv"), delimiter=",", skiprows=1, ndmin=2)
+        before = [tuple(row) for row in rows.tolist()]
+    else:
+        model = begin(env, given.seed, given.noise)
+    course = Course(given.minutes, given.out, before)
     model.learn(10**9, callback=course)
     course.save()
     env.close()
 
 
+def begin(env: StableVecEnv, seed: int, noise: float) -> PPO:
+    """Return a policy that knows nothing."""
+    return PPO(
+        "MlpPolicy", env, n_steps=64, batch_size=2048, n_epochs=6, gamma=0.985, gae_lambda=0.95,
+        learning_rate=3e-4, seed=seed, device="cpu",
+        policy_kwargs={"net_arch": [128, 128], "log_std_init": math.log(noise)},
+    )  # fmt: skip
+
+
 def main(arguments: list[str]) -> None:
     """Read the arguments and train."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=float, default=25.0, help="of processor time")
-    parser.add_argument("--worlds", type=int, default=128)
+    parser.add_argument("--minutes", type=float, default=6.0, help="of processor time")
+    parser.add_argument("--worlds", type=int, default=96)
+    parser.add_argument("--noise", type=float, default=0.5, help="deviation of actions")
+    parser.add_argument("--start", type=Path, help="policy.zip, beside policy.csv, to go on from")
     parser.add_argument("--threads", type=int, default=1, help="that step the worlds")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("policy.onnx"))
-    given = parser.parse_args(arguments)
-    train(given.minutes, given.worlds, given.threads, given.out, given.seed)
+    train(parser.parse_args(arguments))
 
 
 if __name__ == "__main__":
