@@ -173,7 +173,12 @@ def _expanding(spec: str, where: Whereabouts) -> Expanding:
 
 def _attach(expansion: Expansion, files: LockFiles, origins: _Origins) -> None:
     for index, scenario in enumerate(expansion.scenarios):
-        scenario.lock_to(Locked(files, partial(origins.scenario, index)))
+        scenario.lock_to(Locked(files, partial(_origin, origins, index)))
+
+
+def _origin(origins: _Origins, index: int) -> Scenario:
+    """Return a scenario of a suite; a function, since cloudpickle keeps the class of a method."""
+    return origins.scenario(index)
 
 
 def installed(registry: Registry) -> Installed:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import pickle
 
+import cloudpickle  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 
@@ -31,6 +32,16 @@ def test_another_process_has_the_same_scenario() -> None:
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         found = pool.map(_seen, given)
     assert found == [_seen(scenario) for scenario in given]
+
+
+def test_by_cloudpickle_which_dask_takes_for_functions_of_a_script() -> None:
+    """It keeps the class of a bound method, also if the object becomes another's."""
+    given = crowdbot.load("challenge-2020", IDS[0], set="robots.robot.task.time_limit=2")
+    assert _seen(cloudpickle.loads(cloudpickle.dumps(given))) == _seen(given)
+    suite = crowdbot.load("challenge-2020")
+    assert isinstance(suite, Expansion)
+    found = cloudpickle.loads(cloudpickle.dumps(suite))
+    assert found.scenarios[3].locked.origin() == suite.scenarios[3]
 
 
 @pytest.mark.parametrize("suite", ["challenge-2020", "challenge-2026", "social-guidelines"])
