@@ -31,7 +31,9 @@ def agreement(spec: FloorPlanFields, place: Place) -> Agreement:
     image = None if spec.image is None else spec.image.file
     found, free = cells_of(spec, file, image)
     free = free[::-1]
-    outer = _union(shapely.Polygon(face.points) for face in place.faces)
+    # Where nothing is a face, solid parts are all around, and what is beyond them is no floor.
+    around = [face.points for face in place.faces] or [s.outline for s in place.solids]
+    outer = _union(map(shapely.Polygon, around))
     solid = _union(shapely.Polygon(s.outline, s.holes) for s in place.solids)
     small = _union(map(shapely.Polygon, place.left_out))
     wrong, left_out, where = 0, 0, list[tuple[float, float]]()
@@ -39,7 +41,7 @@ def agreement(spec: FloorPlanFields, place: Place) -> Agreement:
         rows = free[first : first + _ROWS]
         j, i = np.nonzero(np.ones_like(rows))
         at = moved(found.at(np.column_stack([i + 0.5, j + first + 0.5])), spec)
-        on_floor = ~_contains(solid, at) & (_contains(outer, at) if place.faces else True)
+        on_floor = _contains(outer, at) & ~_contains(solid, at)
         differ = on_floor != rows.ravel()
         small_here = differ & _contains(small, at)
         left_out += int(small_here.sum())

@@ -303,3 +303,20 @@ def test_corners_whose_heights_are_null(tmp_path: Path) -> None:
     file.write_text(json.dumps({"type": "Polygon", "coordinates": [ring]}))
     with pytest.raises(InputError, match="a Polygon is damaged"):
         _plan(file=str(file))
+
+
+@pytest.mark.parametrize("resolution", [0.1, 0.5, 2.0])
+def test_cells_beyond_what_is_solid_around_thin_walls_are_no_floor(
+    tmp_path: Path, resolution: float
+) -> None:
+    """The outer border is thicker than the block that encloses the floor."""
+    cells = np.full((20, 30), 254, np.uint8)
+    cells[:3] = cells[-3:] = 0
+    cells[:, :3] = cells[:, -3:] = 0
+    cells[3:14, 12] = 0  # too thin for walls with a thickness behind their face
+    Image.fromarray(cells).save(tmp_path / "map.png")
+    text = f"image: map.png\nresolution: {resolution}\norigin: [1.0, 2.0, 0.3]\n"
+    (tmp_path / "map.yaml").write_text(text, "utf-8")
+    found = FloorPlanSpec.model_validate({"file": str(tmp_path / "map.yaml")}).against_image()
+    assert found is not None
+    assert (found.cells, found.wrong) == (600, 0)
