@@ -192,10 +192,13 @@ def _read_png(file: Path, content: bytes, alpha: Alpha) -> NDArray[np.float64]:
     if not 0 < width * height <= MOST_PIXELS:  # before its pixels are unpacked
         raise InputError(f"{file.name}: {width} x {height} pixels are not an image of a map")
     try:
-        with Image.open(file) as image:
-            return _grey(image, alpha)
+        image = Image.open(file)
+        image.load()
+    except MemoryError:
+        raise
     except Exception as error:  # its decoders raise many types
         raise InputError(f"{file.name}: is a damaged PNG image: {error}") from error
+    return _grey(image, alpha)
 
 
 def _grey(image: Any, alpha: Alpha) -> NDArray[np.float64]:

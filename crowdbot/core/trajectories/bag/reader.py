@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from crowdbot.errors import CrowdbotError, InputError, UnknownNameError
+from crowdbot.errors import InputError, UnknownNameError
 
 
 class BagMessage(NamedTuple):
@@ -38,7 +38,7 @@ def messages(path: Path, topics: set[str]) -> Iterator[BagMessage]:
         chosen = [c for c in reader.connections if c.topic in topics]
         for connection in chosen:
             _check_layout(path, reader, connection)
-        for connection, log, raw in reader.messages(connections=chosen):
+        for connection, log, raw in _raw_messages(path, reader, chosen):
             yield BagMessage(connection.topic, log, _decoded(path, reader, connection, raw))
 
 
@@ -62,22 +62,41 @@ def _opened(path: Path) -> Iterator[Any]:
 
     if not path.exists():
         raise InputError(f"{path}: no such file")
-    types = known_types()
     for database in sorted(path.glob("*.db3")) if path.is_dir() else [path]:
         _check_whole(database)
-    try:
-        with AnyReader(_parts(path), default_typestore=types) as reader:
-            if reader.is2:  # a bag may have definitions of some of its types
-                own = reader.typestore.fielddefs
-                reader.typestore.register(
-                    {name: fields for name, fields in types.fielddefs.items() if name not in own}
-                )
-            yield reader
-    except (CrowdbotError, MemoryError):
-        raise
-    except Exception as error:  # a library on bytes that may be damaged anywhere
-        text = str(error) or type(error).__name__
-        raise InputError(f"{path}: not a bag that can be read: {text}{_remedy(text)}") from error
+    types, parts = known_types(), _parts(path)
+    with ExitStack() as stack:
+        try:
+            reader = stack.enter_context(AnyReader(parts, default_typestore=types))
+        except Exception as error:  # a library on bytes that may be damaged anywhere
+            raise _not_readable(path, error) from error
+        if reader.is2:  # a bag may have definitions of some of its types
+            own = reader.typestore.fielddefs
+            reader.typestore.register(
+                {name: fields for name, fields in types.fielddefs.items() if name not in own}
+            )
+        yield reader
+
+
+def _raw_messages(path: Path, reader: Any, chosen: list[Any]) -> Iterator[tuple[Any, int, bytes]]:
+    """Yield connections, times (ns) and bytes; only the library's errors are the bag's."""
+    found = reader.messages(connections=chosen)
+    while True:
+        try:
+            message = next(found, None)
+        except Exception as error:  # as in `_opened`
+            raise _not_readable(path, error) from error
+        if message is None:
+            return
+        yield message
+
+
+def _not_readable(path: Path, error: Exception) -> Exception:
+    """Return what to raise for an error of the library."""
+    if isinstance(error, MemoryError):
+        return error
+    text = str(error) or type(error).__name__
+    return InputError(f"{path}: not a bag that can be read: {text}{_remedy(text)}")
 
 
 def _parts(path: Path) -> list[Path]:
@@ -153,6 +172,8 @@ def _check_layout(path: Path, reader: Any, connection: Any) -> None:
 def _decoded(path: Path, reader: Any, connection: Any, raw: bytes) -> Any:
     try:
         return reader.deserialize(raw, connection.msgtype)
+    except MemoryError:
+        raise
     except Exception as error:  # generated code, which may raise anything on bytes of another type
         raise InputError(
             f"{path}: {connection.topic}: a message is not the {connection.msgtype} that the bag "

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from rosbags.rosbag2 import StoragePlugin
 
+from crowdbot.core.trajectories.bag import reader
 from crowdbot.errors import InputError
 from tests.core.trajectories.bag.bag_kit import check_walkers, marker_rows, read, robot_rows, write
 
@@ -85,4 +86,38 @@ def test_what_cannot_be_read_is_refused_with_what_helps(
     bag = _bag(tmp_path, plugin)
     damage(bag)
     with pytest.raises(InputError, match=told):
+        read(bag)
+
+
+def _our_fault(*_: object) -> None:
+    raise KeyError("a fault of ours")
+
+
+@pytest.mark.parametrize("ours", ["definitions.known_types", "reader._remedy", "reader._parts"])
+def test_faults_of_ours_are_not_told_as_the_bags(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ours: str
+) -> None:
+    bag = _bag(tmp_path)
+    _other(bag)
+    monkeypatch.setattr(f"crowdbot.core.trajectories.bag.{ours}", _our_fault)
+    with pytest.raises(KeyError, match="a fault of ours"):
+        read(bag)
+
+
+def test_faults_while_a_bag_is_open_keep_their_type(tmp_path: Path) -> None:
+    bag = _bag(tmp_path)
+    with pytest.raises(ZeroDivisionError), reader._opened(bag):
+        raise ZeroDivisionError
+
+
+def test_what_the_library_finds_amid_a_bag_is_the_bags(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object, **__: object) -> Iterator[tuple[object, int, bytes]]:
+        raise IndexError("row 3")
+        yield None, 0, b""
+
+    bag = _bag(tmp_path)
+    monkeypatch.setattr("rosbags.highlevel.AnyReader.messages", broken)
+    with pytest.raises(InputError, match="not a bag that can be read: row 3"):
         read(bag)
