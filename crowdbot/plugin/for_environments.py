@@ -1,7 +1,8 @@
-"""Tools of environments, for the build side: files of others, read with limits."""
+"""Tools of environments, for the build side: files of others, read with limits, and made valid."""
 
 from __future__ import annotations
 
+from crowdbot.core.geometry.valid_shape import valid_shape
 from crowdbot.core.support.strict_json import DEEPEST, parse_foreign_json
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes, input_text
 from crowdbot.dsl.text.plain_document import read_document
@@ -15,4 +16,5 @@ __all__ = [
     "input_text",
     "parse_foreign_json",
     "read_document",
+    "valid_shape",
 ]

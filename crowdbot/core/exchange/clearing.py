@@ -12,6 +12,7 @@ from typing import Any
 from crowdbot.core.exchange.report import Report, Trace
 from crowdbot.core.exchange.rows import Fate
 from crowdbot.core.exchange.scene import USUAL_RADIUS, Data, Draft, Path
+from crowdbot.core.geometry.valid_shape import valid_shape
 
 #: Room that is kept to what is solid, m; side of an area in place of one without room, m.
 _APART, _SIDE = 0.01, 0.2
@@ -228,7 +229,7 @@ def _floor(scene: Draft) -> Any:
 
     env = scene.environment
     if "wkt" in env:
-        return from_wkt(env["wkt"]).buffer(0)
+        return valid_shape(from_wkt(env["wkt"])).buffer(0)  # polygons only
     if env.get("border") != "walls" or "area" not in env:
         return None
     (x0, x1), (y0, y1) = env["area"]["x"], env["area"]["y"]

@@ -11,7 +11,7 @@ from typing import Any
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.plugin import InputError, Place
-from crowdbot.plugin.for_environments import input_text
+from crowdbot.plugin.for_environments import input_text, valid_shape
 from crowdbot.plugins.environments.floor_plan_detail_build import without_details
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_grid_build import read_grid
@@ -177,7 +177,7 @@ def _repaired(shape: Any, name: str) -> Any:
     if not shapely.is_valid(shape):
         why = shapely.is_valid_reason(shape)
         _LOG.warning("%s: an outline was repaired: %s", name, why)
-        shape = shapely.make_valid(shape)
+        shape = valid_shape(shape)
     return shapely.set_precision(shape, _GRID)
 
 

@@ -14,7 +14,7 @@ import shapely  # type: ignore[import-untyped,unused-ignore]
 from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.plugin import InputError, did_you_mean, nearest
-from crowdbot.plugin.for_environments import parse_foreign_json
+from crowdbot.plugin.for_environments import parse_foreign_json, valid_shape
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_units_build import (
     UNITS,
@@ -258,7 +258,7 @@ def _height_of(shape: Any) -> float:
 
 def _check_cover(walkable: Iterable[Any], name: str) -> None:
     """Warn if much of the floor is covered twice, as by storeys that are not named."""
-    floors = [shapely.make_valid(p) for p in walkable]
+    floors = [valid_shape(p) for p in walkable]
     once = shapely.union_all(floors).area if len(floors) > 1 else 0.0
     twice = sum(p.area for p in floors) - once
     if once and twice > _COVERED_TWICE * once:

@@ -27,6 +27,8 @@ MOST_PIXELS = 64_000_000
 _OCCUPIED, _FREE = 0.65, 0.196
 #: Length of the beginning of a PNG image, up to its width and height, bytes.
 _PNG_HEADER = 24
+#: How a path begins that a shell, a launch file or a client of ROS resolves.
+_ELSEWHERE = re.compile(r"~|\$|[a-z]+://")
 Alpha = Literal["averaged", "unknown", "ignored"]
 #: Interpretations of pixels, the default first, and what opacity means in each.
 _OPACITY: dict[str, Alpha] = {"trinary": "averaged", "scale": "unknown", "raw": "ignored"}
@@ -99,7 +101,7 @@ def read_map(file: Path) -> RosMap:
             image=str(content["image"]),
             resolution=_number("resolution", content["resolution"]),
             origin=(origin[0], origin[1], origin[2] if len(origin) > 2 else 0.0),
-            negate=bool(int(content.get("negate", 0))),
+            negate=bool(_number("negate", content.get("negate", 0))),
             occupied=_number("occupied_thresh", content.get("occupied_thresh", _OCCUPIED)),
             free=_number("free_thresh", content.get("free_thresh", _FREE)),
             mode=str(content.get("mode", _MODES[0])),
@@ -137,8 +139,11 @@ def image_of(file: Path) -> str | None:
 def relative_image(image: str) -> str:
     """Return a path that can be copied to another machine with its map.
 
-    ROS 1 writes where the image lay: of an absolute path only the name counts.
+    ROS 1 writes where the image lay: of an absolute path only the name counts, and of a path that
+    only the other machine resolves: ``~/``, ``$(find maps)/``, ``package://``.
     """
+    if _ELSEWHERE.match(image):
+        return PurePosixPath(image).name
     for path in (PurePosixPath(image), PureWindowsPath(image)):
         if path.is_absolute():
             return path.name
@@ -180,6 +185,8 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
         raise InputError(f"{name}: fewer pixels than {width} x {height}") from error
     if len(cells) != width * height:
         raise InputError(f"{name}: fewer pixels than {width} x {height}")
+    if (largest := int(cells.max())) > most:
+        raise InputError(f"{name}: a pixel is {largest}, but its header says at most {most}")
     return cells.astype(np.float64).reshape(height, width) / most
 
 

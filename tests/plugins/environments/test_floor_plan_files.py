@@ -320,3 +320,52 @@ def test_cells_beyond_what_is_solid_around_thin_walls_are_no_floor(
     found = FloorPlanSpec.model_validate({"file": str(tmp_path / "map.yaml")}).against_image()
     assert found is not None
     assert (found.cells, found.wrong) == (600, 0)
+
+
+RING = [(0, 0), (9, 0), (9, 5), (0, 5)]
+
+
+@pytest.mark.parametrize(
+    ("hole", "floor"),
+    [
+        ([(0, 1), (1, 1), (1, 2), (0, 2)], 44.0),  # touches the outline
+        ([(-1, 1), (1, 1), (1, 2), (-1, 2)], 44.0),  # leaves it
+        ([(20, 20), (21, 20), (21, 21), (20, 21)], 45.0),  # lies outside
+        ([(2, 1), (4, 3), (4, 1), (2, 3)], 43.0),  # crosses itself
+    ],
+)
+def test_no_hole_becomes_floor(hole: list[tuple[float, float]], floor: float, caplog: Log) -> None:
+    found = FloorPlanSpec.model_validate({"wkt": shapely.Polygon(RING, [hole]).wkt}).place()
+    outer = sum(shapely.Polygon(face.points).area for face in found.faces)
+    inner = sum(shapely.Polygon(solid.outline).area for solid in found.solids)
+    assert outer - inner == pytest.approx(floor)
+    assert "repaired" in caplog.text
+
+
+def test_rooms_that_overlap_are_joined_not_cut_out() -> None:
+    wkt = "MULTIPOLYGON (((0 0, 9 0, 9 5, 0 5, 0 0)), ((8 1, 14 1, 14 4, 8 4, 8 1)))"
+    found = FloorPlanSpec.model_validate({"wkt": wkt}).place()
+    assert [shapely.Polygon(face.points).area for face in found.faces] == [pytest.approx(60.0)]
+    assert not found.solids
+
+
+@pytest.mark.parametrize(
+    "image",
+    ["~/map.png", "$(find room)/maps/map.png", "package://room/map.png", "file:///home/a/map.png"],
+)
+def test_images_whose_place_only_the_other_machine_knows_lie_beside_their_map(
+    tmp_path: Path, image: str
+) -> None:
+    Image.fromarray(np.full((20, 30), 254, np.uint8)).save(tmp_path / "map.png")
+    text = f"image: {image}\nresolution: 0.1\norigin: [0, 0, 0]\n"
+    (tmp_path / "map.yaml").write_text(text, "utf-8")
+    found = FloorPlanSpec.model_validate({"file": str(tmp_path / "map.yaml")}).place()
+    assert [shapely.Polygon(face.points).area for face in found.faces] == [pytest.approx(6.0)]
+
+
+def test_a_pixel_above_what_the_header_says_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "map.pgm").write_text("P2\n2 2\n100\n100 0 254 100\n", "utf-8")
+    text = "image: map.pgm\nresolution: 1.0\norigin: [0, 0, 0]\n"
+    (tmp_path / "map.yaml").write_text(text, "utf-8")
+    with pytest.raises(InputError, match="a pixel is 254, but its header says at most 100"):
+        build(FloorPlanSpec.model_validate({"file": str(tmp_path / "map.yaml")}))

@@ -16,6 +16,7 @@ from crowdbot.core.exchange.others.usual import social_forces, vision
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Data, Draft, free_name, id_of, name_of
+from crowdbot.core.geometry.valid_shape import valid_shape
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
@@ -77,7 +78,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
 
 
 def _geometry(text: str, mark: Mark, scene: Draft) -> Any:
-    from shapely import GEOSException, from_wkt, make_valid  # type: ignore[import-untyped,unused-ignore]
+    from shapely import GEOSException, from_wkt  # type: ignore[import-untyped,unused-ignore]
 
     try:
         with warnings.catch_warnings():  # of coordinates that are not numbers, refused below
@@ -92,7 +93,7 @@ def _geometry(text: str, mark: Mark, scene: Draft) -> Any:
         raise SpecError([Diagnostic("E402", "the walkable area has no area", mark)])
     scene.environment = {"kind": "floor_plan", "wkt": " ".join(text.split())}
     scene.origins["environment",] = mark
-    return make_valid(shape).buffer(0)  # outlines that cross themselves, and polygons only
+    return valid_shape(shape).buffer(0)  # polygons only
 
 
 def _bare(file: OpenedScene, report: Report) -> Draft:
@@ -185,7 +186,7 @@ def _without_obstacles(root: Item, floor: Any, scene: Draft, report: Report) -> 
     from shapely import Polygon, to_wkt  # type: ignore[import-untyped,unused-ignore]
 
     for item in _entries(root, "obstacles"):
-        shape = Polygon(pairs(item.need("coordinates"))).buffer(0)
+        shape = valid_shape(Polygon(pairs(item.need("coordinates"))))
         if shape.intersection(floor).area > 0.0:
             floor = floor.difference(shape)
             scene.environment["wkt"] = to_wkt(floor, rounding_precision=9)

@@ -7,6 +7,7 @@ from typing import Any
 
 from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.scene import Data
+from crowdbot.core.geometry.valid_shape import valid_shape
 
 Corners = list[list[float]]
 
@@ -23,7 +24,7 @@ def rectangle_in(corners: Sequence[Sequence[float]], floor: Any = None) -> tuple
     """
     from shapely import Polygon, maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
 
-    polygon = Polygon([(c[0], c[1]) for c in corners]).buffer(0)
+    polygon = valid_shape(Polygon([(c[0], c[1]) for c in corners]))
     if floor is not None:
         common = polygon.intersection(floor)
         parts = [part for part in getattr(common, "geoms", [common]) if part.area > 1e-6]
