@@ -144,6 +144,14 @@ def _in_order(part: Path) -> tuple[int, str]:
     return (int(number[1]) if number else -1), part.name
 
 
+def index_hint(path: Path) -> str:
+    """Return what may help if no message of a topic is found: MCAP is read by its index."""
+    parts = path.glob("*.mcap") if path.is_dir() else [path]
+    if not any(part.suffix == ".mcap" for part in parts):
+        return ""
+    return "; if it should, its index lacks them: 'mcap recover FILE -o OUT' writes a new one"
+
+
 #: Part of a message -> what helps.
 _REMEDIES = {
     "File end magic is invalid": "it was not closed; 'mcap recover FILE -o OUT' mends it",

@@ -17,7 +17,7 @@ from crowdbot.core.trajectories.bag.frames import TF, TF_STATIC, Edge, FrameTree
 from crowdbot.core.trajectories.bag.into_one_frame import into_one_frame
 from crowdbot.core.trajectories.bag.markers import without_parts
 from crowdbot.core.trajectories.bag.people import lists_people, may_list_people, people_in
-from crowdbot.core.trajectories.bag.reader import messages, topic_fields
+from crowdbot.core.trajectories.bag.reader import index_hint, messages, topic_fields
 from crowdbot.core.trajectories.bag.robot import (
     base_frame,
     from_tree,
@@ -98,6 +98,8 @@ class _Reading:
         tree = FrameTree(self._transforms(topics), by_stamp=by_stamp)
         if self._from_tf:
             robot = self._robot_of_tree(tree, people)
+        elif robot is not None:
+            robot = self._finite(robot)
         robot, people = into_one_frame(
             self._path, tree, robot, people, self._notes, same_frame=self._same_frame
         )
@@ -122,7 +124,7 @@ class _Reading:
             self._seen.setdefault(topic, []).extend(rows)
         for topic, number in count.items():
             if not number:
-                raise InputError(f"{self._path}: {topic} has no messages")
+                raise InputError(f"{self._path}: {topic} has no messages{index_hint(self._path)}")
         if self._people is not None:
             self._seen[self._people] = self._persons(self._people)
         topics = {topic: columns_of(self._seen[topic]) for topic in readers}
@@ -209,6 +211,15 @@ class _Reading:
         return from_tree(tree, base, world)
 
     # -------------------------------------------------------------------------- tables
+    def _finite(self, robot: Columns) -> Columns:
+        """Return the poses of the robot that are somewhere."""
+        finite = np.asarray(np.isfinite(robot.xyz[:, :2]).all(axis=1))
+        if not finite.any():
+            raise InputError(f"{self._path}: no position of the robot is finite")
+        if lost := np.count_nonzero(~finite):
+            self._notes.append(f"{lost} positions of the robot that are not finite are left out")
+        return robot.only(finite)
+
     def _robot_table(self, robot: Columns) -> RawTable:
         order = np.argsort(robot.stamp, kind="stable")
         order = order[np.diff(robot.stamp[order], append=np.iinfo(np.int64).max) > 0]

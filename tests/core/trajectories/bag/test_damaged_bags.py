@@ -2,16 +2,34 @@
 
 from __future__ import annotations
 
+import math
 import sqlite3
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
-from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import StoragePlugin, Writer
 
 from crowdbot.core.trajectories.bag import reader
-from crowdbot.errors import InputError
-from tests.core.trajectories.bag.bag_kit import check_walkers, marker_rows, read, robot_rows, write
+from crowdbot.core.trajectories.bag.definitions import known_types
+from crowdbot.errors import InputError, RecordingWarning
+from tests.core.trajectories.bag.bag_kit import (
+    TIMES,
+    Row,
+    array,
+    check_walkers,
+    make,
+    marker_rows,
+    odometry,
+    point,
+    read,
+    robot_rows,
+    turn,
+    twist,
+    write,
+)
 
 
 def _bag(folder: Path, plugin: StoragePlugin = StoragePlugin.SQLITE3) -> Path:
@@ -121,3 +139,47 @@ def test_what_the_library_finds_amid_a_bag_is_the_bags(
     monkeypatch.setattr("rosbags.highlevel.AnyReader.messages", broken)
     with pytest.raises(InputError, match="not a bag that can be read: row 3"):
         read(bag)
+
+
+def _driven(turn: Any, x: Callable[[float], float] = lambda t: 0.5 * t) -> list[Row]:
+    return [
+        ("/odom", t, odometry(t, make("geometry_msgs/Pose", point(x(t), 0.0), turn), twist(0.5)))
+        for t in TIMES
+    ]
+
+
+def test_lost_positions_of_the_robot_are_told(tmp_path: Path) -> None:
+    rows = _driven(turn(0.0), lambda t: math.nan if 2.0 < t < 2.35 else 0.5 * t)
+    with pytest.warns(RecordingWarning, match="3 positions of the robot that are not finite"):
+        check_walkers(read(write(tmp_path / "bag", [*rows, *marker_rows()])))
+    rows = _driven(turn(0.0), lambda _: math.nan)
+    with pytest.raises(InputError, match="no position of the robot is finite"):
+        read(write(tmp_path / "none", [*rows, *marker_rows()]))
+
+
+@pytest.mark.parametrize("size", [0.8, 1.0, 2.0, 100.0])
+def test_quaternions_of_any_length_turn_as_far(tmp_path: Path, size: float) -> None:
+    unit = turn(1.0)
+    scaled = make("geometry_msgs/Quaternion", 0.0, 0.0, size * unit.z, size * unit.w)
+    rows = [
+        ("/odom", t, odometry(t, make("geometry_msgs/Pose", point(0.27 * t, 0.42 * t), scaled),
+                              twist(0.5)))
+        for t in TIMES
+    ]  # fmt: skip
+    found = read(write(tmp_path / "bag", [*rows, *marker_rows()]))
+    assert found.robot is not None
+    np.testing.assert_allclose(found.robot.theta, 1.0, atol=1e-9)
+
+
+def test_a_topic_without_messages_in_an_mcap_may_lack_its_index(tmp_path: Path) -> None:
+    bag = write(tmp_path / "bag", robot_rows())
+    with Writer(tmp_path / "other", version=8, storage_plugin=StoragePlugin.MCAP) as made:
+        made.add_connection("/odom", "nav_msgs/msg/Odometry", typestore=known_types())
+        kind = "visualization_msgs/msg/MarkerArray"
+        people = made.add_connection("/people", kind, typestore=known_types())
+        data = known_types().serialize_cdr(array([]), kind)
+        made.write(people, 10**9, data)
+    with pytest.raises(InputError, match=r"/odom has no messages; if it should, .*mcap recover"):
+        read(tmp_path / "other")
+    assert reader.index_hint(bag)
+    assert not reader.index_hint(_bag(tmp_path / "sqlite"))
