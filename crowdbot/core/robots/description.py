@@ -5,6 +5,7 @@ Nothing here needs Drake.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -200,6 +201,8 @@ def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
     """
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
         return source, None
+    if isinstance(source, str) and not source.strip("\ufeff \t\r\n"):
+        raise PluginError("the robot's description is empty")
     file = Path(source) if isinstance(source, str) else source
     try:
         is_path = isinstance(file, Path)
@@ -265,6 +268,10 @@ def _is_macro(element: Xml.Element) -> bool:
 def _checked(described: Description) -> Description:
     if not described.links:
         raise PluginError("the robot's description has no link")
+    for part in ("link", "joint"):
+        names = Counter(name_of(element) for element in described.model.findall(part))
+        if twice := [name for name, count in names.items() if count > 1]:
+            raise PluginError(f"the robot's description has two {part}s named '{twice[0]}'")
     for joint in described.joints.values():
         if joint.kind not in KNOWN:
             raise PluginError(

@@ -318,3 +318,32 @@ def test_poses_of_sdf_in_any_format(version: str, pose: str) -> None:
 def test_poses_of_sdf_that_are_none_are_refused(pose: str, told: str) -> None:
     with pytest.raises(PluginError, match=told):
         read_description(_cart(wheel=pose + _inertial(0.5, 0.001), joint=""))
+
+
+URDF = (
+    '<robot name="cart"><link name="base"/><link name="wheel"/>'
+    '<joint name="turns" type="continuous"><parent link="base"/><child link="wheel"/></joint>'
+)
+
+
+@pytest.mark.parametrize(
+    ("more", "what"),
+    [
+        ('<link name="wheel"/>', "two links named 'wheel'"),
+        (
+            '<link name="arm"/><joint name="turns" type="fixed"><parent link="base"/>'
+            '<child link="arm"/></joint>',
+            "two joints named 'turns'",
+        ),
+    ],
+)
+def test_names_that_stand_twice_are_refused(more: str, what: str) -> None:
+    read_description(f"{URDF}</robot>")
+    with pytest.raises(PluginError, match=what):
+        read_description(f"{URDF}{more}</robot>")
+
+
+@pytest.mark.parametrize("text", ["", " \n", "\ufeff"])
+def test_an_empty_text_is_told_as_such(text: str) -> None:
+    with pytest.raises(PluginError, match="description is empty"):
+        read_description(text)
