@@ -89,12 +89,18 @@ def _prepare(
             disc.x, disc.y, disc.reach = other.rx, other.ry, other.reach
             disc.vx, disc.vy = other.nvx, other.nvy
     header.discs = row
+    vx, vy, radius, only = agent.vx, agent.vy, agent.radius, agent.descends > 0.0
+    width = swept_width(vx, vy, radius)
     for s in range(0 if agent.parity != 0.0 else wall_count):
-        d2, radius = walls[s].d2, agent.radius
+        near_by = walls[s]
+        ax, ay, bx, by = near_by.ax, near_by.ay, near_by.bx, near_by.by
+        if only and is_passed(vx, vy, width, ax, ay, bx, by):
+            continue  # the gradient asks for the present velocity alone, which never touches it
+        d2 = near_by.d2
         if d2 > radius * radius and in_range(d2, radius, params):
             row += 1
-            wall, near_by = found[row], walls[s]
-            wall.ax, wall.ay, wall.bx, wall.by = near_by.ax, near_by.ay, near_by.bx, near_by.by
+            wall = found[row]
+            wall.ax, wall.ay, wall.bx, wall.by = ax, ay, bx, by
     header.walls = row - header.discs
     return row
 
