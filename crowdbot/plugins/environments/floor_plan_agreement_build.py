@@ -31,7 +31,7 @@ def agreement(spec: FloorPlanFields, place: Place) -> Agreement:
     image = None if spec.image is None else spec.image.file
     found, free = cells_of(spec, file, image)
     free = free[::-1]
-    # Where nothing is a face, solid parts are all around, and what is beyond them is no floor.
+    # Where nothing is a face, solid parts are all around: floor ends there.
     around = [face.points for face in place.faces] or [s.outline for s in place.solids]
     outer = _union(map(shapely.Polygon, around))
     solid = _union(shapely.Polygon(s.outline, s.holes) for s in place.solids)

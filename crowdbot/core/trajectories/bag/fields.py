@@ -71,7 +71,7 @@ def yaw_of(q: Any) -> float:
     """Return the heading of a quaternion, rad; NaN if it does not rotate, such as all zeros."""
     if not q.x**2 + q.y**2 + q.z**2 + q.w**2 > 0.5:
         return math.nan
-    # Of any length: some senders do not divide by it.
+    # Right for any length: some senders do not divide by it.
     return math.atan2(2.0 * (q.w * q.z + q.x * q.y), q.w**2 + q.x**2 - q.y**2 - q.z**2)
 
 
