@@ -114,7 +114,9 @@ class _Walk:
                 raise InputError(
                     f"{self._name}: more than {_MOST_ENTITIES} entities, blocks included"
                 )
-            if entity.dxf.get("invisible", 0):
+            if not entity.dxf.is_supported("invisible"):  # of a kind that ezdxf does not know
+                self._aside[f"{_name(entity)} entities"] += 1
+            elif entity.dxf.get("invisible", 0):
                 self._aside[f"invisible {entity.dxftype()} entities"] += 1
             elif entity.dxftype() == "INSERT":
                 yield from self._inserted(entity, inside)
@@ -144,6 +146,11 @@ class _Walk:
     def _skipped(self, entity: Any, reason: str) -> None:
         del reason
         self._aside[f"{entity.dxftype()} entities in blocks"] += 1
+
+
+def _name(entity: Any) -> str:
+    """Return the kind of an entity without characters that are not shown."""
+    return _CONTROL.sub("?", entity.dxftype())[:40] or "nameless"
 
 
 def _on(parts: Iterable[Any], layer: str) -> Iterator[Any]:

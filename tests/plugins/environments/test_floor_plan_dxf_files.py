@@ -251,3 +251,14 @@ def test_numbers_that_are_none_are_refused(tmp_path: Path, bad: str) -> None:
     path.write_text(path.read_text().replace("20.0\n", f"{bad}\n"))
     with pytest.raises(InputError, match="is not a DXF drawing, or is cut off or damaged"):
         plan(str(path))
+
+
+def test_entities_of_other_programs_are_named(tmp_path: Path, caplog: Log) -> None:
+    drawn = Drawn()
+    drawn.model.add_line((1, 1), (2, 2))
+    path = Path(drawn.saved(tmp_path))
+    text = path.read_text()
+    assert "\nLINE\n" in text
+    path.write_text(text.replace("\nLINE\n", "\nAEC_WALL\n"))
+    assert not len(plan(str(path)).solids)
+    assert "left out: 1 AEC_WALL entities" in caplog.text
