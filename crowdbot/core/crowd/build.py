@@ -86,10 +86,10 @@ def checked_cost(cost: object, call: PluginCall) -> CompiledCost | NumpyCost:
             f"build returned a {type(cost).__name__}, not a CompiledCost or a NumpyCost"
         )
     if not (math.isfinite(cost.weight) and cost.weight >= 0.0):
-        raise PluginError(f"weight is {cost.weight}")
+        raise PluginError(f"weight must be a number that is not negative, not {cost.weight}")
     if isinstance(cost, NumpyCost):
         if not cost.range > 0.0:
-            raise PluginError(f"range is {cost.range}")
+            raise PluginError(f"range must be above 0, not {cost.range}")
         return replace(cost, evaluate=_checked_costs(cost.evaluate, call))
     params = cost.params
     if not (isinstance(params, np.ndarray) and params.dtype == np.float64 and params.ndim == 1):

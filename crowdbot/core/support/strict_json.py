@@ -85,7 +85,7 @@ def _constant(word: str) -> NoReturn:
 
 def _whole(digits: str) -> int:
     if len(digits) > LONGEST:
-        raise ValueError(f"a whole number has {len(digits)} digits")
+        raise ValueError(f"a whole number has {len(digits)} digits, more than {LONGEST}")
     return int(digits)
 
 
