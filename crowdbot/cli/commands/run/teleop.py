@@ -57,7 +57,9 @@ def teleop(
     ] = None,
     zenoh: Annotated[
         str | None,
-        typer.Option(metavar="tcp/HOST:PORT", help="Programs drive by ROS 2, through a zenoh router."),
+        typer.Option(
+            metavar="tcp/HOST:PORT", help="Programs drive, too: by ROS 2 and a zenoh router."
+        ),
     ] = None,
     rate: Rate = 1.0,
     replay: ReplayRun = None,
