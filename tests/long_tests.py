@@ -78,6 +78,7 @@ LONG = (
     "tests/dsl/schema/test_documents.py::test_what_the_schema_refuses_validate_refuses",
     "tests/cli/test_campaign.py::test_killed_and_resumed_it_ends_the_same",
     # A quicker test of `make test` guards most of what these do.
+    "tests/cli/test_audit.py::test_many_scenarios_have_few_with_floors",
     "tests/cli/test_hostile_packages.py::test_a_build_that_does_not_resolve",
     "tests/cli/test_planner_processes.py::test_the_planner_is_killed",
     "tests/cli/test_planner_processes.py::test_the_simulator_is_killed",
@@ -86,6 +87,9 @@ LONG = (
     "tests/cli/test_verify_command.py::test_foreign_versions_are_compared_within_tolerance",
     "tests/cli/test_verify_command.py::test_runs_made_from_python_are_verified",
     "tests/core/planning/test_host.py::test_a_stubborn_step_ends_the_process",
+    "tests/core/realism/test_planted_faults.py::test_bodies_that_are_wider",
+    "tests/core/realism/test_planted_faults.py::test_people_who_are_a_fifth_too_fast",
+    "tests/plugins/crowd/test_named_policies.py::test_people_pass_pillars_walls_and_each_other",
     "tests/core/support/compiling/test_compile_parts.py::test_a_caller_is_compiled_of_what_was_read",
     "tests/core/support/compiling/test_compile_parts.py::test_reading_leaves_out_what_only",
     "tests/core/support/test_compile_cache.py::test_a_class_that_was_renamed_is_compiled_again",
@@ -93,6 +97,8 @@ LONG = (
 
 #: More cases of what `make test` tries with a few: 55 s of processor time.
 VARIANTS = (
+    "tests/core/planning/test_host.py::test_a_hanging_step_is_interrupted[spin]",
+    "tests/plugins/planners/dwa/test_dwa.py::test_static_obstacles_without_any_contact[slalom]",
     "tests/cli/test_failing_components.py::test_the_message_names_the_component[metric is not",
     "tests/cli/test_failing_components.py::test_the_message_names_the_component[metric leaves",
     "tests/cli/test_failing_components.py::test_the_message_names_the_component[policy overflows",
