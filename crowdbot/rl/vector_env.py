@@ -150,7 +150,7 @@ class NavVectorEnv(VectorEnv):
     def _after(
         self, result: StepResult, again: Mask
     ) -> tuple[Vectors, NDArray[np.float64], Mask, Mask, dict[str, Any]]:
-        """Return the values of a step; begin the next episodes if they begin in the same one."""
+        """Return what `step` returns; where episodes ended, begin new ones if the mode says so."""
         setup = self.rollout.setup
         ends = result.touched if setup.ends_at_contact else np.zeros_like(again)
         terminated, late = result.arrived | ends, result.late

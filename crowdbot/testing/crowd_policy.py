@@ -187,7 +187,7 @@ def _assert_answer(name: str, make: Factory, view: CrowdView) -> None:
 
 
 def _will(make: Factory, view: CrowdView) -> Array:
-    """Return the accelerations (N, 2), m/s^2, of a new policy."""
+    """Return the accelerations (N, 2), m/s^2, that a newly made policy wants."""
     return desired_acceleration(make(view.agents), view)
 
 

@@ -63,7 +63,7 @@ class Scan:
 
     @staticmethod
     def of(root: Path) -> Scan:
-        """Look at all files, without opening them."""
+        """List all runs and failures below a root by their files' stamps; no file is opened."""
         found = list(_scan(root))
         reason = f"{files.RECORD} is missing"
         lost = (DamagedRun(directory=d, reason=reason) for d, stamp in found if not stamp)

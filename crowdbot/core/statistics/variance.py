@@ -102,6 +102,6 @@ def nested_variance(
 
 
 def _numbered(places: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Return places in the same order without gaps."""
+    """Return place numbers renumbered from 0 without gaps, in the same order."""
     there = np.bincount(places) > 0
     return (np.cumsum(there) - 1)[places]

@@ -73,7 +73,7 @@ def overlap_of_robots(
 def _corners_within(
     a: Array, outline_a: Array, b: Array, outline_b: Array, reach: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Return data on corners of a that are within reach of b's outline.
+    """Return depths, normals and positions of a's corners within reach of b's outline, summed.
 
     Returns:
         the largest depth (m); the sum of depths; and depth-weighted sums of normals towards b and
