@@ -86,7 +86,8 @@ def page(rows: Sequence[dict[str, Any]], reference: RealismReference) -> str:
         "of 0.33 m who prefer 1.34 ± 0.26 m/s, `challenge-2026` is the crowd of that suite: "
         "`calibrated`, with a larger spread of speeds and accelerations up to 3 m/s². "
         "`demo_2` equals `social_forces`: they differ only in ranges beyond which people have "
-        "no influence ([named policies](named_policies.md)).",
+        "no influence ([named policies](named_policies.md)). `dutra`, `foe_avoidance` and `paris`, "
+        "which have limits of legs, were measured in three draws, the others in sixteen.",
         "",
         *_table(
             ["crowd", "index", "score", "speed", "acceleration", "turning", "nearest",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core.realism.crowds import different_crowds, lines_of
+from crowdbot.core.realism.crowds import different_crowds, known, lines_of
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.named_crowds import crowd_parts, names_crowd, open_crowd
@@ -15,6 +15,7 @@ from crowdbot.dsl.identity.crowd_likeness import fingerprint
 from crowdbot.errors import InputError, SpecError, UnknownNameError
 
 REGISTRY = discover(allow=())
+PARTS = sorted(crowd_parts(REGISTRY))
 
 
 def test_crowds_by_name_by_file_and_by_kind(tmp_path: Path) -> None:
@@ -91,3 +92,9 @@ def test_lines_of_a_report() -> None:
     assert lines_of([("", "0" * 16), ("", "1" * 16)]) == [
         "2 crowds whose realism was not measured; measure it with crowdbot realism SUITE"
     ]
+
+
+def test_what_is_known_of_packaged_crowds_was_measured_with_their_fields() -> None:
+    """After a change of a part: `scripts/write_crowd_validation.py NAME`."""
+    known_now = {name: known().get(fingerprint(open_crowd(name, REGISTRY)), {}) for name in PARTS}
+    assert {name: row.get("name") for name, row in known_now.items()} == {n: n for n in PARTS}
