@@ -18,6 +18,7 @@ import numpy as np
 
 from crowdbot.core.robots.convex_piece import is_piece
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
+from crowdbot.core.robots.plain_xacro import is_macro, write_out
 from crowdbot.core.robots.sdf_frames import written_out
 from crowdbot.core.robots.sdf_nested import without_nested
 from crowdbot.core.robots.sdf_poses import plain_poses
@@ -226,10 +227,15 @@ def parse_description(text: str) -> Description:
         raise PluginError(
             f"the robot's description is not well-formed XML: {error}{hint}"
         ) from error
-    if any(_is_macro(element) for element in top.iter()):
-        raise PluginError(f"the robot's description has xacro macros; {_EXPAND}")
+    notes: tuple[str, ...] = ()
+    if any(is_macro(element) for element in top.iter()):
+        names = write_out(top)
+        if not names:
+            raise PluginError(f"the robot's description has xacro macros; {_EXPAND}")
+        text = Xml.tostring(top, encoding="unicode")
+        notes = (f"{len(names)} of xacro's properties written out: {', '.join(names)}",)
     if top.tag == "robot":
-        return Description(text, "urdf", top)
+        return Description(text, "urdf", top, notes=notes)
     model = top if top.tag == "model" else _only_model(top)
     if top.tag not in ("sdf", "model") or model is None:
         raise PluginError(
@@ -239,8 +245,9 @@ def parse_description(text: str) -> Description:
     version = top.get("version", "1.9")
     plain_poses(model)
     flat, nested = without_nested(model)
-    made, notes = written_out(flat, version)
-    return Description(text, "sdf", made, version if made is model else "1.9", (*nested, *notes))
+    made, written = written_out(flat, version)
+    told = (*notes, *nested, *written)
+    return Description(text, "sdf", made, version if made is model else "1.9", told)
 
 
 def _only_model(top: Xml.Element) -> Xml.Element | None:
@@ -256,13 +263,6 @@ def _only_model(top: Xml.Element) -> Xml.Element | None:
     if not found and (uri := top.findtext("world/include/uri")) is not None:
         raise PluginError(f"the world includes its model, '{uri.strip()}'; name that model's file")
     return found[0] if found else None
-
-
-def _is_macro(element: Xml.Element) -> bool:
-    """Return True for what xacro replaces: its elements, ``${...}`` and ``$(...)``."""
-    if isinstance(element.tag, str) and "xacro" in element.tag.partition("}")[0]:
-        return True
-    return any("${" in value or "$(" in value for value in element.attrib.values())
 
 
 def _checked(described: Description) -> Description:

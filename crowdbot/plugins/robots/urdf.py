@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from annotated_types import Gt
+from annotated_types import Gt, MinLen
 from pydantic import Field, model_validator
 
 from crowdbot.plugin import (
@@ -24,6 +24,7 @@ from crowdbot.plugin import (
 )
 
 Torque = Annotated[float, Gt(0)]
+WheelJoints = str | Annotated[tuple[str, ...], Field(strict=False), MinLen(1)]
 
 
 class DiscBody(Spec):
@@ -101,12 +102,20 @@ class UrdfFields(RobotSpec):
 
 
 class DrivenWheels(Spec):
-    """The two driven wheels of a differential drive."""
+    """The driven wheels of a differential drive: one of each side, or several (skid steer)."""
 
-    left: str = Field(description="Joint of the left wheel.")
-    right: str = Field(description="Joint of the right wheel.")
-    radius: PositiveLength = Field(description="Of both wheels, m.")
+    left: WheelJoints = Field(
+        description="Joint of the left wheel, or a list of all driven ones there."
+    )
+    right: WheelJoints = Field(description="The same on the right.")
+    radius: PositiveLength = Field(description="Of all wheels, m.")
     effort: Torque = Field(description="Largest torque of each motor, N m.")
+
+    @property
+    def sides(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Return the joints of the left and of the right."""
+        left, right = ((x,) if isinstance(x, str) else x for x in (self.left, self.right))
+        return left, right
 
 
 class UrdfSpec(UrdfFields):
@@ -117,7 +126,7 @@ class UrdfSpec(UrdfFields):
     """
 
     kind: Literal["urdf"] = "urdf"
-    drive: DrivenWheels = Field(description="The two driven wheels of a differential drive.")
+    drive: DrivenWheels = Field(description="The driven wheels of a differential drive.")
 
 
 class OmniWheels(Spec):

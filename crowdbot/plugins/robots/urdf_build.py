@@ -27,9 +27,10 @@ def build(spec: UrdfSpec) -> RobotModel:
         PluginError: the file is not a URDF, or has no such joint or link.
     """
     wheel = PublishedWheel(radius=spec.drive.radius, effort=spec.drive.effort)
-    wheels = {spec.drive.left: wheel, spec.drive.right: wheel}
+    left, right = spec.drive.sides
+    wheels = dict.fromkeys((*left, *right), wheel)
     bare = _read(spec, wheels, "")
-    drive = bare.differential_drive(spec.drive.left, spec.drive.right, base=spec.base)
+    drive = bare.differential_drive(left[0], right[0], base=spec.base)
     height = bare.base_height(drive, base=spec.base)
     described = _read(spec, wheels, _shell(spec, height))
     return _model(spec, described, drive, height, sideways=False)

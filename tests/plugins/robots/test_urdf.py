@@ -87,6 +87,67 @@ def test_three_omni_wheels(tmp_path: Path) -> None:
     assert model.limits.vy_max == 0.5
 
 
+def _skid_steer() -> str:
+    """A body on four driven wheels, as makers of outdoor robots publish them."""
+    at = {"front_left": "0.13 0.19", "front_right": "0.13 -0.19",
+          "rear_left": "-0.13 0.19", "rear_right": "-0.13 -0.19"}  # fmt: skip
+    parts = [_body("base_link", 16.0, 0.4)]
+    for name, place in at.items():
+        parts.append(_body(f"{name}_wheel", 0.5, 0.002))
+        parts.append(
+            f'<joint name="{name}_joint" type="continuous"><parent link="base_link"/>'
+            f'<child link="{name}_wheel"/><origin xyz="{place} 0.03"/><axis xyz="0 1 0"/></joint>'
+        )
+    return f'<robot name="skid">{"".join(parts)}</robot>'
+
+
+def _body(name: str, mass: float, moment: float) -> str:
+    inertia = f'<inertia ixx="{moment}" iyy="{moment}" izz="{moment}" ixy="0" ixz="0" iyz="0"/>'
+    return f'<link name="{name}"><inertial><mass value="{mass}"/>{inertia}</inertial></link>'
+
+
+def test_several_wheels_on_each_side(tmp_path: Path) -> None:
+    sides = {s: [f"front_{s}_joint", f"rear_{s}_joint"] for s in ("left", "right")}
+    model = _model(
+        tmp_path, _skid_steer(), drive={**sides, "radius": 0.1, "effort": 5},
+        box={"length": 0.5, "width": 0.43, "height": 0.25},
+    )  # fmt: skip
+    assert isinstance(model.drive, DifferentialDrive)
+    assert model.drive.track == pytest.approx(0.38)
+    assert any("4 driven wheels (skid steer) are approximated by two" in n for n in model.notes)
+    left = read_description(model.description).joint("front_left_joint")
+    assert left.effort == pytest.approx(10.0)
+    with pytest.raises(SpecError, match="at least 1"):
+        _model(tmp_path, _skid_steer(), drive={**sides, "left": [], "radius": 0.1, "effort": 5},
+               disc={"radius": 0.25, "height": 0.3})  # fmt: skip
+
+
+#: A name and a number given as properties, one by another, as in files of ROBOTIS.
+PLAIN = """<robot name="trolley" xmlns:xacro="http://ros.org/wiki/xacro">
+  <xacro:arg name="prefix" default=""/>
+  <xacro:property name="before" value="$(arg prefix)"/>
+  <xacro:property name="mast_mass" value="0.8"/>"""
+
+
+def test_plain_properties_of_xacro_are_written_out(tmp_path: Path) -> None:
+    text = TROLLEY.replace('value="0.8"', 'value="${mast_mass}"')
+    text = text.replace('"base_link"', '"${before}base_link"')
+    text = text.replace('<robot name="trolley">', PLAIN)
+    assert all(use in text for use in ("${before}", "${mast_mass}"))
+    fields = {"drive": {**DRIVES["trolley"], "effort": 4}, "disc": {"radius": 0.25, "height": 0.9}}
+    model = _model(tmp_path, text, **fields)
+    plain = _model(tmp_path, TROLLEY, **fields)
+    said = "3 of xacro's properties written out: prefix, before, mast_mass"
+    assert model.notes == (said, *plain.notes)
+    assert model.mass == plain.mass
+    assert (
+        read_description(model.description).links.keys() == read_description(TROLLEY).links.keys()
+    )
+    for left in ("${before + 1}", "${unknown}"):
+        with pytest.raises(PluginError, match="xacro macros; expand them"):
+            _model(tmp_path, text.replace("${before}", left), **fields)
+
+
 def test_sensors_by_link(tmp_path: Path) -> None:
     model = {"drive": {**DRIVES["trolley"], "effort": 4}, "disc": {"radius": 0.25, "height": 0.9}}
     sensors = "{lidar: {kind: lidar2d, link: mast}, other: {kind: lidar2d, mount: {x: 0.1}}}"

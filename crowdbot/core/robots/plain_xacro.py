@@ -1,0 +1,66 @@
+"""Write out xacro's properties and arguments where no program has to be run for it.
+
+Makers publish files that need xacro for nothing but a name or a number: ``xacro:property``,
+``xacro:arg``, ``${NAME}`` and ``$(arg NAME)``. Macros, conditions, includes and sums are left to
+xacro.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from xml.etree import ElementTree as Xml
+
+_USE = re.compile(r"\$\{\s*(\w+)\s*\}|\$\(\s*arg\s+(\w+)\s*\)")
+#: Properties may name others, to this depth.
+_DEPTH = 8
+
+
+def is_macro(element: Xml.Element) -> bool:
+    """Return True for what xacro replaces: its elements, ``${...}`` and ``$(...)``."""
+    if _tag(element):
+        return True
+    return any("${" in value or "$(" in value for value in element.attrib.values())
+
+
+def write_out(top: Xml.Element) -> tuple[str, ...]:
+    """Replace uses of plain properties and arguments, in place, and remove their definitions.
+
+    Returns:
+        their names; none if something else is left to xacro, and nothing was changed.
+    """
+    told = [element for element in top if _tag(element)]
+    values: dict[str, str] = {}
+    for element in told:
+        given = element.get({"property": "value", "arg": "default"}.get(_tag(element), ""))
+        if given is None or len(element):
+            return ()
+        values[element.get("name", "")] = given
+    pairs = [(e, key, _filled(value, values)) for e in top.iter() for key, value in e.items()]
+    if any("${" in text or "$(" in text for e, _, text in pairs if e not in told):
+        return ()
+    for element in told:
+        top.remove(element)
+    if any(_tag(element) for element in top.iter()):
+        top.extend(told)
+        return ()
+    for element, key, text in pairs:
+        element.set(key, text)
+    return tuple(values)
+
+
+def _tag(element: Xml.Element) -> str:
+    """Return the name of an element of xacro; "" for others."""
+    if not isinstance(element.tag, str):
+        return ""
+    space, _, name = element.tag.partition("}")
+    return name if "xacro" in space else ""
+
+
+def _filled(text: str, values: Mapping[str, str]) -> str:
+    for _ in range(_DEPTH):
+        found = _USE.sub(lambda use: values.get(use[1] or use[2], use[0]), text)
+        if found == text:
+            break
+        text = found
+    return text
