@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from crowdbot.dsl.checks.facts import Facts, Path
-from crowdbot.dsl.scenario.person_goals import LeadGoal, PersonGoal
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.person_goals import ApproachGoal, LeadGoal, PersonGoal
+from crowdbot.dsl.scenario.scenario import Crowd, Robot
 from crowdbot.dsl.scenario.spawning import Agent
 from crowdbot.dsl.text.diagnostics import Diagnostic
 
@@ -29,6 +30,29 @@ def check_person_goals(facts: Facts) -> Iterator[Diagnostic]:
             if other != name:
                 text = f"robots '{other}' and '{name}' both lead {goal.person}"
                 yield Diagnostic("E147", text, facts.mark(*path, "person"))
+        if isinstance(goal, ApproachGoal):
+            yield from _check_not_there(facts, name, robot, goal)
+
+
+def _check_not_there(
+    facts: Facts, name: str, robot: Robot, goal: ApproachGoal
+) -> Iterator[Diagnostic]:
+    """Check that a robot does not start in place before an agent who stands, whose task it ends."""
+    for agent in agents_of(facts.crowd, goal):
+        walks = any(point != (agent.x, agent.y) for point in agent.goals)
+        if goal.person.agent is None or agent.heading is None or walks:
+            continue
+        x, y, yaw = robot.task.start
+        dx, dy = x - agent.x, y - agent.y
+        gap = math.hypot(dx, dy) - robot.model.half_width
+        gap -= agent.radius or facts.crowd.body.radius
+        aside = abs(math.remainder(math.atan2(dy, dx) - agent.heading, math.tau))
+        turned = abs(math.remainder(math.atan2(-dy, -dx) - yaw, math.tau))
+        if abs(gap - goal.distance) <= goal.tolerance and max(aside, turned) <= goal.angle:
+            text = f"robot '{name}' starts in its goal: before {goal.person}, {gap:.2f} m away"
+            hint = f"it would arrive after {goal.hold:g} s without a move; move the start"
+            mark = facts.mark("robots", name, "task", "start")
+            yield Diagnostic("E145", text, mark, hint)
 
 
 def _check_who(facts: Facts, goal: PersonGoal, path: Path) -> Iterator[Diagnostic]:

@@ -99,6 +99,29 @@ def test_a_scenario_without_people(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("start", "heading", "there"),
+    [
+        ("3 m, 5 m, 0 deg", "180 deg", True),
+        ("3 m, 5.5 m, 20 deg", "150 deg", True),
+        ("1 m, 5 m, 0 deg", "180 deg", False),  # too far
+        ("4.2 m, 5 m, 0 deg", "180 deg", False),  # too near
+        ("3 m, 5 m, 0 deg", "0 deg", False),  # behind the person
+        ("3 m, 5 m, 180 deg", "180 deg", False),  # looks away
+    ],
+)
+def test_a_start_in_place_before_a_person_who_stands(
+    start: str, heading: str, there: bool, tmp_path: Path
+) -> None:
+    text = DOCUMENT.replace("GOAL", "{kind: approach, person: {agent: 3}}")
+    text = text.replace("1 m, 5 m, 0 deg", start)
+    text = text.replace("[[5 m, 5 m]], group: 1", f"[[5 m, 5 m]], heading: {heading}, group: 1")
+    found = _errors(tmp_path, text)
+    assert [d.code for d in found] == ["E145"] * there
+    walks = text.replace("[[5 m, 5 m]]", "[[5 m, 5 m], [9 m, 5 m]]")
+    assert not _errors(tmp_path, walks)
+
+
+@pytest.mark.parametrize(
     "goal",
     [
         "approach, person: {agent: 3}",
