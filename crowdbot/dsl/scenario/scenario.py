@@ -297,7 +297,10 @@ class Contact(Spec):
         default=30000.0,
         description="k, N/m, or a body region whose value it takes, such as lower_leg.",
     )
-    dissipation: NonNegativeDamping = Field(default=0.3, description="c, s/m.")
+    dissipation: Annotated[NonNegativeDamping, Le(1)] = Field(
+        default=0.3,
+        description="c, s/m. With more than 1, steps of 1/128 s throw light robots away.",
+    )
 
 
 class Rates(Spec):
