@@ -78,7 +78,7 @@ def test_a_file_that_is_not_onnx_and_parameters_are_refused(tmp_path: Path) -> N
     other.write_text("no weights")
     with pytest.raises(InputError, match="onnxruntime cannot load it"):
         resolve_planner(str(other), registry())
-    with pytest.raises(InputError, match="a policy has no parameter 'speed'"):
+    with pytest.raises(InputError, match="takes no parameters; leave out 'speed'"):
         resolve_planner(str(TO_GOAL), registry(), ["speed=1"])
 
 

@@ -68,5 +68,5 @@ def test_what_cannot_be_recorded_is_refused() -> None:
         rl.EpisodeRecorder(gym.make(rl.NAV, **FEW), every=0)
     with pytest.raises(InputError, match="one world of one robot"):
         rl.EpisodeRecorder(gym.make("CartPole-v1"))
-    with pytest.raises(InputError, match=r"reset\(\) begins the first episode"):
+    with pytest.raises(InputError, match=r"call reset\(\) first"):
         _ = rl.EpisodeRecorder(gym.make(rl.NAV, **FEW)).trajectories
