@@ -145,7 +145,9 @@ def who_gives_way(_: argparse.Namespace) -> bool:
 # --------------------------------------------------------------------------- campaigns of ours
 
 
-def run_all(out: Path, people: str) -> dict[tuple[str, str], list[dict[str, float]]]:
+def run_all(
+    out: Path, people: str, planners: Sequence[str]
+) -> dict[tuple[str, str], list[dict[str, float]]]:
     """Run what is missing; return level and planner -> numbers of its draws."""
     found: dict[tuple[str, str], list[dict[str, float]]] = {}
     metrics = ["success_no_collision", "effect_on_velocity"]
@@ -153,7 +155,7 @@ def run_all(out: Path, people: str) -> dict[tuple[str, str], list[dict[str, floa
     scenarios = [one for one in every if name_of(one).startswith(f"{people}-")]
     for count, scenario in enumerate(scenarios):
         level = name_of(scenario).split("-")[1]
-        for planner in PLANNERS[people]:
+        for planner in planners:
             run = crowdbot.simulate(
                 scenario, planner=planner, out=out, suite="narrow-and-dense", record="none",
                 metrics=metrics, replay=False, in_process=True,
@@ -190,7 +192,7 @@ def what_is_hard(given: argparse.Namespace) -> bool:
     """Stratton et al. 2024: success falls with density (rho -0.88), rises with width (0.64)."""
     held = True
     for people, planners in PLANNERS.items():
-        found = run_all(given.out, people)
+        found = run_all(given.out, people, planners)
         for factor, levels, sign in (("density", DENSITIES, -1), ("width", WIDTHS, 1)):
             table = column(found, list(levels), planners, "success")
             for k, planner in enumerate(planners):
@@ -212,7 +214,7 @@ def rank_correlation(values: Array, table: Array) -> float:
 
 def effect_on_people(given: argparse.Namespace) -> bool:
     """Gonon et al. 2021: RDS keeps to its course better than ORCA; neither slows people down."""
-    found = run_all(given.out, "look")
+    found = run_all(given.out, "look", ("rds", "orca"))
     levels = sorted({level for level, _ in found})
     both = column(found, levels, ("rds", "orca"), "aside").mean(axis=1)
     print(f"aside of the straight course (rms), m: rds {both[:, 0].mean():.3f}, "

@@ -11,7 +11,7 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class RdsSpec(RungSpec):
-    """The robot avoids everything by itself; standing still is always allowed."""
+    """The robot avoids everything by itself; where no velocity avoids all, it brakes."""
 
     kind: Literal["rds"] = "rds"
     wish: Literal["goal", "user"] = Field(
@@ -27,7 +27,15 @@ class RdsSpec(RungSpec):
     )
     reference_point: PositiveLength = Field(
         default=0.18,
-        description="Distance ahead of the axle of the point whose velocity is chosen, m.",
+        description="Distance ahead of the axle of the point whose velocity is chosen, m; the "
+        "shape that is kept clear reaches at least as far ahead of the axle as if this point were "
+        "the centre of its front.",
+    )
+    basis: Literal["motion", "rest"] = Field(
+        default="motion",
+        description="Velocity around which the half-planes lie: the robot's own, as in the "
+        "publication's comparison with ORCA, or rest, as on the authors' robot, where standing "
+        "still is always allowed.",
     )
 
     @property

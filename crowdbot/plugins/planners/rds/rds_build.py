@@ -5,7 +5,10 @@ bounding shape", IEEE Robotics and Automation Letters 6(3), 2021. The velocity o
 robot is a linear function of that of a reference point ahead of the axle. For each thing, the point
 of the capsule around the robot that is nearest to it gets a half-plane of velocities, which becomes
 one of the reference point; the velocity nearest to the wanted one in all of them is driven.
-Half-planes are those around rest, as in the authors' last version, so that rest is allowed in all.
+
+A point on the axle cannot move aside, so that a half-plane of it can only be kept by braking. A
+robot whose outline is round about its axle would therefore never steer: its capsule reaches ahead
+of the axle, with the centre of the front at the reference point, as that of the authors' robot.
 """
 
 from __future__ import annotations
@@ -28,7 +31,7 @@ from crowdbot.plugin import (
 from crowdbot.plugins.planners.rds.rds import RdsSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.driver_build import VelocityPlanner
-from crowdbot.plugins.planners.shared.half_planes_build import avoid, best_velocity
+from crowdbot.plugins.planners.shared.half_planes_build import avoid, best_velocity, violation
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
 from crowdbot.plugins.planners.shared.user_input_build import JOYSTICK, UserInput
 
@@ -36,8 +39,8 @@ from crowdbot.plugins.planners.shared.user_input_build import JOYSTICK, UserInpu
 _NEAR, _POINT = 4.0, 0.03
 #: Time in which touching things part, s; yaw rate per heading error, 1/s.
 _STEP, _GAIN = 0.25, 2.5
-#: A half-plane whose normal is shorter says nothing.
-_LEAST = 1e-6
+#: A half-plane whose normal is shorter says nothing; more than that beyond one is too fast, m/s.
+_LEAST, _BEYOND = 1e-6, 1e-6
 _MOST = 500
 
 
@@ -81,8 +84,10 @@ class Rds(VelocityPlanner):
         discs = covering_discs(self._spec.robot_radius, self.body)
         self._ends = np.ascontiguousarray(discs[[0, -1], :2])
         self._round = float(discs[:, 2].max())
+        if self.limits is not None and self.limits.vy_max == 0.0:
+            self._ends, self._round = capsule_ahead(discs, self._point)
         things = np.array([[3.0, 0.0, 0.0, 0.0, 0.3]])
-        self._choose(things, (0.5, 0.0), np.zeros((0, 4)))
+        self._choose(things, (0.0, 0.0, 0.0), (0.5, 0.0), np.zeros((0, 4)))
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity of the reference point, in the robot's own axes, m/s."""
@@ -104,7 +109,7 @@ class Rds(VelocityPlanner):
         """Return the velocity of the reference point nearest to the wanted one, m/s."""
         assert self.limits is not None
         bounds = _bounds(min(0.0, self.limits.v_min), self.limits.v_max, aside)
-        chosen = self._choose(_things(scene), wanted, bounds)
+        chosen = self._choose(_things(scene), scene.twist, wanted, bounds)
         obs.log("rds/change", math.hypot(chosen[0] - wanted[0], chosen[1] - wanted[1]))
         return chosen
 
@@ -120,18 +125,24 @@ class Rds(VelocityPlanner):
         return Command(along, aside / self._spec.reference_point)
 
     def _choose(
-        self, things: Array, wanted: tuple[float, float], bounds: Array
+        self,
+        things: Array,
+        twist: tuple[float, float, float],
+        wanted: tuple[float, float],
+        bounds: Array,
     ) -> tuple[float, float]:
         spec = self._spec
         sideways = self.limits is not None and self.limits.vy_max > 0.0
-        count = len(bounds)
+        count, rest = len(bounds), spec.basis == "rest"
         self._lines[:count] = bounds
         count = half_planes(
-            things, self._ends, (self._round, spec.margin),
-            (spec.time_horizon, 0.0 if sideways else spec.reference_point), count, self._lines,
+            things, self._ends, (self._round, spec.margin), (0.0, 0.0, 0.0) if rest else twist,
+            (spec.time_horizon, 0.0 if sideways else spec.reference_point), rest, count,
+            self._lines,
         )  # fmt: skip
         fastest = 10.0  # the bounds limit more
-        return best_velocity(self._lines, count, 0, fastest, wanted, self._scratch)
+        found = best_velocity(self._lines, count, 0, fastest, wanted, self._scratch)
+        return found if allowed(self._lines, count, found) else (0.0, 0.0)
 
 
 def _things(scene: PlannerScene) -> Array:
@@ -146,6 +157,17 @@ def _things(scene: PlannerScene) -> Array:
     away = np.hypot(found[:, 0], found[:, 1])
     order = np.argsort(away, kind="stable")
     return np.ascontiguousarray(found[order[away[order] < _NEAR]][: _MOST - 4])
+
+
+def capsule_ahead(discs: Array, reach: float) -> tuple[Array, float]:
+    """Return ends (2, 2) and radius of a capsule along the robot's axis that holds its discs.
+
+    Args:
+        discs: (K, 3) that together hold the robot, m.
+        reach: least distance of the centre of its front ahead of the axle, m.
+    """
+    back, front = discs[:, 0].min(), max(float(discs[:, 0].max()), reach)
+    return np.array([[back, 0.0], [front, 0.0]]), float(np.max(np.abs(discs[:, 1]) + discs[:, 2]))
 
 
 def _bounds(slowest: float, fastest: float, aside: float) -> Array:
@@ -163,7 +185,9 @@ def half_planes(
     things: Array,
     ends: Array,
     sizes: tuple[float, float],
+    twist: tuple[float, float, float],
     scales: tuple[float, float],
+    rest: bool,
     count: int,
     out: Array,
 ) -> int:
@@ -173,8 +197,10 @@ def half_planes(
         things: (T, 5) x, y, vx, vy, radius, in the robot's frame.
         ends: (2, 2) ends of the capsule's segment, m.
         sizes: radius of the capsule, and margin, m.
+        twist: the robot's velocity ahead, yaw rate, velocity aside, around which half-planes lie.
         scales: time horizon, s; distance of the reference point, m, 0 for a robot that goes
             sideways.
+        rest: standing still is allowed in all.
         count: rows of ``out`` that are in use.
         out: (L, 4), as in `half_planes_build`.
 
@@ -193,9 +219,12 @@ def half_planes(
         line = out[count]
         place = things[i, 0] - x, things[i, 1] - y
         both = sizes[0] + sizes[1] + things[i, 4]
-        avoid(place, (0.0, 0.0), (things[i, 2], things[i, 3]), both, time, _STEP, 1.0, line)
+        own = twist[0] - twist[1] * y, twist[2] + twist[1] * x
+        avoid(place, own, (things[i, 2], things[i, 3]), both, time, _STEP, 1.0, line)
         nx, ny = -line[3], line[2]
-        least = min(0.0, nx * line[0] + ny * line[1])  # rest stays allowed
+        least = nx * line[0] + ny * line[1]
+        if rest:
+            least = min(0.0, least)
         if reach > 0.0:
             nx, ny = nx, (ny * x - nx * y) / reach
         size = math.sqrt(nx * nx + ny * ny)
@@ -206,6 +235,15 @@ def half_planes(
         line[2], line[3] = ny, -nx
         count += 1
     return count
+
+
+@kernel
+def allowed(lines: Array, count: int, velocity: tuple[float, float]) -> bool:
+    """Return False if a velocity lies beyond one of the first ``count`` half-planes."""
+    worst = 0.0
+    for i in range(count):
+        worst = max(worst, violation(lines[i], velocity[0], velocity[1]))
+    return worst <= _BEYOND
 
 
 def build(spec: RdsSpec) -> Rds:
