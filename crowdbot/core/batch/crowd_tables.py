@@ -57,10 +57,10 @@ def is_compiled(engine: CrowdEngine) -> bool:
 
     Otherwise `CrowdEngine` makes them for one world after the other, with the same results.
     """
-    return engine.decides_by_policies_alone and all(_searches(g) for g in engine.groups)
+    return engine.decides_by_policies_alone and all(searches(g) for g in engine.groups)
 
 
-def _searches(group: DecisionGroup) -> bool:
+def searches(group: DecisionGroup) -> bool:
     """True if people sample velocities with compiled cost functions."""
     search = getattr(group.policy, "compiled_search", None)
     return isinstance(search, Sampler) and not search.costs.vectorised

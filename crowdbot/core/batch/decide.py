@@ -33,21 +33,27 @@ def decide(crowd: Indices, groups: Indices, now: float) -> bool:
     flat, robots, seen = floats1(crowd, c.FLAT), floats2(crowd, c.ROBOTS), floats2(crowd, c.SEEN)
     count = floats1(crowd, c.RADIUS).shape[0]
     people = as_rows(flat[HEADER_SIZE : HEADER_SIZE + count * AGENT_COLUMNS], PERSON)
-    _look(people, crowd, robots, seen)
+    look(people, crowd, robots, seen)
     sound = True
     for g in range(groups.shape[0]):
-        sound = _decide_group(people, crowd, groups[g], seen) and sound
+        sound = decide_group(people, crowd, groups[g], seen) and sound
     if robots.shape[0] > 0:
-        evade_robots(
-            people, floats1(crowd, c.RADIUS), mask1(crowd, c.HEEDS), mask1(crowd, c.LATE),
-            floats1(crowd, c.ATTENTION), floats1(crowd, c.PREFERRED), seen,
-            floats3(crowd, c.OUTLINES), as_rows(floats1(crowd, c.EVADES), DECISION_RESPONSE), now,
-        )  # fmt: skip
+        evade(people, crowd, seen, now)
     return sound
 
 
 @kernel
-def _look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
+def evade(people: People, crowd: Indices, seen: Array, now: float) -> None:
+    """Change what people want who have noticed robots, (R, 8) as people see them."""
+    evade_robots(
+        people, floats1(crowd, c.RADIUS), mask1(crowd, c.HEEDS), mask1(crowd, c.LATE),
+        floats1(crowd, c.ATTENTION), floats1(crowd, c.PREFERRED), seen,
+        floats3(crowd, c.OUTLINES), as_rows(floats1(crowd, c.EVADES), DECISION_RESPONSE), now,
+    )  # fmt: skip
+
+
+@kernel
+def look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
     """Write positions, velocities and goals of all people, and the robots as they see them."""
     position, velocity = floats2(crowd, c.POSITION), floats2(crowd, c.VELOCITY)
     goal, present = floats2(crowd, c.GOAL), mask1(crowd, c.PRESENT)
@@ -64,7 +70,7 @@ def _look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
 
 
 @kernel
-def _decide_group(people: People, crowd: Indices, group: Indices, seen: Array) -> bool:
+def decide_group(people: People, crowd: Indices, group: Indices, seen: Array) -> bool:
     """Set the accelerations of one group; return False if a cost function returned NaN."""
     choices, numbers = ints1(group, c.G_CHOICES), floats1(group, c.G_NUMBERS)
     present, who, members = (

@@ -39,7 +39,7 @@ NONE, NO_STIFFNESSES = np.zeros(0, np.int64), np.zeros(0)
 _NOT_SHOWN = np.zeros((0, 5))
 _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot used by policies
 #: Time of decisions in a situation of one's own, in ticks: late enough that people have reacted.
-_LATER = 60 * TICKS_PER_SECOND
+LATER = 60 * TICKS_PER_SECOND
 _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # columns of its motion
 
 
@@ -312,7 +312,7 @@ class CrowdEngine:
         """
         flat = s.blank(len(self.agents), len(robots))
         header, rows = s.view(flat)
-        header[s.TICK] = _LATER
+        header[s.TICK] = LATER
         rows[:, s.X : s.Y + 1], rows[:, s.VX : s.VY + 1] = position, velocity
         rows[:, s.GOAL_X : s.GOAL_Y + 1] = goal
         rows[:, self.aim : self.aim + 2] = goal

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.batch.imagined import CompiledWalk, walks_compiled
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.engine import CrowdEngine
 from crowdbot.core.crowd.steering.parameters import Steering
@@ -27,6 +28,9 @@ class ImaginedCrowd:
         preferred_speed: (N,) m/s.
         radius: (N,) m; None: that of the crowd.
         registry: the installed components; default: discovered now.
+
+    Attributes:
+        is_compiled: True if `walk` is one compiled call.
 
     Raises:
         UnknownNameError: there is no such crowd.
@@ -62,6 +66,7 @@ class ImaginedCrowd:
             decision_rate=people.decision_rate,
         )
         self._engine = CrowdEngine(agents, world, people.policy)
+        self.is_compiled, self._walks = walks_compiled(self._engine), dict[float, CompiledWalk]()
 
     def accelerations(
         self,
@@ -79,3 +84,38 @@ class ImaginedCrowd:
             robot: (R, 8) as for `CrowdEngine.advance`.
         """
         return self._engine.decide(position, velocity, goal, present, robot)
+
+    def walk(
+        self,
+        position: Array,
+        velocity: Array,
+        goal: Array,
+        present: NDArray[np.bool_],
+        robots: Array,
+        radius: float | None,
+        dt: float,
+    ) -> tuple[Array, Array, Array]:
+        """Return positions, velocities and accelerations (K, N, 2) at K decisions, SI units.
+
+        Accelerations are those of `accelerations`, and are kept until the next decision.
+
+        Args:
+            position, velocity, goal, present: at first, as of `accelerations`.
+            robots: (K, 4) x, y, vx, vy of a robot at each decision.
+            radius: of the robot, m; None: people do not see it.
+            dt: between two decisions, s.
+        """
+        if self.is_compiled and radius is not None:
+            if radius not in self._walks:
+                self._walks = {radius: CompiledWalk(self._engine, radius)}
+            return self._walks[radius].walk(position, velocity, goal, present, robots, dt)
+        found = np.zeros((3, len(robots), *position.shape))
+        for k, (x, y, vx, vy) in enumerate(robots.tolist()):
+            row = [] if radius is None else [[x, y, vx, vy, radius, radius, 0.0, 0.0]]
+            pull = self.accelerations(
+                position, velocity, goal, present, np.array(row).reshape(-1, 8)
+            )
+            found[:, k] = position, velocity, pull
+            after = velocity + dt * pull
+            position, velocity = position + 0.5 * dt * (velocity + after), after
+        return found[0], found[1], found[2]

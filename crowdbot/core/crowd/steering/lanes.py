@@ -18,14 +18,15 @@ _STANDS = 0.2
 
 def keep_lane(part: LanesSpec, now: Moment, wanted: Array) -> None:
     """Add the accelerations of all people who step aside to ``wanted`` (N, 2), m/s^2, in place."""
-    _keep_all(*now.near, part.strength, part.reach, part.half_width, part.follow, wanted)
+    keep_all(*now.near, part.strength, part.reach, part.half_width, part.follow, wanted)
 
 
 @kernel
-def _keep_all(
+def keep_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
     strength: float, reach: float, half_width: float, follow: float, wanted: Array,
 ) -> None:  # fmt: skip
+    """Add the accelerations of all people who decide and step aside, in place."""
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
@@ -68,4 +69,4 @@ def aside_of(
     return math.tanh(away + follow * towards * comers / all_)
 
 
-__all__ = ["aside_of", "keep_lane"]
+__all__ = ["aside_of", "keep_all", "keep_lane"]

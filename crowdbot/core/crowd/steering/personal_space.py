@@ -20,14 +20,15 @@ _THROUGH = 0.05
 
 def push_away(part: PersonalSpaceSpec, now: Moment, wanted: Array) -> None:
     """Add the pushes of all others to accelerations (N, 2), m/s^2, in place."""
-    _push_all(*now.near, part.strength, part.reach, part.anticipation, part.behind, wanted)
+    push_all(*now.near, part.strength, part.reach, part.anticipation, part.behind, wanted)
 
 
 @kernel
-def _push_all(
+def push_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
     strength: float, reach: float, anticipation: float, behind: float, wanted: Array,
 ) -> None:  # fmt: skip
+    """Add the pushes of all others on people who decide, in place."""
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
@@ -77,4 +78,4 @@ def push_by(
     return -push * nx, -push * ny
 
 
-__all__ = ["HARDEST", "push_away", "push_by"]
+__all__ = ["HARDEST", "push_all", "push_away", "push_by"]

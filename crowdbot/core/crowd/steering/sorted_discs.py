@@ -56,13 +56,13 @@ def sorted_discs(view: CrowdView) -> SortedDiscs:
     of = discs["index"].astype(np.int64)
     row[of[of >= 0]] = np.flatnonzero(of >= 0)
     heading = np.zeros_like(view.position)
-    _face(view.position, view.velocity, view.goal, heading)
+    face(view.position, view.velocity, view.goal, heading)
     decides = view.present if view.decides is None else view.present & view.decides
     return SortedDiscs(discs, row, heading, decides)
 
 
 @array_kernel
-def _face(position: Array, velocity: Array, goal: Array, heading: Array) -> None:
+def face(position: Array, velocity: Array, goal: Array, heading: Array) -> None:
     """Write headings: half towards the goal and half along the velocity."""
     for i in range(position.shape[0]):
         gx, gy = goal[i, 0] - position[i, 0], goal[i, 1] - position[i, 1]

@@ -26,18 +26,19 @@ def limit_speed(part: TimeGapSpec, now: Moment, wanted: Array) -> None:
     Args:
         wanted: (N, 2) accelerations, m/s^2.
     """
-    _limit(
+    limit_all(
         *now.near, now.view.velocity, part.time, part.oncoming_time, part.room, part.half_width,
         now.relaxation, wanted,
     )  # fmt: skip
 
 
 @kernel
-def _limit(
+def limit_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask, velocity: Array,
     time: float, oncoming_time: float, room: float, half_width: float, relaxation: float,
     wanted: Array,
 ) -> None:  # fmt: skip
+    """Shorten the velocities of people who decide to what the room ahead allows, in place."""
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
@@ -85,4 +86,4 @@ def allowed_speed(
     return fastest
 
 
-__all__ = ["allowed_speed", "limit_speed"]
+__all__ = ["allowed_speed", "limit_all", "limit_speed"]

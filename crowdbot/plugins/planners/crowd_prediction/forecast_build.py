@@ -26,7 +26,6 @@ _FAR = 20.0
 _STEPS = 2
 #: Age at which a prediction is compared with the present, s.
 _CHECKED = 1.0
-_NO_ROBOT = np.zeros((0, 8))
 #: Mean square error that both predictions have before there is any, m^2.
 _DOUBT = 0.02
 
@@ -142,21 +141,16 @@ class CrowdForecast:
         # The seats' speeds are a few per cent off; so is the way.
         off = (1.0 - self._speeds[taken] / speed[seats])[:, np.newaxis] * wanted[seats]
         out = people[:, :2] + step * np.arange(1, len(path))[:, None, None] * people[:, 2:4]
-        moves = np.diff(path, axis=0) / step
-        dt = _STEPS * step
-        for k in range(0, len(path) - 1, _STEPS):
-            robot = _NO_ROBOT
-            if radius is not None:
-                robot = np.array([[*path[k], *moves[k], radius, radius, 0.0, 0.0]])
-            pull = self._crowd.accelerations(position, velocity, goal, present, robot)
-            after = velocity + dt * pull
-            for n in range(k, min(k + _STEPS, len(out))):
-                share = (n - k + 1) / _STEPS
-                middle = velocity + 0.5 * share * (after - velocity)
-                moved = position + share * dt * middle
-                out[n, seats] = moved[taken] + step * (n + 1) * off
-            position = position + 0.5 * dt * (velocity + after)
-            velocity = after
+        robots = np.hstack([path[:-1], np.diff(path, axis=0) / step])[::_STEPS]
+        dt, steps = _STEPS * step, np.arange(len(out))
+        places, speeds, pulls = self._crowd.walk(
+            position, velocity, goal, present, robots, radius, dt
+        )
+        since = ((steps % _STEPS + 1) / _STEPS)[:, np.newaxis, np.newaxis]
+        before, pull = (a[:, taken][steps // _STEPS] for a in (speeds, pulls))
+        middle = before + 0.5 * since * (before + dt * pull - before)
+        moved = places[:, taken][steps // _STEPS] + since * dt * middle
+        out[:, seats] = moved + step * (steps + 1)[:, np.newaxis, np.newaxis] * off
         return out
 
     def _seats(self, speed: Array) -> tuple[Indices, Indices]:

@@ -1,0 +1,230 @@
+"""CompiledWalk: people on an empty floor decide and walk on, many decisions in one compiled call.
+
+The same numbers as `CrowdEngine.decide` gives, bit by bit, in a third of the time: most of that of
+a decision among forty people are calls from Python.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core.batch.array_tables import ArrayTable, ScratchPool, floats1, floats2
+from crowdbot.core.batch.crowd_tables import (
+    FLAT,
+    G_SHOWN,
+    SEEN,
+    crowd_table,
+    group_tables,
+    searches,
+)
+from crowdbot.core.batch.decide import decide_group, evade, look
+from crowdbot.core.crowd import state as s
+from crowdbot.core.crowd.contact.robot_contact import DISC as ROUND
+from crowdbot.core.crowd.desired_acceleration import relaxation_time_of
+from crowdbot.core.crowd.engine import LATER, CrowdEngine
+from crowdbot.core.crowd.steering.lanes import keep_all
+from crowdbot.core.crowd.steering.personal_space import push_all
+from crowdbot.core.crowd.steering.sorted_discs import REACH, face
+from crowdbot.core.crowd.steering.time_gap import limit_all
+from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs, write_discs
+from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
+from crowdbot.core.support.compiling.compile import kernel
+from crowdbot.core.support.records import Rows, as_rows, rows_of
+from crowdbot.core.support.stable_order import write_stable_order
+from crowdbot.core.support.ticks import TICK
+from crowdbot.core.types.arrays import Array, Indices, Mask
+
+#: Rows of the parameters of steering parts: whether there is one, then its own.
+_GAP, _SPACE, _LANES = range(3)
+
+
+def walks_compiled(engine: CrowdEngine) -> bool:
+    """True if all people of a crowd without walls and routing sample velocities."""
+    return all(searches(group) for group in engine.groups)
+
+
+class CompiledWalk:
+    """Decisions of an engine's people with one robot, which is a disc.
+
+    Args:
+        engine: without walls, pillars, routing, groups, border and wandering.
+        radius: that people see, m.
+    """
+
+    def __init__(self, engine: CrowdEngine, radius: float) -> None:
+        people, world = len(engine.agents), engine.world
+        flat, self._robot = s.blank(people, 1), np.zeros((1, 8))
+        flat[s.TICK] = LATER
+        self._robot[0, 4:6] = radius
+        self._blank, self._now = flat.copy(), LATER * TICK
+        pool = ScratchPool()
+        crowd = crowd_table(engine, flat, self._robot, ROUND[np.newaxis], np.zeros(1), pool)
+        groups = group_tables(engine, self._robot, pool)
+        self._kept: tuple[ArrayTable, ...] = (crowd, *groups)
+        self._crowd, self._groups = crowd.entries, np.stack([g.entries for g in groups])
+        dt = engine.ticks_per_decision * TICK
+        self._relaxation = np.array(
+            [max(relaxation_time_of(g.policy), dt) for g in engine.groups], np.float64
+        )
+        self._members = np.stack([g.members for g in engine.groups])
+        self._parts = _numbers(world.steering.spec)
+        a, room = engine.agents, most_discs(people, 1, periodic=False)
+        self._traits = np.array([a.avoided_radius, a.preferred_speed, a.max_acceleration])
+        self._discs: tuple[Any, Any] = (rows_of(room, DISC), rows_of(room, DISC))
+        self._scratch = (
+            np.zeros((3, room), np.int64), np.zeros(room), np.zeros(people, np.bool_),
+            np.zeros((people, 2)), np.zeros((people, 2)), np.zeros((1, 4)),
+        )  # fmt: skip
+
+    def walk(
+        self, position: Array, velocity: Array, goal: Array, present: Mask, robots: Array, dt: float
+    ) -> tuple[Array, Array, Array]:
+        """Return positions, velocities and accelerations at each decision, (K, N, 2), SI units.
+
+        Args:
+            position, velocity, goal: (N, 2) at first, m and m/s.
+            present: (N,) False for people to leave out.
+            robots: (K, 4) x, y, vx, vy at each decision.
+            dt: between two decisions, in which accelerations are kept, s.
+        """
+        found = np.zeros((3, len(robots), len(position), 2))
+        walk(
+            self._crowd, self._groups, (self._relaxation, self._members),
+            self._parts, self._traits, *self._discs, self._scratch,
+            self._blank, self._robot, np.ascontiguousarray(robots), position, velocity, goal,
+            present, (dt, self._now), found,
+        )  # fmt: skip
+        return found[0], found[1], found[2]
+
+
+def _numbers(spec: Any) -> Array:
+    """Return the parameters of the steering parts (3, 5)."""
+    out = np.zeros((3, 5))
+    if spec.time_gap is not None:
+        p = spec.time_gap
+        out[_GAP] = 1.0, p.time, p.oncoming_time, p.room, p.half_width
+    if spec.personal_space is not None:
+        p = spec.personal_space
+        out[_SPACE] = 1.0, p.strength, p.reach, p.anticipation, p.behind
+    if spec.lanes is not None:
+        p = spec.lanes
+        out[_LANES] = 1.0, p.strength, p.reach, p.half_width, p.follow
+    return out
+
+
+@kernel
+def walk(
+    crowd: Indices, groups: Indices, of_groups: tuple[Array, Mask],
+    parts: Array, traits: Array, discs: Rows[DiscRecord], ordered: Rows[DiscRecord],
+    scratch: tuple[Indices, Array, Mask, Array, Array, Array],
+    blank: Array, robot: Array, robots: Array,
+    position: Array, velocity: Array, goal: Array, present: Mask,
+    times: tuple[float, float], found: Array,
+) -> None:  # fmt: skip
+    """Write positions, velocities and accelerations of people at each decision.
+
+    Args:
+        crowd, groups: as of `crowdbot.core.batch.decide.decide`.
+        of_groups: relaxation times (G,), s, and members (G, N).
+        parts: (3, 5) parameters of time gap, personal space and lanes.
+        traits: (3, N) avoided radius, preferred speed, largest acceleration.
+        discs, ordered, scratch: room for all discs; their order and x; who decides, headings,
+            wishes; and a row of zeros.
+        blank: a state without people.
+        robot: (1, 8), changed in place; its rows at each decision are ``robots`` (K, 4).
+        position to present: as of `CompiledWalk.walk`; left as they are.
+        times: between decisions, and the time of all of them, s.
+        found: (3, K, N, 2).
+    """
+    dt, now = times
+    flat, count = floats1(crowd, FLAT), position.shape[0]
+    people = as_rows(flat[s.HEADER_SIZE : s.HEADER_SIZE + count * s.AGENT_COLUMNS], s.PERSON)
+    places, speeds, pulls = found[0], found[1], found[2]
+    for k in range(robots.shape[0]):
+        for i in range(count):
+            for c in range(2):
+                if k == 0:
+                    places[0, i, c], speeds[0, i, c] = position[i, c], velocity[i, c]
+                else:
+                    after = speeds[k - 1, i, c] + dt * pulls[k - 1, i, c]
+                    both = speeds[k - 1, i, c] + after
+                    places[k, i, c] = places[k - 1, i, c] + 0.5 * dt * both
+                    speeds[k, i, c] = after
+        for c in range(4):
+            robot[0, c] = robots[k, c]
+        for n in range(flat.shape[0]):
+            flat[n] = blank[n]
+        for i in range(count):
+            p = people[i]
+            p.x, p.y, p.vx, p.vy = (
+                places[k, i, 0],
+                places[k, i, 1],
+                speeds[k, i, 0],
+                speeds[k, i, 1],
+            )
+            p.goal_x, p.goal_y = goal[i, 0], goal[i, 1]
+            p.waiting = s.PRESENT if present[i] else s.NOT_YET
+            ax, ay = p.goal_x - p.x, p.goal_y - p.y
+            away = max(math.hypot(ax, ay), 1e-9)
+            p.dir_x, p.dir_y = ax / away, ay / away
+        seen = floats2(crowd, SEEN)
+        look(people, crowd, robot, seen)
+        for g in range(groups.shape[0]):
+            decide_group(people, crowd, groups[g], seen)
+            _steer(
+                people, places[k], speeds[k], goal, present, of_groups[1][g],
+                floats2(groups[g], G_SHOWN), of_groups[0][g], parts, traits, discs, ordered,
+                scratch,
+            )  # fmt: skip
+        evade(people, crowd, seen, now)
+        for i in range(count):
+            if present[i]:
+                pulls[k, i, 0], pulls[k, i, 1] = people[i].ax, people[i].ay
+
+
+@kernel
+def _steer(
+    people: s.People, position: Array, velocity: Array, goal: Array, present: Mask, members: Mask,
+    robots: Array, relaxation: float, parts: Array, traits: Array, discs: Rows[DiscRecord],
+    ordered: Rows[DiscRecord], scratch: tuple[Indices, Array, Mask, Array, Array, Array],
+) -> None:  # fmt: skip
+    """Change what the members of a group want, as `crowdbot.core.crowd.steering.parts.steer`."""
+    orders, x, decides, heading, wanted, nothing = scratch
+    count = write_discs(
+        position, velocity, goal, traits[0], traits[1], present, robots, nothing[:0, :3],
+        nothing[0], True, REACH, discs,
+    )  # fmt: skip
+    order, spare, row = orders[0], orders[1], orders[2]
+    for n in range(count):
+        x[n] = discs[n].x
+    write_stable_order(x[:count], order[:count], spare[:count])
+    for i in range(position.shape[0]):
+        row[i], decides[i] = -1, present[i] and members[i]
+        heading[i, 0] = heading[i, 1] = 0.0
+        wanted[i, 0], wanted[i, 1] = people[i].ax, people[i].ay
+    for n in range(count):
+        ordered[n] = discs[order[n]]
+        if ordered[n].index >= 0.0:
+            row[int(ordered[n].index)] = n
+    face(position, velocity, goal, heading)
+    near, gap, space, lanes = ordered[:count], parts[_GAP], parts[_SPACE], parts[_LANES]
+    if gap[0] != 0.0:
+        limit_all(
+            near, row, heading, decides, velocity, gap[1], gap[2], gap[3], gap[4], relaxation,
+            wanted,
+        )  # fmt: skip
+    if space[0] != 0.0:
+        push_all(near, row, heading, decides, space[1], space[2], space[3], space[4], wanted)
+    if lanes[0] != 0.0:
+        keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], wanted)
+    for i in range(position.shape[0]):
+        if decides[i]:
+            limit, size = traits[2, i], math.hypot(wanted[i, 0], wanted[i, 1])
+            share = min(1.0, limit / max(size, limit))
+            people[i].ax, people[i].ay = wanted[i, 0] * share, wanted[i, 1] * share
+
+
+__all__ = ["CompiledWalk", "walks_compiled"]
