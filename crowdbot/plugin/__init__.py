@@ -14,6 +14,7 @@ from crowdbot.lazy import lazy_names
 from crowdbot.plugin.homes import HOMES
 
 if TYPE_CHECKING:
+    from crowdbot.core.batch.imagined_crowd import ImaginedCrowd
     from crowdbot.core.crowd.agents import LOOP, PORTAL, REMOVE, STOP, Agents
     from crowdbot.core.crowd.contact.geometry import (
         nearest_on_segment,
@@ -69,7 +70,6 @@ if TYPE_CHECKING:
     from crowdbot.core.geometry.rough_angle import rough_angle
     from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner, Truth
     from crowdbot.core.planning.weights.weights_file import read_weights
-    from crowdbot.core.realism.imagined_crowd import ImaginedCrowd
     from crowdbot.core.recording.from_mcap import Trajectories
     from crowdbot.core.recording.recording import Recording, RecordingInfo
     from crowdbot.core.robots.description import Description, read_description

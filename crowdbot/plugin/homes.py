@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 HOMES = {
+    "crowdbot.core.batch.imagined_crowd": "ImaginedCrowd",
     "crowdbot.core.crowd.agents": "LOOP PORTAL REMOVE STOP Agents",
     "crowdbot.core.crowd.contact.geometry": "nearest_on_segment time_to_disc time_to_segment",
     "crowdbot.core.crowd.desired_acceleration": "desired_acceleration",
@@ -30,7 +31,6 @@ HOMES = {
     "crowdbot.core.geometry.rough_angle": "rough_angle",
     "crowdbot.core.planning.planner": "NoValidCommand Observation Planner Truth",
     "crowdbot.core.planning.weights.weights_file": "read_weights",
-    "crowdbot.core.realism.imagined_crowd": "ImaginedCrowd",
     "crowdbot.core.recording.from_mcap": "Trajectories",
     "crowdbot.core.recording.recording": "Recording RecordingInfo",
     "crowdbot.core.robots.description": "Description read_description",

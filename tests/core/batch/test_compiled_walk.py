@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from crowdbot.core.realism.imagined_crowd import ImaginedCrowd
+from crowdbot.core.batch.imagined_crowd import ImaginedCrowd
+from crowdbot.core.types.arrays import Array, Mask
 
 SPEEDS = np.repeat(np.linspace(0.3, 1.9, 6), 4)
 STEP = 0.32
 
 
-def _scene(seed: int) -> tuple[np.ndarray, ...]:
+def _scene(seed: int) -> tuple[Array, Array, Array, Mask, Array]:
     rng = np.random.default_rng(seed)
     position, velocity = rng.uniform(-3, 3, (24, 2)), rng.normal(0.0, 0.7, (24, 2))
     goal, present = position + 20.0 * velocity, rng.random(24) < 0.8

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.batch.imagined import CompiledWalk, walks_compiled
+from crowdbot.core.batch.compiled_walk import CompiledWalk, walks_compiled
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.engine import CrowdEngine
 from crowdbot.core.crowd.steering.parameters import Steering
