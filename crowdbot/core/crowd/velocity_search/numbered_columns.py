@@ -18,8 +18,7 @@ from crowdbot.core.support.records import columns_of
     PX, PY, VX, VY, RADIUS, PREFERRED, FASTEST, TIME_STEP,
     GX, GY, PVX, PVY, MAX_SPEED, MAX_ACCELERATION, RELAXATION, WEIGHT, PARITY, RANDOM,
     DESCENDS, BROKEN, ASKED_X, ASKED_Y, ASKED_RADIUS, WALLS_WITHIN, FLOOR,
-    OPTIMISES,
-) = range(26)  # fmt: skip
+) = range(25)  # fmt: skip
 D2, RX, RY, NVX, NVY, REACH, NPX, NPY, STATIC = range(9)
 AX, AY, BX, BY, NX, NY, WALL_D2 = range(7)
 RANGE, FROM_SURFACE = range(2)

@@ -81,7 +81,6 @@ def _solve(
         i = describe(around, b)
         if i < 0:
             continue
-        agent.optimises = 1.0
         prepare(around, b, functions, weights, active)
         known = call_optimum(
             functions[0, OPTIMA], agent, functions[0, WORK], functions[0, PARAMS],

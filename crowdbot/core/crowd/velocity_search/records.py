@@ -28,7 +28,6 @@ class AgentRecord:
         asked_x, asked_y, asked_radius: disc with all velocities of the search.
         walls_within: only the walls at most so far away are given; 0: all in range.
         floor: address of the `FloorRecord`.
-        optimises: 1 if only ``optimum`` is called after ``prepare``.
     """
 
     px: float
@@ -56,7 +55,6 @@ class AgentRecord:
     asked_radius: float
     walls_within: float
     floor: float
-    optimises: float
 
 
 class NeighbourRecord:

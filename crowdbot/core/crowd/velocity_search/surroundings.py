@@ -152,7 +152,7 @@ def describe(around: Surroundings, b: int) -> int:
     agent.max_speed, agent.weight = traits.max_speed, traits.weight
     agent.max_acceleration = traits.max_acceleration
     agent.parity, agent.random = settings.parity, around.random[i]
-    agent.descends, agent.optimises, agent.floor = 0.0, 0.0, settings.floor
+    agent.descends, agent.floor = 0.0, settings.floor
     agent.fastest = agent.max_speed
     if not is_clearly_shorter(agent.vx, agent.vy, agent.max_speed):
         agent.fastest = max(agent.max_speed, math.hypot(agent.vx, agent.vy))

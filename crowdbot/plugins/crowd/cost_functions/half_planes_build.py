@@ -99,10 +99,10 @@ def _search(
 @array_kernel
 def best_velocity(
     work: Pointer, count: int, speed: float, px: float, py: float
-) -> tuple[bool, float, float]:
-    """Return True, and the velocity within ``speed`` nearest to (px, py) in all half-planes.
+) -> tuple[float, float]:
+    """Return the velocity within ``speed`` nearest to (px, py) in all half-planes.
 
-    If there is none, return False, and the velocity with the smallest largest violation.
+    If there is none, return the velocity with the smallest largest violation.
     """
     failed, ux, uy = _search(work, count, -1, speed, px, py, False)
     worst = 0.0
@@ -115,4 +115,4 @@ def best_velocity(
         if stopped == i:
             ux, uy = x, y
         worst = violation(work, i, ux, uy)
-    return failed == count, ux, uy
+    return ux, uy

@@ -23,15 +23,10 @@ from crowdbot.plugin import (
     record_type,
     record_values,
 )
-from crowdbot.plugin.for_crowds import MORE_WALLS
 from crowdbot.plugins.crowd.cost_functions.half_planes_build import best_velocity, put, violation
 from crowdbot.plugins.crowd.cost_functions.orca import OrcaSpec
 
 _BRAKING = 0.5  # s within which the gap to a wall may be used up
-#: Walls are first looked at up to this share of the way that the fastest take until the horizon.
-_LOOKED_AT = 0.6
-#: Half-planes are first left out that hold all velocities this close to the wanted one, m/s.
-_NEAR_WISH = 0.2
 
 
 class _Params(CostParams):
@@ -103,24 +98,6 @@ def _least(agent: AgentRecord) -> float:
 
 
 @array_kernel
-def _is_clear(
-    rx: float, ry: float, d2: float, agent: AgentRecord, horizon: float, m: float
-) -> bool:
-    """Return True if the velocity obstacle of a point is farther than m from the present velocity.
-
-    By two bounds: it lies beyond the point's distance shared out over the horizon, and in a cone.
-    Its half-plane then holds all velocities that are at most m from the present one.
-    """
-    distance, radius = math.sqrt(d2), agent.radius
-    towards, across = agent.vx * rx + agent.vy * ry, abs(agent.vx * ry - agent.vy * rx)
-    if (distance - radius) * distance > horizon * (towards + m * distance):
-        return True
-    return bool(
-        towards > 0.0 and across * math.sqrt(d2 - radius * radius) - towards * radius > m * d2
-    )
-
-
-@array_kernel
 def _put_walls(
     agent: AgentRecord,
     walls: Rows[WallRecord],
@@ -128,77 +105,26 @@ def _put_walls(
     params: Pointer,
     work: Pointer,
     count: int,
-    m: float,
 ) -> int:
-    """Write two half-planes per wall: for braking, and for passing its nearest point.
-
-    Args:
-        m: half-planes for passing are left out that hold all velocities so close to the present
-            one, m/s.
-    """
+    """Write two half-planes per wall: for braking, and for passing its nearest point."""
     own = as_record(params, _PARAMS)
     vx, vy, radius, least = agent.vx, agent.vy, agent.radius, _least(agent)
-    # Beyond, the half-planes hold every velocity: their borders touch the cut-off disc.
-    far = radius + 1.0 - 1.5 * max(own.horizon, _BRAKING) * least
     for s in range(wall_count):
         d2, rx, ry = walls[s].d2, walls[s].nx, walls[s].ny
-        if d2 == 0.0 or d2 > far * far or not in_range(d2, radius, params):
+        if d2 == 0.0 or not in_range(d2, radius, params):
             continue
         distance = math.sqrt(d2)
         c = (radius - distance) / _BRAKING
         if c >= least:
             put(work, count, -rx / distance, -ry / distance, c)
             count += 1
-        if distance > radius and not _is_clear(rx, ry, d2, agent, own.horizon, m):
+        if distance > radius:
             nx, ny, way = _change(rx, ry, vx, vy, radius, own.horizon, 1.0, False)
             c = nx * vx + ny * vy + way
             if c >= least:
                 put(work, count, nx, ny, c)
                 count += 1
     return count
-
-
-@array_kernel
-def _fastest(agent: AgentRecord, params: Pointer) -> float:
-    """Return the largest speed of the optimum, m/s."""
-    if as_record(params, _PARAMS).limit != 0.0:
-        return min(agent.max_speed, math.hypot(agent.pvx, agent.pvy))
-    return agent.max_speed
-
-
-@array_kernel
-def _solve(
-    agent: AgentRecord,
-    walls: Rows[WallRecord],
-    wall_count: int,
-    params: Pointer,
-    work: Pointer,
-    people: int,
-) -> bool:
-    """Write the optimum after the count; return False if walls that were not given may change it.
-
-    All velocities that the search tries lie at most as far from the wanted one as its result does,
-    so half-planes that hold them all change nothing. First a small distance is assumed.
-    """
-    own, fastest, given = (
-        as_record(params, _PARAMS),
-        _fastest(agent, params),
-        not agent.walls_within > 0.0,
-    )
-    inside = math.inf if given and work[3] != 0.0 else _NEAR_WISH  # all are needed: a second call
-    off = math.hypot(agent.vx - agent.pvx, agent.vy - agent.pvy)
-    way = math.hypot(agent.vx, agent.vy) + off
-    while True:
-        m = (1.0 + 1e-6) * (off + inside) + 1e-6
-        count = _put_walls(agent, walls, wall_count, params, work, people, m)
-        feasible, ux, uy = best_velocity(work, count, fastest, agent.pvx, agent.pvy)
-        tried = math.hypot(ux - agent.pvx, uy - agent.pvy)
-        if inside == math.inf or (feasible and tried <= inside) or not (feasible or given):
-            break
-        inside = 2.0 * tried if feasible else math.inf
-    work[0], work[1], work[2], work[3] = count, ux, uy, 0.0 if feasible or given else 1.0
-    far = agent.radius + (1.0 + 1e-6) * max(own.horizon * (way + tried), _BRAKING * fastest) + 1e-6
-    return bool(given or (feasible and far < agent.walls_within))
 
 
 @declared_kernel(PREPARE)
@@ -211,10 +137,8 @@ def _prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Write row 0: the number of half-planes, and the optimum; then the half-planes."""
-    own, optimises = as_record(params, _PARAMS), agent.optimises > 0.0
-    if agent.walls_within > 0.0 and not optimises:
-        return MORE_WALLS
+    """Write row 0: the number of half-planes; then the half-planes."""
+    own = as_record(params, _PARAMS)
     count = 0
     vx, vy, horizon, dt = agent.vx, agent.vy, own.horizon, agent.time_step
     parity = agent.parity != 0.0
@@ -231,11 +155,8 @@ def _prepare(
         c = nx * (vx + share * way * nx) + ny * (vy + share * way * ny)
         put(work, count, nx, ny, c)
         count += 1
-    if optimises:
-        given = 0 if parity else wall_count
-        return 1 if _solve(agent, walls, given, params, work, count) else MORE_WALLS
     if not parity:
-        count = _put_walls(agent, walls, wall_count, params, work, count, math.inf)
+        count = _put_walls(agent, walls, wall_count, params, work, count)
     work[0] = count
     return max(count, 1)  # the base alone may be below the cost of a candidate that is too fast
 
@@ -256,12 +177,11 @@ def _excess(
 
 @declared_kernel(OPTIMUM)
 def _optimum(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -> int:
-    if agent.optimises > 0.0:
-        out[0], out[1] = work[1], work[2]
-        return 1
-    _, out[0], out[1] = best_velocity(
-        work, int(work[0]), _fastest(agent, params), agent.pvx, agent.pvy
-    )
+    own = as_record(params, _PARAMS)
+    fastest = agent.max_speed
+    if own.limit != 0.0:
+        fastest = min(fastest, math.hypot(agent.pvx, agent.pvy))
+    out[0], out[1] = best_velocity(work, int(work[0]), fastest, agent.pvx, agent.pvy)
     return 1
 
 
@@ -281,6 +201,6 @@ def build(spec: OrcaSpec) -> CompiledCost:
             limit=float(spec.limit == "preferred_speed"),
         ),
         weight=spec.weight,
-        wall_reach=(1.0, _LOOKED_AT * max(spec.time_horizon, _BRAKING)),
-        looks_farther=True,
+        # Beyond, the half-planes hold every velocity: their borders touch the cut-off disc.
+        wall_reach=(1.0, 1.5 * max(spec.time_horizon, _BRAKING)),
     )
