@@ -35,7 +35,7 @@ import crowdbot
 from crowdbot.api import registry
 from crowdbot.core.batch.array_tables import ScratchPool
 from crowdbot.core.batch.blueprint import blueprint
-from crowdbot.core.batch.parallel import Batches
+from crowdbot.core.batch.parallel import Batches, parts_of
 from crowdbot.core.batch.world import BatchWorld
 
 #: Steps per second of the process's time, and of the clock.
@@ -91,13 +91,11 @@ def kernels(people: int, beams: int, worlds: int, threads: int, *, same_room: bo
     changes = fields(people, beams) if same_room else longer(people)
     scenario = crowdbot.load(SUITE, SCENARIO, set=changes)
     plan = blueprint(scenario, registry(), ["front_lidar"] if beams else [])
-    pools = [ScratchPool() for _ in range(threads)]
-    ends = np.linspace(0, worlds, threads + 1)[1:]
-    made = [
-        BatchWorld(plan, w + 1, pools[int(np.searchsorted(ends, w, side="right"))])
-        for w in range(worlds)
-    ]
-    batches, given = Batches(made, list(range(worlds)), threads), commands(worlds)
+    parts, made = parts_of(worlds, threads, people), []
+    for begin, end in parts:
+        pool = ScratchPool()
+        made += [BatchWorld(plan, w + 1, pool) for w in range(begin, end)]
+    batches, given = Batches(made, list(range(worlds)), parts), commands(worlds)
     return best(lambda: batches.step(given, np.arange(worlds)), worlds)
 
 

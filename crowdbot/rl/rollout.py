@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from crowdbot.core.batch.bank import Bank
-from crowdbot.core.batch.parallel import Batches
+from crowdbot.core.batch.parallel import Batches, parts_of
 from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array, Indices, Mask
@@ -38,7 +38,7 @@ class Rollout:
         self._courses = [EpisodeCourse(setup, seed) for seed in seeds]
         keep = setup.draws is not None or setup.edition
         self._banks = [Bank(keep=keep) for _ in range(max(1, min(threads, count)))]
-        self.batches = self._first(threads)
+        self.batches = self._first()
         self.rows = np.zeros((count, robots, 8))
         self.scenarios = np.full(count, "", object)
         self._people = np.zeros(count, np.int64)
@@ -47,17 +47,14 @@ class Rollout:
             self._note(w)
         self._gather()
 
-    def _first(self, threads: int) -> Batches:
+    def _first(self) -> Batches:
         """Return the worlds of the first episodes."""
-        count, shared = len(self._courses), len(self._banks)
-        ends = np.linspace(0, count, shared + 1).astype(int)[1:]
-        worlds, keys = [], []
-        for w, course in enumerate(self._courses):
-            episode = course.next()
-            bank = self._banks[int(np.searchsorted(ends, w, side="right"))]
-            worlds.append(self._take(bank, episode))
-            keys.append(episode.key)
-        return Batches(worlds, keys, threads)
+        episodes = [course.next() for course in self._courses]
+        worlds = [self._take(self._banks[0], episodes[0])]
+        parts = parts_of(len(episodes), len(self._banks), worlds[0].people)
+        for bank, (begin, end) in zip(self._banks, parts, strict=True):
+            worlds += [self._take(bank, one) for one in episodes[max(begin, 1) : end]]
+        return Batches(worlds, [episode.key for episode in episodes], parts)
 
     def begin(self, which: Mask, seeds: Sequence[int | None], level: int | None = None) -> None:
         """Begin new episodes in some worlds.

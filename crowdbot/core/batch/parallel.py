@@ -14,20 +14,40 @@ from crowdbot.core.batch.step_threads import StepThreads
 from crowdbot.core.batch.world import BatchWorld
 from crowdbot.core.types.arrays import Array, Indices
 
+#: People who are stepped while another thread wakes up, which takes about 0.1 ms.
+_HEAD_START = 100
+
+
+def parts_of(worlds: int, threads: int, people: int) -> list[tuple[int, int]]:
+    """Return which worlds each thread steps, first and end.
+
+    The first thread begins at once, the others when they have woken up: it has more worlds.
+
+    Args:
+        worlds: how many, one or more.
+        threads: how many at most.
+        people: in each world, about.
+    """
+    count = max(1, min(threads, worlds))
+    head = (count - 1) * _HEAD_START / (people + 1)
+    first = min(round((worlds + head) / count), worlds - count + 1)
+    ends: list[int] = np.linspace(first, worlds, count).astype(int).tolist()
+    return list(itertools.pairwise([0, *ends]))
+
 
 class Batches:
     """Worlds shared out among threads, in order; with one thread there is no other.
 
     Args:
         worlds, keys: as of `Batch`.
-        threads: how many.
+        parts: which worlds each thread steps, see `parts_of`; those of a part may share scratch.
     """
 
-    def __init__(self, worlds: Sequence[BatchWorld], keys: Sequence[int], threads: int) -> None:
-        count = min(threads, len(worlds))
-        ends: list[int] = np.linspace(0, len(worlds), count + 1).astype(int).tolist()
-        self._parts: list[tuple[int, int]] = list(itertools.pairwise(ends))
-        self._thread_of = np.repeat(np.arange(len(self._parts)), np.diff(ends)).tolist()
+    def __init__(
+        self, worlds: Sequence[BatchWorld], keys: Sequence[int], parts: Sequence[tuple[int, int]]
+    ) -> None:
+        self._parts = list(parts)
+        self._thread_of = np.repeat(np.arange(len(parts)), np.diff(parts)[:, 0]).tolist()
         self._shared = drives_of(worlds)
         self._batches: list[Batch] = [
             Batch(worlds[a:b], keys[a:b], self._shared.part(a, b)) for a, b in self._parts

@@ -7,6 +7,8 @@ import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
 
+from crowdbot.core.support.other_cores import OtherCores
+
 #: A part's number, the work, and where its end is told; None ends a thread.
 _Order = tuple[int, Callable[[int], None], "SimpleQueue[BaseException | None]"] | None
 
@@ -23,8 +25,8 @@ class StepThreads:
 
     def __init__(self, helpers: int) -> None:
         self._orders: list[SimpleQueue[_Order]] = [SimpleQueue() for _ in range(helpers)]
-        for orders in self._orders:
-            threading.Thread(target=_work, args=(orders,), name="step", daemon=True).start()
+        threads = [_started(orders) for orders in self._orders]
+        self._cores = OtherCores([thread.native_id or 0 for thread in threads])
         self._finalizer = weakref.finalize(self, _end, self._orders)
 
     def share(self, part: Callable[[int], None]) -> None:
@@ -36,6 +38,7 @@ class StepThreads:
         """
         if self._orders and not self._finalizer.alive:
             raise RuntimeError("the threads have ended")
+        self._cores.leave_this_one()
         done: SimpleQueue[BaseException | None] = SimpleQueue()
         for number, orders in enumerate(self._orders, start=1):
             orders.put((number, part, done))
@@ -48,6 +51,12 @@ class StepThreads:
     def end(self) -> None:
         """End the threads; no more work is accepted."""
         self._finalizer()
+
+
+def _started(orders: SimpleQueue[_Order]) -> threading.Thread:
+    thread = threading.Thread(target=_work, args=(orders,), name="step", daemon=True)
+    thread.start()
+    return thread
 
 
 def _attempt(part: Callable[[int], None], number: int) -> BaseException | None:

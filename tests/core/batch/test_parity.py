@@ -122,7 +122,7 @@ def test_people_shown_after_a_step_are_those_of_the_world_in_any_thread() -> Non
     pools = [ScratchPool(), ScratchPool()]
     plan = blueprint(crowdbot.load(*CHALLENGE, set=[KINEMATIC, FEW]), registry(), [])
     worlds = [BatchWorld(plan, root, pool) for root, pool in enumerate((*pools, pools[1]))]
-    batches = Batches(worlds, [0, 1, 2], 2)
+    batches = Batches(worlds, [0, 1, 2], [(0, 1), (1, 3)])
     shown, asked = np.zeros((2, 3, worlds[0].people + 2, 5))
     batches.show_people(shown)
     for which in ([0, 1, 2], [0, 2], [1]):
@@ -182,7 +182,7 @@ def test_sensors_of_all_kinds_are_read_side_by_side_in_worlds_of_several_threads
     plan = blueprint(with_others(), registry(), ["front_lidar", *OTHERS, "rear_lidar"])
     pools = [ScratchPool(), ScratchPool()]
     worlds = [BatchWorld(plan, root, pool) for root, pool in enumerate(pools)]
-    both, alone = Batches(worlds, [4, 5], 2), BatchWorld(plan, 1)
+    both, alone = Batches(worlds, [4, 5], [(0, 1), (1, 2)]), BatchWorld(plan, 1)
     one = Batch([alone], [5])
     for now in commands(20):
         both.step(now[None].repeat(2, axis=0), np.arange(2))
