@@ -16,7 +16,7 @@ _HEAD = """# Metrics
 Each metric has a page with its formula, variants, parameters, limits and a worked example. \
 The four scores decide: {four}. \
 Metrics in *italics* are experimental and scored only when they are named. \
-[Errata](metrics/errata.md) lists what is wrong with the formulas of the challenge, and \
+[Errata](../developers/errata.md) lists what is wrong with the formulas of the challenge, and \
 [four scores](../explanation/four_scores.md) says why there are four.
 
 Below each table are pictures of what its metrics measure, from one run: a robot that sways and \
