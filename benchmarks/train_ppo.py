@@ -35,13 +35,14 @@ from crowdbot.rl import StableVecEnv, conventions, save_onnx
 WORLDS: dict[str, Any] = {
     "suite": str(Path(__file__).parent / "training" / "nav-training.yaml"),
     "levels": [["counter-d000-*", "counter-d005-*"], "counter-d010-*",
-               ["counter-d010-*", "counter-d020-*"]],
+               ["counter-d010-*", "counter-d020-*"],
+               ["counter-d010-*", "counter-d020-*", "in-d010-mixed-*"]],
     "set": ["rates.planner=4 Hz", *(f"robots.robot.sensors.{name}_lidar.{field}"
             for name in ("front", "rear") for field in ("angle_step=3 deg", "rate=4 Hz"))],
     "observation": {"kind": "free_velocities", "sensor": "front_lidar", "others": ["rear_lidar"]},
     "start_spread": {"x": 0.5, "y": 3.5, "yaw": 2.0},
     "reward": {
-        "kind": "comfort", "advance": 2.0, "contact": 0.0, "touch": 12.0, "arrival": 5.0,
+        "kind": "comfort", "advance": 2.0, "contact": 0.0, "arrival": 5.0,
         "change": 0.02, "wall": 5.0, "time": 0.1,
     },
     "contact": "end",
@@ -59,7 +60,7 @@ class Course(BaseCallback):
     def __init__(self, minutes: float, out: Path, before: Sequence[tuple[float, ...]]) -> None:
         super().__init__()
         self._budget, self._out, self._rate = 60.0 * minutes, out, 1e-4 if before else 3e-4
-        self._level = len(ENDS) - 1 if before else 0
+        self._level = len(ENDS) if before else 0
         self._ended: list[tuple[float, bool, bool, float]] = []
         self._rows, self._earlier = list(before), before[-1][:2] if before else (0.0, 0)
         self._begun = time.process_time()
@@ -108,8 +109,10 @@ class Course(BaseCallback):
         self.model.lr_schedule = lambda _: rate
 
     def _raise_level(self, arrived: float) -> None:
+        if self._level >= len(ENDS) - 1:
+            return
         over = self.used > ENDS[self._level] * self._budget
-        if self._level < len(ENDS) - 1 and (arrived > READY or over):
+        if arrived > READY or over:
             self._level += 1
             env: Any = self.training_env
             env.set_level(self._level)
@@ -147,7 +150,9 @@ def draw(curve: Path, out: Path) -> None:
 def train(given: argparse.Namespace) -> None:
     """Train for some processor time and save the policy."""
     torch.set_num_threads(1)
-    env = StableVecEnv(given.worlds, threads=given.threads, **WORLDS)
+    costs = {"touch": given.touch, "forced": given.forced}
+    worlds = {**WORLDS, "reward": {**WORLDS["reward"], **costs}}
+    env = StableVecEnv(given.worlds, threads=given.threads, **worlds)
     before: list[tuple[float, ...]] = []
     if given.start:
         model = PPO.load(given.start, env, device="cpu")
@@ -178,6 +183,8 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--worlds", type=int, default=96)
     parser.add_argument("--noise", type=float, default=0.5, help="deviation of actions")
     parser.add_argument("--start", type=Path, help="policy.zip, beside policy.csv, to go on from")
+    parser.add_argument("--touch", type=float, default=20.0, help="cost of touching a person")
+    parser.add_argument("--forced", type=float, default=40.0, help="of forcing people aside, kg/J")
     parser.add_argument("--threads", type=int, default=1, help="that step the worlds")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("policy.onnx"))

@@ -113,6 +113,7 @@ class Actor:
             gap=found[c.GAP],
             advance=found[c.ADVANCE],
             work=found[c.WORK],
+            forced=found[c.FORCED],
             command=given,
             before=self._before.copy(),
         )

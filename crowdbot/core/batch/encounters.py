@@ -1,7 +1,8 @@
 """Room that people have around a robot, compiled: the quantities of the scores, step by step.
 
 Gap, advance and demanded work are those of the metrics ``intrusion`` and ``push_work``, with their
-usual parameters, but taken once a step.
+usual parameters, but taken once a step. The push of people who are forced aside is that of the
+metric ``safe_efficiency``, taken at each tick.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ _SOONEST, _MOST = 0.5, 3.0
 _STILL = 1e-3
 #: People farther off than this have no part in a step, m.
 _SIGHT = 8.0
+#: Those whom the robot reaches sooner, if they stand, are forced aside, s; looks ahead until then.
+_HEADWAY, _LOOKS = 0.5, 4
 #: More than rounding.
 _CLEARLY = 1.0 + 1e-9
 
@@ -68,3 +71,47 @@ def meet(
             shift = max(0.0, away - gap + _DEMANDED - miss)
             need = min(_MOST, 2.0 * shift / max(until, _SOONEST) ** 2)
             drive.work += dt * need * approach * traits[i].mass
+
+
+@kernel
+def press(
+    drive: DriveStateRecord, robot: RobotRecord, outlines: Array, r: int, people: People,
+    traits: Rows[TraitsRecord], dt: float,
+) -> None:  # fmt: skip
+    """Add the push of a tick to ``forced``.
+
+    Args:
+        outlines: (R, K, 2) of the robots, of which this is number ``r``.
+        dt: how long the tick takes, s.
+    """
+    outline = outlines[r][: corners_of(outlines, r)]
+    for i in range(people.shape[0]):
+        pushed = people[i].push_x != 0.0 or people[i].push_y != 0.0
+        if people[i].waiting != PRESENT or pushed:
+            continue
+        px, py = people[i].x - robot.x, people[i].y - robot.y
+        far2 = px * px + py * py
+        approach = robot.vx * px + robot.vy * py
+        evades = people[i].ax * px + people[i].ay * py
+        if far2 > _NEAR * _NEAR or approach <= 0.0 or evades <= 0.0:
+            continue
+        if _within_headway(robot, outline, px, py, robot.body + traits[i].radius):
+            drive.forced += dt * evades * approach / far2
+
+
+@kernel
+def _within_headway(robot: RobotRecord, outline: Array, px: float, py: float, reach: float) -> bool:
+    """Return True if a robot that keeps its velocity soon touches a person who stands.
+
+    Args:
+        px, py: of the person, from the robot, m.
+        reach: rounding of the outline and radius of the person, m.
+    """
+    if overlap(robot.yaw, outline, -px, -py, reach)[0] >= 0.0:
+        return False  # who is touched does not evade
+    for k in range(1, _LOOKS + 1):
+        t = _HEADWAY * k / _LOOKS
+        x, y = robot.vx * t - px, robot.vy * t - py
+        if overlap(robot.yaw, outline, x, y, reach)[0] >= 0.0:
+            return True
+    return False

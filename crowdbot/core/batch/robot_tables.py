@@ -55,6 +55,8 @@ class DriveStateRecord:
         gap: from its outline to the nearest person at the end of the step, m.
         advance: distance driven towards people, weighted by the room that they lack, m.
         work: work that people need against it to keep room, J.
+        forced: its work, per mass, against people who evade it at the last moment, since the step
+            began, J/kg.
     """
 
     v: float
@@ -71,6 +73,7 @@ class DriveStateRecord:
     gap: float
     advance: float
     work: float
+    forced: float
 
 
 DRIVE_LIMITS, DRIVE_STATE = record_type(DriveLimitsRecord), record_type(DriveStateRecord)

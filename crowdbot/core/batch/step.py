@@ -8,7 +8,7 @@ from crowdbot.core.batch import crowd_tables as c
 from crowdbot.core.batch.array_tables import floats1, floats2, floats3, ints1
 from crowdbot.core.batch.decide import decide
 from crowdbot.core.batch.drive import move, watch_goal
-from crowdbot.core.batch.encounters import meet
+from crowdbot.core.batch.encounters import meet, press
 from crowdbot.core.batch.people_rows import write_people
 from crowdbot.core.batch.robot_tables import DRIVE_STATE
 from crowdbot.core.batch.scan import is_due, scan
@@ -82,7 +82,7 @@ def _command(commands: Array, least: Array, most: Array, drives: Array) -> None:
             drive.wanted_v = _within(commands[w, r, 0], low[0], high[0])
             drive.wanted_w = _within(commands[w, r, 1], low[1], high[1])
             drive.wanted_vy = _within(commands[w, r, 2], low[2], high[2])
-            drive.blocked = drive.touched = drive.since = 0.0
+            drive.blocked = drive.touched = drive.since = drive.forced = 0.0
 
 
 @kernel
@@ -144,10 +144,12 @@ def _advance_people(world: Indices, crowd: Indices, groups: Indices) -> bool:
 
 @kernel
 def _advance_robots(world: Indices, crowd: Indices, robots: Indices, drives: Array) -> None:
-    """Move all robots by a tick; note who was touched, who was stopped and who arrived."""
+    """Move all robots by a tick; note who touched, pushed, was stopped and arrived."""
     flat, people = floats1(crowd, c.FLAT), world[PEOPLE]
     rows = as_rows(floats2(crowd, c.ROBOTS), ROBOT)
     felt_first = HEADER_SIZE + people * AGENT_COLUMNS
+    walkers = as_rows(flat[HEADER_SIZE:felt_first], PERSON)
+    outlines, traits = floats3(crowd, c.OUTLINES), as_rows(floats1(crowd, c.TRAITS), TRAITS)
     for r in range(rows.shape[0]):
         drive = as_record(drives[r], DRIVE_STATE)
         if people > 0:
@@ -155,6 +157,7 @@ def _advance_robots(world: Indices, crowd: Indices, robots: Indices, drives: Arr
             felt = as_record(flat[first:], FELT)
             if felt.robot_fx != 0.0 or felt.robot_fy != 0.0:
                 drive.touched += 1.0
+            press(drive, rows[r], outlines, r, walkers, traits, TICK)
         x, y = rows[r].x, rows[r].y
         move(rows[r], drive, robots[r])
         drive.since += TICK

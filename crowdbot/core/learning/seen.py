@@ -72,6 +72,9 @@ class StepChange:
             the metric ``intrusion``.
         work: (W,) work that people need against the robot to keep room, J, as in the metric
             ``push_work``.
+        forced: (W,) work, per mass, against people who evade the robot at the last moment, J/kg, as
+            in the metric ``safe_efficiency``, where more than 0.25 J/kg against one person halves
+            the score.
         command, before: (W, 3) v, w, vy of this step and of the one before, m/s and rad/s.
     """
 
@@ -83,6 +86,7 @@ class StepChange:
     gap: Array
     advance: Array
     work: Array
+    forced: Array
     command: Array
     before: Array
 

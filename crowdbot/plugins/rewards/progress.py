@@ -13,7 +13,7 @@ Amount = Annotated[float, Ge(0.0), Le(1e6)]
 
 
 class ProgressSpec(RewardSpec):
-    """Progress in metres, and costs of time, contact, walls and jerky commands."""
+    """Progress in metres, and costs of time, contact, forcing people aside, walls and jerks."""
 
     kind: Literal["progress"] = "progress"
     progress: Amount = Field(default=1.0, description="For each metre nearer to the goal, 1/m.")
@@ -22,6 +22,11 @@ class ProgressSpec(RewardSpec):
     contact: Amount = Field(default=5.0, description="Taken off for each second of contact, 1/s.")
     touch: Amount = Field(
         default=0.0, description="Taken off for each step in which a person touches it, a number."
+    )
+    forced: Amount = Field(
+        default=0.0,
+        description="Taken off for each J/kg of work against people who evade at the last moment, "
+        "kg/J.",
     )
     wall: Amount = Field(
         default=1.0, description="Taken off for each second stopped by a wall, 1/s."

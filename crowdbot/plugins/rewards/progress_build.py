@@ -23,7 +23,7 @@ class ProgressReward:
         changed = np.abs(change.command - change.before) / self._range
         cost = spec.time + spec.contact * change.contact + spec.wall * change.wall
         found = spec.progress * change.progress - step * cost - spec.change * changed.sum(axis=1)
-        found -= spec.touch * (change.contact > 0.0)
+        found -= spec.touch * (change.contact > 0.0) + spec.forced * change.forced
         return np.asarray(found + spec.arrival * change.arrived)
 
 
