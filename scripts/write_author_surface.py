@@ -93,7 +93,7 @@ _TOGETHER: Mapping[str, str] = {
 _GROUPS: Mapping[str, tuple[str, ...]] = {
     "Build functions": ("crowdbot.plugin.build_functions",),
     "Planners": ("planning", "types.motion", "types.task", "types.person", "sensing.points",
-                 "realism.imagined"),
+                 "batch.imagined"),
     "Sensors and noise": ("sensing", "types.sensor"),
     "Robots": ("robots", "types.robot", "geometry"),
     "Environments": ("types.environment", "environments"),
