@@ -1,13 +1,14 @@
 """Train a policy by PPO of Stable-Baselines3, and save it as a planner, with its learning curve.
 
-    python benchmarks/train_ppo.py --minutes 6 --out first.onnx
-    python benchmarks/train_ppo.py --start first.zip --noise 0.2 --minutes 5 --out policy.onnx
+    python benchmarks/train_ppo.py --minutes 6 --touch 12 --forced 0 --out first.onnx
+    python benchmarks/train_ppo.py --start first.zip --noise 0.2 --minutes 18 --out policy.onnx
 
 It learns in short corridors that no edition has, among few people first and many later: the next
 level begins once nine of ten episodes arrive, or when its share of the time is over. ``--start``
-goes on from a policy at the last level, with less noise in its actions: what drives well among
-people in spite of much noise keeps too far away without it. Beside the policy stand
-``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and ``policy.svg``, its learning curve.
+goes on from a policy at the last level, among people who walk along, too, with less noise in its
+actions: what drives well among people in spite of much noise keeps too far away without it. Beside
+the policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and ``policy.svg``, its
+learning curve.
 Time is the processor time of this process.
 """
 
