@@ -76,7 +76,7 @@ def test_a_plan_says_how_balanced_it_is(
         (["run", "study.yaml"], 2, "who takes part?"),
         (["run", "study.yaml", "--participant", "p9"], 1, "p9"),
         (["run", "none.yaml", "--synthetic"], 1, "none.yaml"),
-        (["report", "study.yaml"], 1, "nothing was driven yet"),
+        (["report", "study.yaml"], 1, "there are no runs in it yet"),
         (["report", "study.yaml", "--out", "x.txt"], 2, ".html"),
     ],
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from crowdbot.core.planning.policies.policy_choice import is_policy, policy_file
+from crowdbot.core.planning.policies.policy_name import is_policy, policy_file
 from crowdbot.core.support.source_digest import data_files, source_files
 from crowdbot.dsl.text.plain_document import read_document
 from crowdbot.errors import InputError

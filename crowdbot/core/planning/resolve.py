@@ -22,7 +22,7 @@ from crowdbot.core.planning.fleet_choice import fleet_choice
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.half_choice import choice_with_half
 from crowdbot.core.planning.planner import Planner
-from crowdbot.core.planning.policies.policy_choice import is_policy, policy_choice
+from crowdbot.core.planning.policies.policy_name import is_policy
 from crowdbot.core.planning.process.process_planner import NotLoaded, ProcessPlan, describe
 from crowdbot.core.planning.python_file import (
     build_of_class,
@@ -85,6 +85,9 @@ def resolve_planner(
         return fleet
     given = setting_values(settings)
     if is_policy(text):
+        # Compiled code, which a campaign that has nothing to do does not load.
+        from crowdbot.core.planning.policies.policy_choice import policy_choice
+
         return policy_choice(text, given, registry)
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):

@@ -99,7 +99,7 @@ def test_a_client_of_ros_2_gets_its_answer() -> None:
         lost = _ask(other, offered[name], name, request, None)
         assert b"33 bytes" in lost.err.payload.to_bytes()
         bad = _ask(other, offered[name], name, b"\0", who)
-        assert b"not a request" in bad.err.payload.to_bytes()
+        assert b"does not fit" in bad.err.payload.to_bytes()
         tokens = [str(r.ok.key_expr) for r in other.liveliness().get("@ros2_lv/**")]
         served = [t for t in tokens if f"/{SERVER}/" in t]
         assert len(served) == len(offered)

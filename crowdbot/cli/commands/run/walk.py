@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from crowdbot.core.sim.built_run import BuiltRun
     from crowdbot.dsl.scenario.scenario import Scenario
 
+#: Places beyond are typing errors, m.
+_FARTHEST = 1e6
+
 
 def walk(
     spec: SpecArgument,
@@ -119,8 +122,8 @@ def _point(option: str, text: str | None) -> tuple[float, float] | None:
         x, y = (float(part) for part in text.split(","))
     except ValueError:
         raise UsageError(f"{option} {text}: a place is X,Y in m, such as 6,-0.5") from None
-    if not (abs(x) < 1e6 and abs(y) < 1e6):
-        raise UsageError(f"{option} {text}: is too far away; write numbers below 1 000 000 m")
+    if not (abs(x) < _FARTHEST and abs(y) < _FARTHEST):  # NaN too
+        raise UsageError(f"{option} {text}: write two numbers below 1 000 000 m")
     return x, y
 
 

@@ -1,15 +1,15 @@
-"""Choose a trained policy as a planner: ``FILE.onnx`` or ``sb3:FILE.zip``."""
+"""Choose a trained policy as a planner."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from crowdbot.core.learning.conventions import Conventions
 from crowdbot.core.planning.choice import PlannerChoice, label_of
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.policies.onnx_policy import load_onnx
+from crowdbot.core.planning.policies.policy_name import SB3, policy_file
 from crowdbot.core.planning.policies.policy_planner import Policy, PolicyPlanner
 from crowdbot.core.planning.policies.sb3_policy import load_sb3
 from crowdbot.core.planning.unchanged_files import UnchangedFiles
@@ -17,18 +17,6 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.support.text_files import suggest_files
 from crowdbot.dsl.spec.assets import sha256_of
 from crowdbot.errors import InputError
-
-_ONNX, _SB3 = ".onnx", "sb3:"
-
-
-def is_policy(text: str) -> bool:
-    """True if a text names a trained policy."""
-    return text.endswith(_ONNX) or text.startswith(_SB3)
-
-
-def policy_file(text: str) -> Path:
-    """Return the file of a policy."""
-    return Path(text.removeprefix(_SB3))
 
 
 def policy_choice(text: str, given: Mapping[str, Any], registry: Registry) -> PlannerChoice:
@@ -67,5 +55,5 @@ def policy_choice(text: str, given: Mapping[str, Any], registry: Registry) -> Pl
 
 
 def _load(text: str, registry: Registry) -> tuple[Policy, Conventions]:
-    load = load_sb3 if text.startswith(_SB3) else load_onnx
+    load = load_sb3 if text.startswith(SB3) else load_onnx
     return load(policy_file(text), registry)

@@ -179,7 +179,7 @@ def replace_id(scenario: Scenario) -> Scenario:
     ("more", "said"),
     [
         (["--at", "1"], "a place is X,Y"),
-        (["--at", "nan,0"], "not a place"),
+        (["--at", "nan,0"], "write two numbers"),
         (["--at", "1.5,0.4"], "not free"),
         (["--set", "robots={}", "--planner", "dwa"], "has no robot"),
         (["--replay", str(DATA / "recordings" / "format_3.mcap")], "no person walks in it"),
