@@ -3,6 +3,8 @@
     python benchmarks/train_ppo.py --minutes 6 --touch 12 --forced 0 --out first.onnx
     python benchmarks/train_ppo.py --start first.zip --noise 0.2 --minutes 18 --out policy.onnx
 
+docs/howto/train_a_policy.md has the commands of the policy that comes along.
+
 It learns in short corridors that no edition has, among few people first and many later: the next
 level begins once nine of ten episodes arrive, or when its share of the time is over. ``--start``
 goes on from a policy at the last level, among people who walk along, too, with less noise in its
@@ -151,7 +153,7 @@ def draw(curve: Path, out: Path) -> None:
 def train(given: argparse.Namespace) -> None:
     """Train for some processor time and save the policy."""
     torch.set_num_threads(1)
-    costs = {"touch": given.touch, "forced": given.forced}
+    costs = {"touch": given.touch, "forced": given.forced, "time": given.time}
     worlds = {**WORLDS, "reward": {**WORLDS["reward"], **costs}}
     env = StableVecEnv(given.worlds, threads=given.threads, **worlds)
     before: list[tuple[float, ...]] = []
@@ -186,6 +188,7 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--start", type=Path, help="policy.zip, beside policy.csv, to go on from")
     parser.add_argument("--touch", type=float, default=20.0, help="cost of touching a person")
     parser.add_argument("--forced", type=float, default=40.0, help="of forcing people aside, kg/J")
+    parser.add_argument("--time", type=float, default=0.1, help="cost of a second, 1/s")
     parser.add_argument("--threads", type=int, default=1, help="that step the worlds")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("policy.onnx"))
