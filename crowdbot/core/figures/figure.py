@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.figures.gltf_file import GltfFile
+from crowdbot.core.figures.gltf_looks import GREY, Looks, looks_of
 from crowdbot.core.figures.gltf_motion import GltfMotion
 from crowdbot.core.types.arrays import Array
 
@@ -22,8 +23,7 @@ from crowdbot.core.types.arrays import Array
 PHASES = 8
 #: Most triangles of a figure: there are many people.
 MOST_TRIANGLES = 20_000
-_TRIANGLES = 4
-_GREY = (0.6, 0.6, 0.6)
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,14 +33,14 @@ class FigurePart:
     Attributes:
         points: (N, 3) m, of a figure 1 m high.
         triangles: (M, 3) rows of points.
-        colour: red, green, blue, 0 to 1.
+        colour: red, green, blue, 0 to 1, as screens have it (sRGB).
         uv: (N, 2) place in the texture, from its top left corner; None without.
         texture: PNG; empty without.
     """
 
     points: Array
     triangles: NDArray[np.int64]
-    colour: tuple[float, float, float] = _GREY
+    colour: tuple[float, float, float] = GREY
     uv: Array | None = None
     texture: bytes = b""
 
@@ -71,7 +71,7 @@ def load_figure(path: Path) -> Figure:
     file = GltfFile(path)
     try:
         return _figure(file)
-    except (KeyError, IndexError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, IndexError, TypeError, ValueError) as error:
         raise file.error(f"is not valid glTF: {error!r}") from error
 
 
@@ -89,9 +89,21 @@ def _figure(file: GltfFile) -> Figure:
     if not np.all(np.isfinite(first)) or not high - low > 0.0:
         raise file.error("has no height")
     middle = np.array([*(0.5 * (first.min(axis=0) + first.max(axis=0)))[:2], low])
+    ahead = _way(file, motion, first)
     return Figure(
-        tuple(tuple(_moved(p, middle, 1.0 / (high - low)) for p in phase) for phase in phases)
+        tuple(
+            tuple(_moved(p, middle + k / count * ahead, 1.0 / (high - low)) for p in phase)
+            for k, phase in enumerate(phases)
+        )
     )
+
+
+def _way(file: GltfFile, motion: GltfMotion, first: Array) -> Array:
+    """Return how far an animation walks away from its place (3,); poses stay above it."""
+    if not motion.duration > 0.0:
+        return np.zeros(3)
+    last = np.concatenate([part.points for part in _parts(file, *motion.at(motion.duration))])
+    return np.asarray((last.mean(axis=0) - first.mean(axis=0)) * [1.0, 1.0, 0.0])
 
 
 def _moved(part: FigurePart, middle: Array, scale: float) -> FigurePart:
@@ -109,7 +121,7 @@ def _parts(
         mesh = file.list("meshes")[node["mesh"]]
         usual = np.array(node.get("weights", mesh.get("weights", [])), float)
         for primitive in mesh["primitives"]:
-            if primitive.get("mode", _TRIANGLES) == _TRIANGLES:
+            if primitive.get("mode", _TRIANGLES) in (_TRIANGLES, _STRIP, _FAN):
                 points = _morphed(file, primitive, weights.get(k, usual))
                 placed = _placed(file, node, primitive, points, matrices, k)
                 found.append(_part(file, primitive, placed))
@@ -147,38 +159,19 @@ def _placed(
 def _part(file: GltfFile, primitive: dict[str, Any], points: Array) -> FigurePart:
     count = len(points)
     rows = file.values(primitive["indices"]) if "indices" in primitive else np.arange(count)
-    triangles = np.asarray(rows, np.int64).reshape(-1, 3)
+    triangles = _triangles(np.asarray(rows, np.int64), primitive.get("mode", _TRIANGLES))
     if triangles.size and triangles.max() >= count:
         raise file.error("has triangles of points that are not there")
-    colour, uv, texture = _GREY, None, b""
-    if "material" in primitive:
-        material = file.list("materials")[primitive["material"]].get("pbrMetallicRoughness", {})
-        red, green, blue, *_ = material.get("baseColorFactor", (1.0, 1.0, 1.0, 1.0))
-        colour = (float(red), float(green), float(blue))
-        place = f"TEXCOORD_{material.get('baseColorTexture', {}).get('texCoord', 0)}"
-        if "baseColorTexture" in material and place in primitive["attributes"]:
-            uv = np.asarray(file.values(primitive["attributes"][place]), float)
-            texture = _png(file, material["baseColorTexture"]["index"])
-    return FigurePart(points[:, [2, 0, 1]], triangles, colour, uv, texture)
+    looks = looks_of(file, primitive) if "material" in primitive else Looks()
+    return FigurePart(points[:, [2, 0, 1]], triangles, looks.colour, looks.uv, looks.texture)
 
 
-def _png(file: GltfFile, texture: int) -> bytes:
-    """Return a texture as PNG, at most 512 pixels wide and high."""
-    from io import BytesIO
-
-    from PIL import Image
-
-    image = file.list("images")[file.list("textures")[texture]["source"]]
-    data = (
-        file.bytes_of(image["bufferView"])
-        if "bufferView" in image
-        else file.outside(str(image["uri"]))
-    )
-    try:
-        picture = Image.open(BytesIO(data)).convert("RGB")
-    except OSError as error:
-        raise file.error(f"has a texture that cannot be read: {error}") from error
-    picture.thumbnail((512, 512))
-    made = BytesIO()
-    picture.save(made, "PNG")
-    return made.getvalue()
+def _triangles(rows: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
+    """Return triangles (M, 3) of rows of points, from a list, a strip or a fan."""
+    if mode == _TRIANGLES:
+        return rows.reshape(-1, 3)
+    if mode == _FAN:
+        return np.column_stack([np.full(len(rows) - 2, rows[0]), rows[1:-1], rows[2:]])
+    found = np.column_stack([rows[:-2], rows[1:-1], rows[2:]])
+    found[1::2] = found[1::2][:, [1, 0, 2]]  # every other one runs the other way
+    return found

@@ -28,6 +28,9 @@ class _Track:
 class GltfMotion:
     """The walking animation of a file: the one named like a walk, else the first.
 
+    Some programs write an animation for each node. So without a walk by name, further ones come
+    along as far as they move what no earlier one does.
+
     Attributes:
         duration: s; 0 without an animation.
     """
@@ -39,9 +42,12 @@ class GltfMotion:
     def __post_init__(self) -> None:
         animations = self.file.list("animations")
         walks = [a for a in animations if "walk" in str(a.get("name", "")).lower()]
-        for chosen in (walks or animations)[:1]:
-            for channel in chosen["channels"]:
-                self._add(chosen["samplers"][channel["sampler"]], channel["target"])
+        for chosen in walks[:1] or animations:
+            moved = {(track.node, track.path) for track in self._tracks}
+            channels = chosen["channels"]
+            if not moved & {(c["target"].get("node"), c["target"]["path"]) for c in channels}:
+                for channel in channels:
+                    self._add(chosen["samplers"][channel["sampler"]], channel["target"])
         ends = [float(track.times[-1]) for track in self._tracks]
         self.duration = max(ends, default=0.0)
 

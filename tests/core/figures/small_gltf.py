@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -44,13 +45,13 @@ class Writer:
 
 
 def write(path: Path, *, moves: str = "", textured: bool = False) -> Path:
-    """Write a box 2 m high; ``moves``: "" or "node", "skin" or "morph"."""
+    """Write a box 2 m high; ``moves``: "" or "node", "skin", "each", "away" or "morph"."""
     made = Writer()
     attributes = {"POSITION": made.add(_BOX, "VEC3")}
     primitive: dict[str, Any] = {
         "attributes": attributes, "indices": made.add(_FACES.ravel(), "SCALAR"), "material": 0,
     }  # fmt: skip
-    looks: dict[str, Any] = {"baseColorFactor": [1.0, 0.2, 0.1, 1.0]}
+    looks: dict[str, Any] = {"baseColorFactor": [1.0, 0.03, 0.01, 1.0]}
     document: dict[str, Any] = {
         "asset": {"version": "2.0"}, "meshes": [{"primitives": [primitive]}],
         "nodes": [{"mesh": 0}], "materials": [{"pbrMetallicRoughness": looks}],
@@ -68,9 +69,25 @@ def write(path: Path, *, moves: str = "", textured: bool = False) -> Path:
         "buffers": [{"byteLength": len(made.data)}], "bufferViews": made.views,
         "accessors": made.accessors,
     }  # fmt: skip
+    return _pack(path, document, made.data)
+
+
+def edit(path: Path, change: Callable[[dict[str, Any], Writer], None]) -> Path:
+    """Change the document of a file, and add arrays."""
+    data = path.read_bytes()
+    (length,) = struct.unpack_from("<I", data, 12)
+    document, made = json.loads(data[20 : 20 + length]), Writer()
+    made.data, made.views = data[28 + length :], document["bufferViews"]
+    made.accessors = document["accessors"]
+    change(document, made)
+    document["buffers"] = [{"byteLength": len(made.data)}]
+    return _pack(path, document, made.data)
+
+
+def _pack(path: Path, document: dict[str, Any], data: bytes) -> Path:
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
-    blob = made.data + b"\0" * (-len(made.data) % 4)
+    blob = data + b"\0" * (-len(data) % 4)
     body = struct.pack("<II", len(text), 0x4E4F534A) + text
     body += struct.pack("<II", len(blob), 0x004E4942) + blob
     path.write_bytes(struct.pack("<III", 0x46546C67, 2, 12 + len(body)) + body)
@@ -82,7 +99,9 @@ def _animate(document: dict[str, Any], primitive: dict[str, Any], made: Writer, 
     ahead = np.array([[0, 0, 0], [0, 0, 1], [0, 0, 0]], "<f4")
     node, path = 0, "translation"
     output, kind = ahead, "VEC3"
-    if how == "skin":
+    if how == "away":
+        output = np.array([[0, 0, 0], [0, 0, 1], [0, 0, 2]], "<f4")
+    if how in ("skin", "each"):
         document["nodes"] = [{"mesh": 0, "skin": 0}, {"children": [2]}, {}]
         document["skins"] = [{"joints": [1, 2]}]
         joints, weights = np.zeros((8, 4), "|u1"), np.zeros((8, 4), "<f4")
@@ -103,3 +122,10 @@ def _animate(document: dict[str, Any], primitive: dict[str, Any], made: Writer, 
             "samplers": [{"input": times, "output": made.add(output, kind)}],
         }
     ]
+    if how == "each":  # as some programs write it: an animation without a name for each node
+        del document["animations"][0]["name"]
+        still = {
+            "channels": [{"sampler": 0, "target": {"node": 1, "path": path}}],
+            "samplers": [{"input": times, "output": made.add(0 * output, kind)}],
+        }
+        document["animations"].insert(0, still)
