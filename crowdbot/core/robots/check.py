@@ -18,6 +18,7 @@ from crowdbot.errors import PluginError
 _LENGTH = 1e-3  # m; tolerance between two statements of a length
 _AXLE = 5e-3  # m; distance of an axle from the base that is only told
 _DAMPED = 0.95  # share of the largest speed; what damping takes beyond is told
+_ASIDE = 0.1  # share of the track; a centre of mass that is farther from its middle is told
 _FLOOR = 5e-3  # m; tolerance of a wheel's height over the floor
 _SHARE = 0.01  # share of a mass or a length
 _ALONG = 0.999  # cosine of the largest angle between equal directions
@@ -45,6 +46,7 @@ def check_model(model: object) -> RobotModel:
     if isinstance(drive, DifferentialDrive):
         _check_wheels(model, drive, described)
         notes += [*_beside_axle(model, drive, described), *_damped(model, drive, described)]
+        notes += _one_sided(model, drive, described)
     notes = [note for note in notes if note not in model.notes]
     return replace(model, notes=(*model.notes, *notes)) if notes else model
 
@@ -58,6 +60,19 @@ def _beside_axle(
         yield (
             f"the axle is {1e3 * abs(x):.3g} mm {'ahead of' if x > 0.0 else 'behind'} "
             f"'{model.base}', about which the robot is taken to turn"
+        )
+
+
+def _one_sided(
+    model: RobotModel, drive: DifferentialDrive, described: Description
+) -> Iterator[str]:
+    aside = float(described.centre_of_mass(model.base)[1])
+    if abs(aside) > _ASIDE * drive.track:
+        light, side = (drive.left_joint, "right") if aside < 0.0 else (drive.right_joint, "left")
+        yield (
+            f"its centre of mass is {1e3 * abs(aside):.3g} mm to the {side} of the middle between "
+            f"its wheels: '{light}' bears little weight and may slip, so that the robot turns when "
+            "it speeds up (joints of a URDF robot are held at 'positions')"
         )
 
 

@@ -115,6 +115,21 @@ class Description:
         pose: Array = np.linalg.inv(of(seen_from, ())) @ of(link, ())
         return pose
 
+    def centre_of_mass(self, seen_from: str) -> Array:
+        """Return the centre of mass (3,) in the frame of a link, with all joints at zero, m.
+
+        Raises:
+            PluginError: there is no such link, or no mass.
+        """
+        total = np.zeros(3)
+        for name, link in self.links.items():
+            inertial = link.find("inertial")
+            at = np.eye(4) if inertial is None else matrix(pose_of(inertial))
+            total += _mass(link, self.format) * (self.pose(name, seen_from) @ at)[:3, 3]
+        if not self.mass > 0.0:
+            raise PluginError("the robot has no mass")
+        return np.asarray(total / self.mass)
+
     def wheel_radius(self, joint: str) -> float:
         """Return the radius of the collision shape on a joint, m.
 

@@ -21,6 +21,7 @@ class MeshNotes:
     hulls: list[str] = field(default_factory=list)
     cut: list[str] = field(default_factory=list)
     uncut: list[str] = field(default_factory=list)
+    unread: list[str] = field(default_factory=list)
     lost: list[str] = field(default_factory=list)
 
 

@@ -24,6 +24,7 @@ from crowdbot.core.robots.description import (
     read_description,
     read_text,
 )
+from crowdbot.core.robots.held_joints import hold_at
 from crowdbot.core.robots.inertia import check_inertia, rolling
 from crowdbot.core.robots.joint import child_of, parent_of
 from crowdbot.core.robots.mesh_pieces import MeshShape
@@ -59,6 +60,7 @@ def read_published(
     base: str = "base_link",
     packages: Mapping[str, Path] | None = None,
     meshes: MeshShape = "boxes",
+    positions: Mapping[str, float] | None = None,
 ) -> Description:
     """Convert a file that was not written for simulated contacts to a robot's description.
 
@@ -70,10 +72,13 @@ def read_published(
         wheels: wheels by the name of their joint.
         shell: ``<collision>`` elements for contact with walls, in the base's frame.
         base: the link that sensors are mounted on.
-        packages: folders for ``package://NAME/…``. A collision mesh found there (STL or OBJ), or
-            beside the description, is simplified; others are left out.
+        packages: folders for ``package://NAME/…``. Packages that are not among them are looked for
+            where the description lies: a folder above it of that name, or one beside such a folder.
+            A collision mesh found so (STL or OBJ), or beside the description, is simplified; others
+            are left out.
         meshes: what collision meshes become: bounding ``boxes``, convex ``hulls``, or convex
             ``pieces``, which needs the extra ``meshes`` and is hulls without it.
+        positions: where joints that are not wheels are held, rad or m; others are held at zero.
 
     Returns:
         the description; its `Description.notes` list the simplifications.
@@ -87,10 +92,11 @@ def read_published(
         robot = from_sdf(described, {}) if described.format == "sdf" else described.model
     except InputError as error:
         raise PluginError(str(error)) from error
-    work = _Work(deepcopy(robot), base, dict(wheels))
+    work = _Work(deepcopy(robot), base, dict(wheels), dict(positions or {}))
     work.notes += described.notes
     work.check()
     work.keep_one_tree()
+    hold_at(work.robot, work.positions)
     work.drive_with_two()
     work.hold_joints()
     work.replace_meshes(lambda name: _find(name, folder, packages or {}), meshes)
@@ -105,8 +111,11 @@ def read_published(
 class _Work:
     """A description being converted, and its notes so far."""
 
-    def __init__(self, robot: Xml.Element, base: str, wheels: dict[str, PublishedWheel]) -> None:
-        self.robot, self.base, self.wheels = robot, base, wheels
+    def __init__(
+        self, robot: Xml.Element, base: str, wheels: dict[str, PublishedWheel],
+        positions: dict[str, float],
+    ) -> None:  # fmt: skip
+        self.robot, self.base, self.wheels, self.positions = robot, base, wheels, positions
         self.notes: list[str] = []
 
     @property
@@ -129,6 +138,8 @@ class _Work:
         """Check that everything named exists."""
         named = [("link", self.base, self.links)]
         named += [("joint", joint, self.joints) for joint in self.wheels]
+        if both := sorted(set(self.wheels) & set(self.positions)):
+            raise PluginError(f"positions: joint '{both[0]}' is a wheel")
         for what, name, known in named:
             if name not in known:
                 hint = did_you_mean(nearest(name, known)) or f"; there are: {', '.join(known)}"
@@ -185,10 +196,13 @@ class _Work:
         held, mimics, sliding = list[str](), list[str](), list[str]()
         for name, joint in self.joints.items():
             wheel, kind = self.wheels.get(name), joint.get("type", "")
-            if joint.find("mimic") is not None:
+            mimic = joint.find("mimic")
+            if mimic is not None and {name, mimic.get("joint")}.isdisjoint(self.positions):
                 mimics.append(name)
             elif wheel is not None and wheel.effort is None:
                 sliding.append(name)
+            elif name in self.positions or mimic is not None:
+                pass  # held where it is said
             elif kind in _HELD and wheel is None:
                 held.append(name)
             else:
@@ -229,7 +243,7 @@ class _Work:
             file = find(mesh.get("filename", ""))
             if file is None or not simplify_mesh(link, collision, mesh, file, shape, done):
                 link.remove(collision)
-                done.lost.append(mesh.get("filename", ""))
+                (done.lost if file is None else done.unread).append(mesh.get("filename", ""))
         self.note(done.boxed, "collision mesh becomes the box around it",
                   "{} collision meshes become the boxes around them")  # fmt: skip
         self.note(done.hulls, "collision mesh becomes its convex hull",
@@ -238,6 +252,8 @@ class _Work:
                   "{} collision meshes become convex pieces")  # fmt: skip
         self.note(done.uncut, "collision mesh becomes its convex hull instead of pieces",
                   "{} collision meshes become their convex hulls instead of pieces")  # fmt: skip
+        self.note(done.unread, "collision mesh is no STL or OBJ with triangles and left out",
+                  "{} collision meshes are no STL or OBJ with triangles and left out")  # fmt: skip
         self.note(done.lost, "collision mesh is not there and left out",
                   "{} collision meshes are not there and left out")  # fmt: skip
 
@@ -325,8 +341,20 @@ def _find(name: str, folder: Path | None, packages: Mapping[str, Path]) -> Path 
     """Return the file of a mesh, if it exists."""
     if name.startswith("package://"):
         package, _, rest = name.removeprefix("package://").partition("/")
-        file = packages[package] / rest if package in packages else None
+        found = [packages[package]] if package in packages else _above(package, folder)
+        files = [place / rest for place in found if ".." not in Path(rest).parts]
     else:
         plain = Path(name.removeprefix("file://"))
-        file = plain if plain.is_absolute() else None if folder is None else folder / plain
-    return file if file is not None and file.is_file() else None
+        files = [plain] if plain.is_absolute() else [] if folder is None else [folder / plain]
+    return next((file for file in files if file.is_file()), None)
+
+
+def _above(package: str, folder: Path | None) -> list[Path]:
+    """Return the folders that may be a package of this name, nearest first.
+
+    A description lies within its package, and packages lie side by side.
+    """
+    if folder is None or package in ("", ".", ".."):
+        return []
+    above = [folder.resolve(), *folder.resolve().parents]
+    return [place for up in above for place in ([up] if up.name == package else [up / package])]

@@ -37,7 +37,7 @@ def put(robot: Xml.Element, base: str, joint: str, place: Array) -> None:
     element = next(j for j in robot.findall("joint") if name_of(j) == joint)
     pose = described.pose(child_of(element), base)
     pose[:3, 3] = place
-    _write(element, described.pose(base, parent_of(element)) @ pose)
+    write_origin(element, described.pose(base, parent_of(element)) @ pose)
 
 
 def add_support(robot: Xml.Element, base: str, name: str, place: Array, radius: float) -> None:
@@ -83,10 +83,11 @@ def onto_axle(robot: Xml.Element, base: str, driven: Sequence[str]) -> str:
 def _shift(element: Xml.Element, by: Array) -> None:
     pose = matrix(pose_of(element))
     pose[:3, 3] += by
-    _write(element, pose)
+    write_origin(element, pose)
 
 
-def _write(element: Xml.Element, pose: Array) -> None:
+def write_origin(element: Xml.Element, pose: Array) -> None:
+    """Write a pose (4, 4) as the origin of a URDF element."""
     origin = element.find("origin")
     if origin is None:
         origin = Xml.SubElement(element, "origin")

@@ -54,9 +54,15 @@ class Caster(Spec):
 class UrdfFields(RobotSpec):
     """Fields of robots with a URDF, on two driven wheels or holonomic."""
 
-    file: Asset = Field(description="The URDF; joints that are not wheels are held at zero.")
+    file: Asset = Field(description="The URDF; joints that are not wheels are held.")
     base: str = Field(
         default="base_link", description="Link on which sensors are mounted: x ahead, z up."
+    )
+    positions: dict[str, float] = Field(
+        default={},
+        exclude_if=lambda value: not value,
+        description="Where joints are held, such as those of an arm: rad, of prismatic ones m; "
+        "the others are held at zero.",
     )
     disc: DiscBody | None = Field(default=None, description="Outline that people avoid and touch.")
     box: BoxBody | None = Field(default=None, description="The same, in place of `disc`.")

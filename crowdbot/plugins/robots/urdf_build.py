@@ -63,8 +63,9 @@ def build_holonomic(spec: HolonomicUrdfSpec) -> RobotModel:
 
 def _read(spec: UrdfFields, wheels: Mapping[str, PublishedWheel], shell: str) -> Description:
     return read_published(
-        spec.file.file, wheels=wheels, shell=shell, base=spec.base, meshes=spec.meshes
-    )
+        spec.file.file, wheels=wheels, shell=shell, base=spec.base, meshes=spec.meshes,
+        positions=spec.positions,
+    )  # fmt: skip
 
 
 def _model(
