@@ -1,4 +1,4 @@
-"""How a part of a figure looks: the base colour of its material, and the texture."""
+"""Base colour and texture of the parts of a figure."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.figures.gltf_file import GltfFile
 from crowdbot.core.types.arrays import Array
 
-#: Of a part without a material.
+#: Colour of a part without a material.
 GREY = (0.6, 0.6, 0.6)
 #: Largest width and height of a texture, pixels.
 _LARGEST = 512

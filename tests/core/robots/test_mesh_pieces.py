@@ -102,7 +102,7 @@ def test_a_flat_or_unknown_mesh_becomes_a_box_or_is_left_out(tmp_path: Path) -> 
     assert "collision mesh becomes the box around it: base_link" in described.notes
     (tmp_path / "arm.obj").write_text("nothing\n", encoding="utf-8")
     described = read_published(tmp_path / "crane.urdf", wheels={}, shell="", meshes="hulls")
-    assert any("no STL or OBJ with triangles" in note for note in described.notes)
+    assert any("neither STL nor OBJ" in note for note in described.notes)
 
 
 def test_drake_collides_with_the_pieces(tmp_path: Path) -> None:
