@@ -252,8 +252,8 @@ class _Work:
                   "{} collision meshes become convex pieces")  # fmt: skip
         self.note(done.uncut, "collision mesh becomes its convex hull instead of pieces",
                   "{} collision meshes become their convex hulls instead of pieces")  # fmt: skip
-        self.note(done.unread, "collision mesh is empty, or neither STL nor OBJ, and left out",
-                  "{} collision meshes are empty, or neither STL nor OBJ, and left out")  # fmt: skip
+        self.note(done.unread, "collision mesh is empty or neither STL nor OBJ, and left out",
+                  "{} collision meshes are empty or neither STL nor OBJ, and left out")  # fmt: skip
         self.note(done.lost, "collision mesh is not there and left out",
                   "{} collision meshes are not there and left out")  # fmt: skip
 

@@ -111,7 +111,7 @@ def test_packages_are_found_above_and_beside_the_description(tmp_path: Path, pac
     notes = "\n".join(made.notes)
     assert "collision mesh becomes the box around it: tip" in notes
     assert (
-        f"collision mesh is empty, or neither STL nor OBJ, and left out: package://{package}/stl/hand.dae"
+        f"collision mesh is empty or neither STL nor OBJ, and left out: package://{package}/stl/hand.dae"
         in notes
     )
     lost = f"package://{package}/../secret.stl, package://{package}/stl/lost.stl"
