@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import crowdbot
 from crowdbot import cli
+from crowdbot.core.campaign.job import Done, Job, SuiteSource
+from crowdbot.core.campaign.run import _failure
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow
+from crowdbot.core.runs.run_options import RunOptions
+from tests.core.report.report_cases import campaign
 from tests.core.results.made_up_record import made_up_record
 
 SCENARIO = """
@@ -138,3 +143,35 @@ def test_bundle_guesses_neither_suite_nor_planner(
     assert cli.main(["bundle", str(root)]) == 2
     assert "--suite suite --planner mine   (2 runs)" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_tables_of_pairs_keep_suites_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: Tell
+) -> None:
+    """Power, ladder and atlas of a suite are the same whether another is there or not."""
+    few = {"axes": {"density": ("d1", "d2")}, "metrics": ["safe_efficiency"], "failures": 0}
+    made = campaign(suite="a", **few, planners={"dwa": 0.8, "mine": 0.5})  # type: ignore[arg-type]
+    other = campaign(suite="b", **few, planners={"her": 0.4, "his": 0.9})  # type: ignore[arg-type]
+    both = replace(made, runs=made.runs + other.runs, scores=(*made.scores, *other.scores))
+    for command in ("power", "atlas"):
+        said = {}
+        for name, found in (("a", made), ("b", other), ("both", both)):
+            monkeypatch.setattr(Results, "open", lambda _, found=found: found)
+            said[name] = json.loads(told("results", command, "--runs", str(tmp_path), "--json")[0])
+        alone = [{"suite": n, **line} for n in ("a", "b") for line in said[n]]
+        assert said["both"] == alone
+    monkeypatch.setattr(Results, "open", lambda _: both)
+    page, _ = told("results", "atlas", "--runs", str(tmp_path))
+    assert page.index("## a") < page.index("## b")
+    rows = json.loads(told("results", "--runs", str(tmp_path), "--json")[0])
+    assert {row["suite"] for row in rows} == {"a", "b"}
+
+
+def test_a_failure_of_an_altered_scenario_counts_there() -> None:
+    job = Job(
+        key="k", kind="run", source=SuiteSource(spec="s"), suite="s", scenario="x+1f3a", index=0,
+        spec_hash="", planner_digest="", planner="dwa", settings=(), label="dwa", seed=0, out="o",
+        directory="d", options=RunOptions(), altered=(SHORT,),
+    )  # fmt: skip
+    assert _failure(job, Done(key="k", error="boom"), {}).suite.startswith("s+time_limit=0.25_s-")
+    assert _failure(replace(job, altered=()), Done(key="k"), {}).suite == "s"

@@ -64,3 +64,19 @@ def test_topics_of_a_recording_are_named_in_full(
     if width > 70:
         assert "crowdbot_msgs/msg/VelocityCandidates" in told
     assert "3780" in told
+
+
+@pytest.mark.parametrize("width", [60, 80, 300])
+def test_long_lines_become_blocks(
+    width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = {"planners": "dwa - orca", "condition": "all"} | {f"value_{i}": i / 8 for i in range(12)}
+    monkeypatch.setenv("COLUMNS", str(width))
+    print_table([line, line])
+    text = capsys.readouterr().out
+    assert max(map(len, text.splitlines())) <= width
+    if width == 300:
+        assert text.count("value_11") == 1  # the head of a table
+    else:
+        assert text.splitlines()[0] == "dwa - orca · all"
+        assert " ".join(text.split()).count("value_2 0.25, value_3 0.375,") == 2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -22,10 +22,19 @@ _HEAD = ("score", "better", "runs", "moved by", "duration", "planner beats floor
 _LITTLE = 0.05
 
 
-def atlas_page(entries: Sequence[AtlasEntry]) -> str:
+def atlas_page(entries: Mapping[str, Sequence[AtlasEntry]]) -> str:
+    """Return a table for each suite, with a heading where there are several."""
+    parts = [_INTRODUCTION]
+    for suite, some in entries.items():
+        parts += [f"## {suite}\n"] if len(entries) > 1 else []
+        parts.append(_table(some))
+    return "\n".join(parts)
+
+
+def _table(entries: Sequence[AtlasEntry]) -> str:
     """Return one table; the four main scores come first."""
     rows = [_HEAD, ("---",) * len(_HEAD), *map(_row, entries)]
-    return "\n".join([_INTRODUCTION, *(f"| {' | '.join(row)} |" for row in rows), ""])
+    return "\n".join([*(f"| {' | '.join(row)} |" for row in rows), ""])
 
 
 def _row(entry: AtlasEntry) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output.say import say
@@ -66,7 +67,7 @@ def _print_csv(lines: list[dict[str, Any]]) -> None:
 
 
 def print_table(lines: list[dict[str, Any]]) -> None:
-    """Print a table; on narrow terminals, some columns share one."""
+    """Print a table; on narrow terminals, some columns share one, or each line is a block."""
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
@@ -83,14 +84,33 @@ def print_table(lines: list[dict[str, Any]]) -> None:
             table.add_row(*(Text(_shown(v)) for v in row.values()))
         return table
 
-    is_summary = "mean" in lines[0]
-    table = table_of([with_interval(line) for line in lines] if is_summary else lines)
-    if is_summary and Console(width=9999).measure(table).maximum > console.width:
+    if "mean" not in lines[0]:
+        table = table_of(lines)
+        if Console(width=9999).measure(table).maximum > console.width:
+            say("\n".join(_block(line, console.width) for line in lines))
+        else:
+            console.print(table)
+        return
+    table = table_of([with_interval(line) for line in lines])
+    if Console(width=9999).measure(table).maximum > console.width:
         rows = [_narrow(line) for line in lines]
         if console.width < _WHOLE_NAMES:
             rows = [_broken(row) for row in rows]
         table = table_of(rows, padding=0)
     console.print(table)
+
+
+def _block(line: dict[str, Any], width: int) -> str:
+    """Return a line that is too long for a table: names first, then indented name and value."""
+    names = list(line)
+    own = next((i for i, n in enumerate(names) if not isinstance(line[n], str)), len(names))
+    # spaces within a pair must not break
+    pairs = [f"{n}\0{_shown(line[n])}" for n in names[own:] if line[n] not in (None, "")]
+    text = textwrap.fill(
+        ", ".join(pairs), max(width, 20), initial_indent="  ", subsequent_indent="  ",
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
+    return " · ".join(str(line[n]) for n in names[:own]) + "\n" + text.replace("\0", " ")
 
 
 def with_interval(line: dict[str, Any]) -> dict[str, Any]:

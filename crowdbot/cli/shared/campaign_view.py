@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from crowdbot.cli.output.campaign_hints import OwnFirst, known_runs
 from crowdbot.cli.output.say import say
 from crowdbot.core.support.text import plural
 from crowdbot.core.types.ending import has_failed, shown
@@ -35,6 +36,8 @@ def show(plan: Plan) -> Iterator[Listener]:
     _say(f"{runs}, {complete} complete, {jobs} to do")
     for label, why in plan.left_out.items():
         _say(f"{label} is left out: {why}")
+    if hint := known_runs(plan):
+        _say(hint)
     lines = _Lines()
     if not sys.stderr.isatty():
         yield lines
@@ -57,11 +60,14 @@ class _Lines:
 
     def __init__(self) -> None:
         self.state: State | None = None
+        self._own_first = OwnFirst()
 
     def __call__(self, state: State, job: Job | None, done: Done | None) -> None:
         self.state = state
         if job is not None and done is not None:
             _say(_line(state, job, done))
+        if line := self._own_first.line(state):
+            _say(line)
 
 
 @contextmanager
@@ -79,12 +85,18 @@ class _Table:
     def __init__(self, live: object) -> None:
         self._live = live
         self.state: State | None = None
+        self._own_first = OwnFirst()
 
     def __call__(self, state: State, job: Job | None, done: Done | None) -> None:
         self.state = state
         if job is not None and done is not None and done.error:
-            self._live.console.print(f"{job.title}: {_first(done.error)}", markup=False)  # type: ignore[attr-defined]
+            self._print(f"{job.title}: {_first(done.error)}")
+        if line := self._own_first.line(state):
+            self._print(line)
         self._live.update(_table(state))  # type: ignore[attr-defined]
+
+    def _print(self, text: str) -> None:
+        self._live.console.print(text, markup=False)  # type: ignore[attr-defined]
 
 
 def _table(state: State) -> RenderableType:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.core.support.text import plural
+from crowdbot.errors import CrowdbotError, InputError, UnknownNameError
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
     from crowdbot.core.results.results import Results
 
+T = TypeVar("T")
 _FILES = (".yaml", ".yml")
 Altered = Annotated[
     bool,
@@ -57,6 +59,55 @@ def open_results(root: Path, altered: bool, metrics: Sequence[str] = ()) -> Resu
     for metric in metrics:
         check_scored(metrics_of(found.scores), metric)
     return kept
+
+
+def by_suite(found: Results) -> dict[str, Results]:
+    """Return suite -> its results, in order; each change to a scenario makes a suite of its own."""
+    from crowdbot.core.results.score_columns import of_runs
+
+    parts = {}
+    for suite in found.suites:
+        runs = tuple(run for run in found.runs if run.suite == suite)
+        parts[suite] = replace(
+            found,
+            runs=runs,
+            scores=of_runs(found.scores, {run.run_id for run in runs}),
+            failures=tuple(f for f in found.failures if f.suite == suite),
+        )
+    return parts
+
+
+def of_each_suite(found: Results, look: Callable[[Results], T]) -> dict[str, T]:
+    """Return suite -> what a function finds in its results; stderr names suites left out.
+
+    Raises:
+        CrowdbotError: the first suite's, if there is something wrong with all of them.
+    """
+    parts = by_suite(found)
+    if len(parts) < 2:
+        return {next(iter(parts), ""): look(found)}
+    seen: dict[str, T] = {}
+    errors: dict[str, CrowdbotError] = {}
+    for suite, part in parts.items():
+        try:
+            seen[suite] = look(part)
+        except (InputError, UnknownNameError) as error:
+            errors[suite] = error
+    if not seen:
+        raise next(iter(errors.values()))
+    for suite, why in errors.items():
+        say(f"{suite} left out: {why}", err=True)
+    return seen
+
+
+def named_by_suite(found: Mapping[str, Iterable[dict[str, Any]]]) -> list[dict[str, Any]]:
+    """Return the lines of all suites, which name their suite where there are several."""
+    several = len(found) > 1
+    return [
+        ({"suite": suite} if several else {}) | line
+        for suite, some in found.items()
+        for line in some
+    ]
 
 
 def with_scales(found: Results) -> Results:

@@ -45,6 +45,8 @@ class Job:
         options: how; the metrics are those of the suite.
         depends_on: keys of the calibration runs that must have ended before.
         cost: expected processor time, s.
+        altered: changes to the scenario, from ``--set``.
+        added: it serves only floors and ceilings that the user did not name.
     """
 
     key: str
@@ -64,6 +66,8 @@ class Job:
     options: RunOptions
     depends_on: tuple[str, ...] = ()
     cost: float = 0.0
+    altered: tuple[str, ...] = ()
+    added: bool = False
 
     @property
     def title(self) -> str:

@@ -63,7 +63,8 @@ class Plan:
     Attributes:
         out: absolute root of the results.
         runs: all runs of the campaign, existing or not.
-        jobs: missing calibration runs, then missing runs, longest first.
+        jobs: missing calibration runs, then missing runs, longest first; those of floors and
+            ceilings that the user did not name come after all others.
         references: calibration runs of all runs, existing or not.
         estimate: cost estimate, adapted to existing runs.
         size: expected size of the jobs' files, bytes.
@@ -122,7 +123,7 @@ class _PlanBuilder:
         self._populate = cached_population()
 
     def plan(self) -> Plan:
-        jobs = sorted(self._jobs.values(), key=lambda j: (j.kind == "run", -j.cost))
+        jobs = sorted(self._jobs.values(), key=lambda j: (j.added, j.kind == "run", -j.cost))
         return Plan(
             out=self._out,
             runs=tuple(self._runs),
@@ -266,4 +267,6 @@ class _PlanBuilder:
             options=request.options,
             depends_on=tuple(r.run_id for r in depends_on),
             cost=expected_seconds(kind, people, longest(request.scenario)),
+            altered=tuple(request.entry.altered),
+            added=entry.sampled,
         )

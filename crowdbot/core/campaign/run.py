@@ -15,6 +15,7 @@ from crowdbot.core.campaign.worker_pool import Busy, WorkerPool
 from crowdbot.core.results.failure import Failure, forget_failure, write_failure
 from crowdbot.core.results.store import Store, index
 from crowdbot.core.types.ending import Ending, has_failed
+from crowdbot.dsl.suite.suite_entry import altered_suffix
 from crowdbot.errors import PluginError, SimulationError
 
 _LOOK = 0.25
@@ -169,7 +170,7 @@ class _Campaign:
 def _failure(job: Job, done: Done, axes: dict[str, str]) -> Failure:
     return Failure(
         run_id=job.key,
-        suite=job.suite,
+        suite=job.suite + altered_suffix(job.altered),
         scenario=job.scenario,
         planner=job.label,
         seed=job.seed,

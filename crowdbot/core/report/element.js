@@ -72,13 +72,15 @@ function decimalsOf(size, spread) {
   return Math.min(9, Math.max(0, places(Math.max(size, spread), 3), seen));
 }
 
-/** Formats with this number of decimals; very large and very small numbers as powers of ten. */
+/** Formats with this number of decimals, or two digits instead of zero; very large and very small numbers as powers of ten. */
 function format(number, decimals) {
   if (!Number.isFinite(number)) return "–";
   if (number === 0 && decimals > 6) return "0";
   const text = number.toFixed(Math.min(decimals, 12));
-  const hidden = number !== 0 && (Number(text) === 0 || Math.abs(number) >= 1e6 || decimals > 6);
-  return (hidden ? number.toExponential(2) : Number(text) === 0 ? text.replace("-", "") : text).replaceAll("-", "−");
+  const zero = Number(text) === 0;
+  if (zero && Math.abs(number) >= 1e-4 && decimals <= 6) return number.toPrecision(2).replace("-", "−");
+  const hidden = number !== 0 && (zero || Math.abs(number) >= 1e6 || decimals > 6);
+  return (hidden ? number.toExponential(2) : zero ? text.replace("-", "") : text).replaceAll("-", "−");
 }
 
 /** Formats a number with four significant digits. */

@@ -87,7 +87,7 @@ def render(contents: Contents) -> str:
 def _note_words(contents: Contents) -> str:
     """Return the heading of the folded notes."""
     heading = contents.heading
-    behind = [c.planner for c in contents.floors if c.leads and not c.beats_all]
+    behind = [c.planner for c in contents.floors if c.leads and not c.beats_all | bool(c.undecided)]
     parts = [
         "the suite cannot distinguish planners" if contents.suspicion else "",
         "too few crowds" if contents.sample and contents.sample.too_small else "",

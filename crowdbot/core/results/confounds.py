@@ -9,6 +9,7 @@ from typing import Literal
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow
+from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Name of a confound -> its severity and description.
@@ -78,6 +79,15 @@ class Finding:
         parts = [f"{v or 'nothing'} in {_counted(runs)}" for v, runs in self.values.items()]
         apart = _apart([*self.values])
         return f"{self.kind}: {self.subject}: {'; '.join(parts)}{f' ({apart})' * bool(apart)}"
+
+    @property
+    def brief(self) -> str:
+        """Return it for a terminal: what it means, and counts without directories."""
+        parts = [
+            f"{v or 'nothing'} in {plural(len(runs), 'run')}" for v, runs in self.values.items()
+        ]
+        subject = "" if self.subject == self.kind else f"{self.subject}: "
+        return f"{self.kind}: {subject}{'; '.join(parts)} ({KINDS[self.kind][1]})"
 
 
 def confounds(results: Results, accept: Iterable[str] = ()) -> tuple[Finding, ...]:

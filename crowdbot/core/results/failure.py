@@ -19,6 +19,7 @@ class Failure:
     """A run that a campaign could not make, with what Python said; as its file has it.
 
     Attributes:
+        suite: as in `RunRow`: failures of altered scenarios are a suite of their own.
         axes, position: as in `RunRecord`.
         exit_code: what `crowdbot simulate` would have ended with.
     """

@@ -62,6 +62,12 @@ class Results:
         """Labels of the planners that are floors or ceilings."""
         return frozenset(run.planner for run in self.runs if run.role in ("floor", "ceiling"))
 
+    @property
+    def suites(self) -> tuple[str, ...]:
+        """Names of all suites, in order; each change to a scenario makes a suite of its own."""
+        runs, failures = (one.suite for one in self.runs), (one.suite for one in self.failures)
+        return tuple(dict.fromkeys([*runs, *failures]))
+
     def without_altered(self) -> Results:
         """Return the results without runs and failures of scenarios that ``--set`` changed."""
         runs = tuple(run for run in self.runs if not run.changes)

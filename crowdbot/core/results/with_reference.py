@@ -17,6 +17,11 @@ from crowdbot.errors import InputError
 _REFERENCE = " (reference)"
 
 
+def without_mark(label: str) -> str:
+    """Return a planner's own name, without the mark of reference runs."""
+    return label.removesuffix(_REFERENCE)
+
+
 def reference_results(text: str) -> Results:
     """Return reference results.
 
@@ -85,7 +90,7 @@ def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
             continue
         means = {n: fmean(fmean(values[n][s]) for s in shared) for n in (planner, *others)}
         order = sorted(means, key=lambda n: -means[n])
-        said = ", ".join(f"{n.removesuffix(_REFERENCE)} {means[n]:.2f}" for n in order)
+        said = ", ".join(f"{without_mark(n)} {means[n]:.2f}" for n in order)
         yield (
             f"{planner}: number {order.index(planner) + 1} of {len(order)} by {PRIMARY.role} in "
             f"{plural(len(shared), 'scenario')}: {said}"

@@ -14,7 +14,8 @@ from crowdbot.core.statistics.estimate import Estimate
 
 NOTHING = "–"
 _MINUS = "−"
-_MOST, _LARGE = 6, 1e6
+#: Numbers beyond these, or that need more decimals, are powers of ten.
+_MOST, _LARGE, _SMALL = 6, 1e6, 1e-4
 _EXACT = Context(prec=800)  # a double has at most 767 digits
 
 
@@ -57,18 +58,29 @@ def _decimals(size: float, spread: float) -> int:
 
 
 def number_text(number: float, decimals: int, minus: str = _MINUS) -> str:
-    """Format a number with this many decimals; very large or small ones as a power of ten."""
+    """Format a number with this many decimals, or with two digits if it would show as zero.
+
+    Very large or small ones are written as a power of ten.
+    """
     if not math.isfinite(number):
         return NOTHING
     if number == 0 and decimals > _MOST:
         return "0"
     text = format(_rounded(number, -decimals), "f")
     is_zero = float(text) == 0
-    if number != 0 and (is_zero or abs(number) >= _LARGE or decimals > _MOST):
+    if number != 0 and is_zero and abs(number) >= _SMALL and decimals <= _MOST:
+        text = _two_digits(number)
+    elif number != 0 and (is_zero or abs(number) >= _LARGE or decimals > _MOST):
         text = _power(number)
     elif is_zero:
         text = text.replace("-", "")
     return text.replace("-", minus)
+
+
+def _two_digits(number: float) -> str:
+    last = Decimal(number).adjusted() - 1
+    last = _rounded(number, last).adjusted() - 1  # 0.0996 is 0.10
+    return format(_rounded(number, last), "f")
 
 
 def _power(number: float) -> str:

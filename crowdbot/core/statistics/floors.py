@@ -24,6 +24,7 @@ from crowdbot.core.support.text import plural
 #: Candidates for the deciding score, the first that the runs have: older runs lack the first.
 PRIMARY = (four_scores.PRIMARY.metric, "success_no_collision", "success")
 
+_TOO_FEW = "too few crowd draws"
 LeadVerdict = Literal["ahead", "behind", "not distinguishable"]
 
 
@@ -68,6 +69,13 @@ class FloorCheck:
         return bool(self.leads) and all(lead.verdict == "ahead" for lead in self.leads)
 
     @property
+    def undecided(self) -> str:
+        """Return the reason if it alone keeps the planner from a lead over each floor, else ""."""
+        reasons = {lead.reason for lead in self.leads}
+        few = len(reasons) == 1 and next(iter(reasons)).startswith(_TOO_FEW)
+        return reasons.pop() if few else ""
+
+    @property
     def text(self) -> str:
         """Return the sentence that the report shows first."""
         if not self.leads:
@@ -79,6 +87,8 @@ class FloorCheck:
         if not lost:
             names = ", ".join(x.other for x in self.leads)
             return f"{self.planner} beats the floors in {score}: {_by(self.leads[0])} ({names})"
+        if self.undecided:
+            return f"{self.planner}: no verdict against the floors in {score}: {_told(lost)}"
         return f"{self.planner} does not beat the floors in {score}: {_told(lost)}"
 
 
@@ -171,7 +181,7 @@ def _verdict(
         return "not distinguishable", f"{plural(gone, 'run')} of the planner missing"
     # An interval needs two draws; with so few, any difference may be chance.
     if least_p(found.draws) > 1.0 - level:
-        return "not distinguishable", f"too few crowd draws: {found.draws}"
+        return "not distinguishable", f"{_TOO_FEW}: {found.draws}"
     if by.low > 0.0:
         return "ahead", ""
     return ("behind", "") if by.high < 0.0 else ("not distinguishable", "")

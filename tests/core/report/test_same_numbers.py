@@ -163,7 +163,7 @@ def test_intervals_do_not_leave_what_a_score_can_be() -> None:
         (Estimate(value=0.76234, low=0.61249, high=0.8916), "0.762 [0.612, 0.892]"),
         (Estimate(value=1234.56, low=1100.0, high=1400.0), "1235 [1100, 1400]"),
         (Estimate(value=12.25, low=10.5, high=13.5), "12.3 [10.5, 13.5]"),  # halves away from 0
-        (Estimate(value=-0.0001, low=-0.5, high=0.5), "−1.00e−4 [−0.50, 0.50]"),
+        (Estimate(value=-0.0001, low=-0.5, high=0.5), "−0.00010 [−0.50, 0.50]"),
         (Estimate(value=10.01234, low=10.0121, high=10.0125), "10.01234 [10.01210, 10.01250]"),
         (Estimate(value=2.5e-8, low=1e-8, high=4e-8), "2.50e−8 [1.00e−8, 4.00e−8]"),
         (Estimate(value=9.9999e7), "1.00e+8"),

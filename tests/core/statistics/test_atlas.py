@@ -83,11 +83,11 @@ def test_ties_have_their_mean_rank() -> None:
 
 def test_nothing_at_all() -> None:
     assert atlas(Results()) == ()
-    assert atlas_page(()).startswith("# Atlas")
+    assert atlas_page({}).startswith("# Atlas")
 
 
 def test_the_page() -> None:
-    text = atlas_page(atlas(planted()))
+    text = atlas_page({"suite": atlas(planted())})
     row = next(line for line in text.splitlines() if line.startswith("| skill"))
     assert "copy -1.00" in row
     assert text.count("\n| copy") == 1

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from crowdbot.core.results.confounds import Finding
     from crowdbot.core.results.results import Results
     from crowdbot.core.statistics.audit import Audit
+    from crowdbot.core.statistics.floors import FloorCheck
 
 #: Number of damaged runs that are named.
 _SHOWN = 3
@@ -125,14 +126,14 @@ def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: 
         InputError: there are no runs, or several suites.
         UnknownNameError: no run has such a suite or planner.
     """
-    suites = dict.fromkeys([*(r.suite for r in results.runs), *(f.suite for f in results.failures)])
+    suites = results.suites
     if not results.runs:
         raise InputError(f"{root}: there is no complete run below it")
     if suite is None and len(suites) > 1:
         raise InputError(
             f"{root}: runs of several suites, choose with --suite: {', '.join(suites)}"
         )
-    wanted = suite if suite is not None else next(iter(suites))
+    wanted = suite if suite is not None else suites[0]
     if wanted not in suites:
         raise UnknownNameError("suite", wanted, suites)
     labels = {r.planner for r in results.runs if r.suite == wanted}
@@ -192,7 +193,7 @@ def _tell(
     for finding in findings:
         if quiet and finding.accepted:
             continue
-        say(f"{'accepted' if finding.accepted else 'warning'}: {finding}", err=True)
+        say(f"{'accepted' if finding.accepted else 'warning'}: {finding.brief}", err=True)
     if not as_json:
         if not quiet:
             _tell_of(contents)
@@ -219,6 +220,14 @@ def _tell(
     say(json.dumps(document, indent=2, ensure_ascii=False))
 
 
+def _of_floors(checks: Sequence[FloorCheck]) -> list[str]:
+    """Return a line for each planner, or one for all where the runs are too few for a verdict."""
+    reasons = {check.undecided for check in checks}
+    if len(checks) > 1 and len(reasons) == 1 and "" not in reasons:
+        return [f"no planner can be told from the floors: {reasons.pop()}; the page has the leads"]
+    return [check.text for check in checks]
+
+
 def _tell_of(contents: Contents) -> None:
     """Print the page's main findings on stderr."""
     counts = contents.counts()
@@ -229,7 +238,7 @@ def _tell_of(contents: Contents) -> None:
         *(f"crowd: {line}" for line in contents.crowds),
         contents.suspicion,
         contents.sample.text if contents.sample else "",
-        *(check.text for check in contents.floors),
+        *_of_floors(contents.floors),
         *(verdict.text for verdict in ranks),
     ]
     say("\n".join(text for text in told if text), err=True)

@@ -13,7 +13,14 @@ from typer.core import TyperGroup
 from crowdbot.cli.output.results_by_planner import print_by_planner
 from crowdbot.cli.output.results_lines import line_of, print_lines
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.open_results import Altered, Reference, open_results, with_scales
+from crowdbot.cli.shared.open_results import (
+    Altered,
+    Reference,
+    named_by_suite,
+    of_each_suite,
+    open_results,
+    with_scales,
+)
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.text import plural
 
@@ -104,18 +111,17 @@ def show(
     from crowdbot.core.statistics.groups import Grouped
     from crowdbot.errors import UsageError
 
-    found = _only(open_results(out, altered, metric or ()), planner, status)
     given = reference_results(reference) if reference else None
-    found, references = with_reference(found, given)
-    found = with_scales(found)
+    found, references = with_reference(open_results(out, altered, metric or ()), given)
+    found = with_scales(_only(found, planner, status))
     if worst:
         if metric is None or len(metric) != 1:
             raise UsageError("--worst needs one --metric NAME")
         print_lines(_worst(found, metric[0], variant, worst), as_csv=as_csv, as_json=as_json)
         return
     groups = [name.strip() for name in by.split(",") if name.strip()]
-    if "suite" not in groups and any(run.changes for run in found.runs):
-        groups.append("suite")  # each change to a scenario is a suite of its own
+    if "suite" not in groups and len(found.suites) > 1:
+        groups.append("suite")  # each change to a scenario is a suite of its own, too
     known = metrics_of(found.scores)
     first = [*named_metrics(found.runs), *_HEADLINES]
     wanted = metric or [m for m in dict.fromkeys(first) if m in known]
@@ -236,11 +242,13 @@ def atlas(
     from crowdbot.core.statistics import atlas as entries_of
     from crowdbot.core.support.atomic_write import atomic_write
 
-    entries = entries_of(with_scales(open_results(out, altered)), floor or ())
+    found = with_scales(open_results(out, altered))
+    entries = of_each_suite(found, lambda part: entries_of(part, floor or ()))
     if md is not None:
         atomic_write(md, atlas_page(entries))
     if as_json:
-        say(json.dumps([asdict(e) for e in entries], indent=2))
+        lines = named_by_suite({suite: map(asdict, some) for suite, some in entries.items()})
+        say(json.dumps(lines, indent=2))
     elif md is None:
         say(atlas_page(entries), nl=False)
 
@@ -282,8 +290,9 @@ def power(
     sizes = tuple(size or SIZES)
     opened = open_results(out, altered) if reference is None else reference_results(reference)
     found = with_scales(_only(opened, planner, None))
-    lines = lines_of(found, (metric, variant), sizes, tests, by)
-    print_lines(lines, as_csv=as_csv, as_json=as_json)
+    name = (metric, variant)
+    parts = of_each_suite(found, lambda part: lines_of(part, name, sizes, tests, by))
+    print_lines(named_by_suite(parts), as_csv=as_csv, as_json=as_json)
 
 
 @results.command()
@@ -305,39 +314,38 @@ def ladder(
 
     found = with_scales(open_results(out, altered))
     name = None if metric is None else (metric, variant)
-    print_lines(lines_of(found, name), as_csv=as_csv, as_json=as_json)
+    parts = of_each_suite(found, lambda part: lines_of(part, name))
+    print_lines(named_by_suite(parts), as_csv=as_csv, as_json=as_json)
 
 
 def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
     """Return runs of some planners with some statuses, with their scores and failures.
 
+    The name of a planner stands for its reference runs as well.
+
     Raises:
         UnknownNameError: no run has such a planner or status.
     """
     from crowdbot.core.results.score_columns import of_runs
+    from crowdbot.core.results.with_reference import without_mark
     from crowdbot.core.types.ending import ATTEMPTED, Ending
     from crowdbot.errors import UnknownNameError
 
     labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
+    wanted = {label for label in labels if {label, without_mark(label)} & set(planners or labels)}
     for name in planners or ():
-        if name not in labels:
+        if name not in labels | set(map(without_mark, labels)):
             raise UnknownNameError("planner", name, labels)
     if status is not None and status not in ATTEMPTED:
         raise UnknownNameError("status", status, ATTEMPTED)
-    runs = tuple(
-        r
-        for r in found.runs
-        if (not planners or r.planner in planners) and status in (None, r.status)
-    )
+    runs = tuple(r for r in found.runs if r.planner in wanted and status in (None, r.status))
     ids = {r.run_id for r in runs}
     return replace(
         found,
         runs=runs,
         scores=of_runs(found.scores, ids),
         failures=tuple(
-            f
-            for f in found.failures
-            if (not planners or f.planner in planners) and status in (None, Ending.NO_RUN)
+            f for f in found.failures if f.planner in wanted and status in (None, Ending.NO_RUN)
         ),
     )
 

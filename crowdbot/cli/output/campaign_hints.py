@@ -1,0 +1,55 @@
+"""Hints that save waiting in a campaign: what is already known, and when one may stop."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from crowdbot.core.support.text import plural
+
+if TYPE_CHECKING:
+    from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.campaign.run import State
+
+
+def known_runs(plan: Plan) -> str:
+    """Return a line about missing runs that the shipped reference scores hold, or nothing."""
+    from crowdbot.core.results.reference_file import SHIPPED, open_references
+
+    missing = [job for job in plan.jobs if job.kind == "run"]
+    # reading them takes 0.2 s; without floors and ceilings they have been weighed already
+    found = open_references(SHIPPED) if any(job.added for job in missing) else None
+    if found is None:
+        return ""
+    held = {(r.record.hashes.spec, r.planner, r.seed) for r in found.results.runs}
+    known = [job for job in missing if (job.spec_hash, job.label, job.seed) in held]
+    if not known:
+        return ""
+    named = dict.fromkeys(job.label for job in known if not job.added)
+    without = f"leave out {' and '.join(named)} and " if named else ""
+    return (
+        f"{len(known)} of {plural(len(missing), 'run')} are in the reference scores: to save time, "
+        f"{without}add --no-floors, then see 'crowdbot results --reference {SHIPPED}'"
+    )
+
+
+class OwnFirst:
+    """Says once that only runs of floors and ceilings are left."""
+
+    def __init__(self) -> None:
+        self._waits = True
+
+    def line(self, state: State) -> str:
+        """Return the line when the last job of a named planner has ended, else nothing."""
+        left = state.left.values()
+        if not (self._waits and left and all(job.added for job in left)):
+            return ""
+        self._waits = False
+        if not any(not job.added for job in state.plan.jobs):
+            return ""  # a second call that completes the floors
+        return (
+            f"your planners are done; {plural(len(left), 'job')} of floors and ceilings left. "
+            "Ctrl-C keeps what is done"
+        )
+
+
+__all__ = ["OwnFirst", "known_runs"]
