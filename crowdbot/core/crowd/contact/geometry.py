@@ -8,6 +8,9 @@ import numpy as np
 
 from crowdbot.core.support.compiling.compile import kernel
 
+#: A contact farther than this from the ends of a segment clearly comes before one with an end, m.
+_CORNER = 0.01
+
 
 @kernel
 def is_clearly_shorter(x: float, y: float, length: float) -> bool:
@@ -59,18 +62,19 @@ def time_to_segment(
 
     The disc must not touch the segment yet.
     """
-    first = math.inf
+    sx, sy = bx - ax, by - ay
+    cross, first = vx * sy - vy * sx, math.inf
+    if not abs(cross) < 1e-5:  # not parallel
+        # On contact, the touched point of the line is level with the centre.
+        length = math.hypot(sx, sy)
+        t = (ax * sy - ay * sx) / cross - radius * length / abs(cross)
+        along, whole = (vx * t - ax) * sx + (vy * t - ay) * sy, sx * sx + sy * sy
+        if t >= 0.0 and 0.0 <= along <= whole:
+            if _CORNER * length < along < whole - _CORNER * length:
+                return t  # the ends are touched later, in spite of rounding
+            first = t
     for ex, ey in ((ax, ay), (bx, by)):
         first = min(first, time_to_disc(ex, ey, vx, vy, ex * ex + ey * ey - radius * radius))
-    sx, sy = bx - ax, by - ay
-    cross = vx * sy - vy * sx
-    if abs(cross) < 1e-5:  # parallel
-        return first
-    # On contact, the touched point of the line is level with the centre.
-    t = (ax * sy - ay * sx) / cross - radius * math.hypot(sx, sy) / abs(cross)
-    along = (vx * t - ax) * sx + (vy * t - ay) * sy
-    if t >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
-        first = min(first, t)
     return first
 
 

@@ -13,6 +13,7 @@ from crowdbot.core.crowd.velocity_search.collision_rows import (
 )
 from crowdbot.core.crowd.velocity_search.collision_walls import (
     SORTED_SEGMENTS,
+    is_behind,
     is_passed,
     list_segments,
     swept_width,
@@ -161,6 +162,8 @@ def _first_segment(ux: float, uy: float, until: float, agent: AgentRecord, work:
     """Return the time until a listed segment is touched, s, or any below ``until``."""
     header, segments, first = as_record(work, HEADER), as_rows(work, SEGMENT_ROW), math.inf
     discs, width = int(header.discs), swept_width(ux, uy, agent.radius)
+    # The original counts a wall's line as touched, which may be before the wall itself is.
+    speed2 = ux * ux + uy * uy if agent.parity == 0.0 else math.inf
     last = discs + SORTED_SEGMENTS
     for j in range(discs + 1, discs + 1 + int(header.segments)):
         segment = segments[j]
@@ -169,7 +172,8 @@ def _first_segment(ux: float, uy: float, until: float, agent: AgentRecord, work:
                 break
             continue
         ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
-        if not is_passed(ux, uy, width, ax, ay, bx, by):
+        later = is_behind(ux, uy, first * speed2, width, ax, ay, bx, by)
+        if not (later | is_passed(ux, uy, width, ax, ay, bx, by)):
             if agent.parity != 0.0:
                 t = crossing_time(ux, uy, agent.radius, ax, ay, bx, by)
                 if t <= 0.0:  # from the centre, this may be 0 just before contact
@@ -218,7 +222,9 @@ def soonest_disc(
 
 
 @array_kernel
-def first_contact(ux: float, uy: float, agent: AgentRecord, work: Pointer) -> float:
+def first_contact(
+    ux: float, uy: float, agent: AgentRecord, work: Pointer, until: float = 0.0
+) -> float:
     """As `first_collision`, but 0 if something is already in contact.
 
     Under parity also 0 beside a disc with exactly the velocity u: the original takes a
@@ -240,4 +246,4 @@ def first_contact(ux: float, uy: float, agent: AgentRecord, work: Pointer) -> fl
             ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
             if crossing_time(ux, uy, agent.radius, ax, ay, bx, by) <= 0.0:
                 return 0.0
-    return first_collision(ux, uy, 0.0, agent, work)
+    return first_collision(ux, uy, until, agent, work)

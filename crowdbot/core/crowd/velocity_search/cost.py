@@ -95,6 +95,8 @@ class CompiledCost:
         wall_reach: metres, and seconds at the fastest speed of a decision: a wall whose distance
             from the agent's surface is larger than the sum of both never changes a result. None:
             every wall in range may.
+        reach_with_own: True if those seconds count at the fastest and the agent's own speed
+            together: the root of the sum of their squares.
         looks_farther: True if farther walls may change a result, and the functions look for them
             where they do: by `first_collision`, or by `MORE_WALLS`.
     """
@@ -110,6 +112,7 @@ class CompiledCost:
     ordered: bool = False
     call: PluginCall | None = None
     wall_reach: tuple[float, float] | None = None
+    reach_with_own: bool = False
     looks_farther: bool = False
 
     def reach(self, radius: float, largest_radius: float) -> float:

@@ -34,6 +34,8 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Half the width of central differences, m/s.
 STEP = 0.1
+#: Costs are asked for at most so far from the present velocity, m/s.
+_FARTHEST = 1.5 * STEP
 _AROUND = STEP * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 
 
@@ -42,6 +44,7 @@ class Descent:
 
     def __init__(self, costs: WeightedCosts) -> None:
         self.costs = costs
+        costs.around = _FARTHEST
 
     def accelerations(self, view: CrowdView) -> Array:
         """Return minus the gradient (N, 2) at the current velocity, m/s^2.
@@ -92,7 +95,7 @@ def _descend(
         if i < 0:
             continue
         vx, vy, agent.descends = agent.vx, agent.vy, 1.0
-        agent.fastest = (1.0 + 1e-9) * math.hypot(vx, vy) + 1.5 * STEP
+        agent.fastest = (1.0 + 1e-9) * math.hypot(vx, vy) + _FARTHEST
         agent.asked_radius = agent.fastest
         terms = prepare(around, b, functions, weights, active)
         costs = AgentCosts(agent, functions, weights, active[:terms])

@@ -38,7 +38,8 @@ class SettingsRecord:
 
     Attributes:
         wall_metres, wall_seconds: centre distance beyond which no wall matters is the first plus
-            the second times the fastest speed of a decision.
+            the second times the fastest speed of a decision, and
+        wall_own: 1 if it counts together with the own speed, as `CompiledCost.reach_with_own`.
         wall_grid: the reach of the `SegmentGrid`, m.
         wall_more: 1 if functions look for walls that are farther away, where these matter.
         floor: address of the `FloorRecord`.
@@ -49,6 +50,7 @@ class SettingsRecord:
     parity: float
     wall_metres: float
     wall_seconds: float
+    wall_own: float
     wall_grid: float
     wall_more: float
     floor: float
@@ -128,6 +130,8 @@ def wall_distance(around: Surroundings) -> float:
     speed = max(agent.fastest, agent.preferred)
     if not is_clearly_shorter(agent.vx, agent.vy, speed):
         speed = max(speed, math.hypot(agent.vx, agent.vy))
+    if settings.wall_own != 0.0:
+        speed = math.sqrt(speed * speed + agent.vx * agent.vx + agent.vy * agent.vy)
     return min(around.reach, settings.wall_metres + settings.wall_seconds * speed)
 
 

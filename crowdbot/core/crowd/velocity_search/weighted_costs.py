@@ -60,12 +60,13 @@ from crowdbot.core.types.arrays import Array, Indices
 
 _Addresses = NDArray[np.intp]
 _NO_BOX = np.zeros(4)
-#: Speeds up to this multiple of the largest maximum find their walls by the grid.
-_PUSHED = 1.25
+#: Speeds up to these multiples of the largest maximum, and of the largest preferred one where
+#: only the present speed counts, find their walls by the grid.
+_PUSHED, _HURRIED = 1.05, 1.25
 #: Added against rounding.
 _SLACK = 1e-6
 #: Fields of `SettingsRecord` that depend on the walls.
-_WALL_SETTINGS = ("wall_metres", "wall_seconds", "wall_grid", "wall_more", "floor")
+_WALL_SETTINGS = ("wall_metres", "wall_seconds", "wall_own", "wall_grid", "wall_more", "floor")
 
 # Columns of the table of addresses: part of a cost function and its signature.
 _PARTS = (
@@ -148,6 +149,9 @@ class WeightedCosts:
         self._settings["relaxation"][:], self._settings["parity"][:] = relaxation_time, parity
         self._time_step, self._broken = self._settings["time_step"], self._deciding["broken"]
         self._largest_seen, self._reach = math.nan, 0.0
+        #: Largest distance from the present velocity at which costs are asked for, m/s; 0 if they
+        #: are asked for anywhere.
+        self.around = 0.0
         self._grid: tuple[Array, float, SegmentGrid] | None = None
         self._discs, self._found = rows_of(0, DISC), rows_of(0, WALL)
         self._starts = np.zeros((START_ROWS, 2), np.int64)
@@ -181,16 +185,23 @@ class WeightedCosts:
 
     def _built_grid(self, walls: Array, largest: float) -> SegmentGrid:
         reach, (metres, seconds) = self.reach_of(largest), self._walls_matter(largest)
-        quick = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
-        covered = min(reach, metres + seconds * quick)
+        own = any(c.reach_with_own for c in self.compiled)
+        covered = min(reach, metres + seconds * self._usual_speed(own=own))
         more = any(c.looks_farther for c in self.compiled)
         if self.parity or self.vectorised:
-            metres, seconds, covered, more = reach, 0.0, reach, False
+            metres, seconds, own, covered, more = reach, 0.0, False, reach, False
         self._floor, floor = floor_of(walls, self.largest)
-        values = metres, seconds, covered, more, floor
+        values = metres, seconds, own, covered, more, floor
         for name, value in zip(_WALL_SETTINGS, values, strict=True):
             self._settings[name][:] = value
         return grid_of(walls, covered)
+
+    def _usual_speed(self, *, own: bool) -> float:
+        """Return the speed at which most decisions look for walls at most, m/s."""
+        walked = _HURRIED * float(np.max(self.agents.preferred_speed, initial=0.0))
+        fastest = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
+        asked = min(fastest, walked + self.around) if self.around > 0.0 else fastest
+        return math.hypot(asked, walked) if own else asked
 
     def _walls_matter(self, largest: float) -> tuple[float, float]:
         """Return the centre distance (m) of walls that may change a result: a part, and seconds."""

@@ -31,6 +31,8 @@ from crowdbot.plugin import (
 from crowdbot.plugin.for_crowds import NEAR_WALLS
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
+_SURELY = 1e-6  # share by which a way is shorter in spite of rounding
+
 
 class _Params(CostParams):
     """Parameters; units are those of the spec."""
@@ -45,6 +47,17 @@ _PARAMS = record_type(_Params)
 def _least_course(ahead: float, d_max: float) -> float:
     ahead = max(0.0, ahead)
     return 1.0 + d_max * d_max * (1.0 - ahead * ahead)
+
+
+@array_kernel
+def _too_short(ahead: float, budget: float, d_max: float) -> float:
+    """Return the free way (m) below which the excess is above the budget, or less than zero.
+
+    The excess is at least (d_max * ahead - free)^2, for any speed.
+    """
+    if not ahead > 0.0 or not 0.0 <= budget < math.inf:
+        return -1.0
+    return float(d_max * (ahead - _SURELY) - (1.0 + _SURELY) * math.sqrt(budget))
 
 
 @declared_kernel(BASE)
@@ -85,7 +98,8 @@ def _excess(
         scale = preferred / speed
         if preferred > 0.0:
             ahead = (ux * agent.pvx + uy * agent.pvy) / (speed * preferred)
-    t = first_contact(ux * scale, uy * scale, agent, work)
+    until = _too_short(ahead, budget, d_max) / preferred if preferred > 0.0 else 0.0
+    t = first_contact(ux * scale, uy * scale, agent, work, until)
     free = min(d_max, t * preferred) if preferred > 0.0 else d_max
     course = d_max * d_max + free * free - 2.0 * d_max * free * ahead + 1.0
     least = _least_course(ahead, d_max)

@@ -50,7 +50,7 @@ def _base(ux: float, uy: float, preferred: float, max_speed: float, params: Poin
 
 
 @array_kernel
-def _change(
+def change(
     rx: float,
     ry: float,
     wx: float,
@@ -98,6 +98,23 @@ def _least(agent: AgentRecord) -> float:
 
 
 @array_kernel
+def is_out_of_the_way(
+    rx: float, ry: float, d2: float, vx: float, vy: float, radius: float, least: float,
+    horizon: float,
+) -> bool:  # fmt: skip
+    """Return True if both half-planes of a wall clearly change nothing; for most, without a root.
+
+    The second one touches the cut-off disc, and is c - reach away from 0, where c is the part of
+    the disc's centre along its normal.
+    """
+    stops, needed, share = radius - _BRAKING * least, radius / horizon - least, 1.0 / horizon
+    ox, oy = vx - share * rx, vy - share * ry  # from the centre of the cut-off disc
+    behind = -share * (ox * rx + oy * ry)
+    far = (d2 > (1.0 + 1e-9) * stops * stops) & (behind > 0.0)
+    return bool(far & (behind * behind > (1.0 + 1e-9) * needed * needed * (ox * ox + oy * oy)))
+
+
+@array_kernel
 def _put_walls(
     agent: AgentRecord,
     walls: Rows[WallRecord],
@@ -111,6 +128,8 @@ def _put_walls(
     vx, vy, radius, least = agent.vx, agent.vy, agent.radius, _least(agent)
     for s in range(wall_count):
         d2, rx, ry = walls[s].d2, walls[s].nx, walls[s].ny
+        if is_out_of_the_way(rx, ry, d2, vx, vy, radius, least, own.horizon):
+            continue
         if d2 == 0.0 or not in_range(d2, radius, params):
             continue
         distance = math.sqrt(d2)
@@ -119,7 +138,7 @@ def _put_walls(
             put(work, count, -rx / distance, -ry / distance, c)
             count += 1
         if distance > radius:
-            nx, ny, way = _change(rx, ry, vx, vy, radius, own.horizon, 1.0, False)
+            nx, ny, way = change(rx, ry, vx, vy, radius, own.horizon, 1.0, False)
             c = nx * vx + ny * vy + way
             if c >= least:
                 put(work, count, nx, ny, c)
@@ -146,7 +165,7 @@ def _prepare(
         if not in_range(near[j].d2, near[j].reach, params):
             continue
         wx, wy = vx - near[j].nvx, vy - near[j].nvy
-        nx, ny, way = _change(
+        nx, ny, way = change(
             near[j].rx, near[j].ry, wx, wy, near[j].reach, horizon, dt, parity
         )  # fmt: skip
         if nx == 0.0 and ny == 0.0:
@@ -201,6 +220,8 @@ def build(spec: OrcaSpec) -> CompiledCost:
             limit=float(spec.limit == "preferred_speed"),
         ),
         weight=spec.weight,
-        # Beyond, the half-planes hold every velocity: their borders touch the cut-off disc.
-        wall_reach=(1.0, 1.5 * max(spec.time_horizon, _BRAKING)),
+        # Beyond, half-planes hold every velocity: their borders touch the cut-off disc, whose
+        # tangents through the present velocity v are sqrt(centre^2 - v^2) or more away from 0.
+        wall_reach=(1.0, (1.0 + 1e-5) * max(spec.time_horizon, _BRAKING)),
+        reach_with_own=True,
     )

@@ -29,6 +29,8 @@ from crowdbot.plugin import (
 from crowdbot.plugin.for_crowds import NEAR_WALLS
 from crowdbot.plugins.crowd.cost_functions.van_toll import VanTollSpec
 
+_SURELY = 1e-9  # share of a way by which it is shorter in spite of rounding
+
 
 class _Params(CostParams):
     """Parameters; units are those of the spec."""
@@ -77,7 +79,9 @@ def _excess(
         turn = math.atan2(abs(vx * uy - vy * ux), vx * ux + vy * uy)
     if turn > budget:
         return turn
-    return float(way - min(way, first_contact(ux, uy, agent, work) * speed) + turn)
+    # Where the way is free for less than this, the cost exceeds the budget by more than rounding.
+    until = ((1.0 - _SURELY) * way + turn - budget) / speed
+    return float(way - min(way, first_contact(ux, uy, agent, work, until) * speed) + turn)
 
 
 def build(spec: VanTollSpec) -> CompiledCost:

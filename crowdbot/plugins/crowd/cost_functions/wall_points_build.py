@@ -13,8 +13,10 @@ from crowdbot.plugin import (
 
 #: Points nearer to each other than this are one, m.
 SAME = 1e-9
-#: Side of the cells into which points are sorted, m; equal points lie in one or in neighbours.
-_CELL = 1e-6
+#: Points are sorted into this many cells per metre; equal points lie in one or in neighbours.
+_PER_METRE = 1e6
+#: Points nearer than this to the border of their cell may be equal to one beside it, cells.
+_BORDER = 1.1 * SAME * _PER_METRE
 #: With fewer walls all pairs are tried.
 _FEW = 16
 #: Entries of ``work`` before the chosen walls; forces need fewer.
@@ -50,8 +52,7 @@ def leave_out_repeated(walls: Rows[WallRecord], count: int, work: Pointer) -> in
     for k in range(count):
         s, known = chosen(k, work), False
         if count > _FEW:
-            known = _is_known(walls, s, table, size, work)
-            _remember(walls, s, table, size, work)
+            known = _note(walls, s, table, size, work)
         else:
             for earlier in range(k):
                 known = known or _are_one(walls, s, int(work[table + earlier]))
@@ -68,30 +69,34 @@ def _are_one(walls: Rows[WallRecord], s: int, other: int) -> bool:
 
 
 @array_kernel
-def _place(x: float, y: float, size: int) -> int:
-    """Return the first place in the table for the cell of a point."""
-    column, row = math.floor(x / _CELL), math.floor(y / _CELL)
-    return int((column * 73856093 ^ row * 19349663) & (size - 1))
-
-
-@array_kernel
-def _is_known(walls: Rows[WallRecord], s: int, table: int, size: int, work: Pointer) -> bool:
-    """Return True if the nearest point of wall s is in the table, in its cell or beside it."""
-    x, y = walls[s].nx, walls[s].ny
-    inside = _place(x - SAME, y - SAME, size) == _place(x + SAME, y + SAME, size)
-    for side in range(1 if inside else 4):
-        px, py = x + (2.0 * (side % 2) - 1.0) * SAME, y + (2.0 * (side // 2) - 1.0) * SAME
-        k = _place(px, py, size)
-        while work[table + k] >= 0.0:
-            if _are_one(walls, s, int(work[table + k])):
-                return True
-            k = (k + 1) & (size - 1)
-    return False
-
-
-@array_kernel
-def _remember(walls: Rows[WallRecord], s: int, table: int, size: int, work: Pointer) -> None:
-    k = _place(walls[s].nx, walls[s].ny, size)
-    while work[table + k] >= 0.0:
-        k = (k + 1) & (size - 1)
+def _note(walls: Rows[WallRecord], s: int, table: int, size: int, work: Pointer) -> bool:
+    """Put wall s in the table; return True if its nearest point is in it, there or beside it."""
+    x, y = walls[s].nx * _PER_METRE, walls[s].ny * _PER_METRE
+    column, row = math.floor(x), math.floor(y)
+    known, k = _walk(walls, s, _place(column, row, size), table, size, work)
+    right, up = x - column, y - row  # how far it is in its cell, from 0 to 1
+    if min(right, up) < _BORDER or max(right, up) > 1.0 - _BORDER:
+        for i in range(3):
+            for j in range(3):
+                beside = _place(column + (i - 1), row + (j - 1), size)
+                known = known or _walk(walls, s, beside, table, size, work)[0]
     work[table + k] = s
+    return bool(known)
+
+
+@array_kernel
+def _place(column: float, row: float, size: int) -> int:
+    """Return the first place in the table for a cell."""
+    return int((int(column) * 73856093 ^ int(row) * 19349663) & (size - 1))
+
+
+@array_kernel
+def _walk(
+    walls: Rows[WallRecord], s: int, k: int, table: int, size: int, work: Pointer
+) -> tuple[bool, int]:
+    """Return True if a point like that of wall s comes after place k; and the next empty place."""
+    known = False
+    while work[table + k] >= 0.0:
+        known = known or _are_one(walls, s, int(work[table + k]))
+        k = (k + 1) & (size - 1)
+    return known, k

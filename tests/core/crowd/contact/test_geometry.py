@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from numba import njit
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment, time_to_disc, time_to_segment
 from tests.examples import costly
@@ -88,6 +89,34 @@ def test_time_to_segment(
         assert sampled - step - 1e-6 <= t <= sampled + 1e-6
     else:
         assert t >= HORIZON
+
+
+@njit(error_model="numpy")  # other roots and products have other bits than Python's
+def _least_of_all(
+    vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
+) -> float:
+    first = time_to_disc(ax, ay, vx, vy, ax * ax + ay * ay - radius * radius)
+    first = min(first, time_to_disc(bx, by, vx, vy, bx * bx + by * by - radius * radius))
+    sx, sy = bx - ax, by - ay
+    cross = vx * sy - vy * sx
+    if abs(cross) >= 1e-5:
+        t = (ax * sy - ay * sx) / cross - radius * math.hypot(sx, sy) / abs(cross)
+        along = (vx * t - ax) * sx + (vy * t - ay) * sy
+        if t >= 0.0 and 0.0 <= along <= sx * sx + sy * sy:
+            first = min(first, t)
+    return first
+
+
+@given(COORDINATE, COORDINATE, COORDINATE, COORDINATE, SPEED, SPEED, RADIUS, st.floats(-1.0, 1.0))
+@costly(2000)
+def test_time_to_segment_is_the_least_of_both_ends_and_the_middle(
+    ax: float, ay: float, bx: float, by: float, vx: float, vy: float, radius: float, near: float
+) -> None:
+    """To the last bit, although the ends are not looked at where the middle is touched."""
+    assume(_distance_to_segment(0.0, 0.0, ax, ay, bx, by) > radius)
+    vx, vy = (ax + 0.02 * near, ay) if abs(near) < 0.5 else (vx, vy)  # often towards an end
+    expected = _least_of_all(vx, vy, radius, ax, ay, bx, by)
+    assert time_to_segment(vx, vy, radius, ax, ay, bx, by) == expected
 
 
 def test_time_to_a_long_wall() -> None:

@@ -6,10 +6,11 @@ import math
 from typing import Any
 
 import numpy as np
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from numba import njit
 
+from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.velocity_search.collision import (
     first_collision,
     list_approaching,
@@ -65,9 +66,9 @@ def _all(
 
 @njit(EXCESS, cache=True, error_model="numpy")
 def _time(
-    ux: float, uy: float, _budget: float, agent: AgentRecord, work: Pointer, _params: Pointer
+    ux: float, uy: float, until: float, agent: AgentRecord, work: Pointer, _params: Pointer
 ) -> float:
-    return float(first_collision(ux, uy, 0.0, agent, work))
+    return float(first_collision(ux, uy, until, agent, work))
 
 
 @njit(cache=True)
@@ -79,10 +80,11 @@ def _ask(
     asked: Array,
     times: Array,
 ) -> None:
-    agent, near, walls = scene
-    call_prepare(functions[0], agent[0], near, len(near), walls, 0, params, work)
+    agent, near, walls, wall_count, until = scene
+    call_prepare(functions[0], agent[0], near, len(near), walls, wall_count, params, work)
     for k in range(len(asked)):
-        times[k] = call_excess(functions[1], asked[k, 0], asked[k, 1], 0.0, agent[0], work, params)
+        ux, uy = asked[k, 0], asked[k, 1]
+        times[k] = call_excess(functions[1], ux, uy, until, agent[0], work, params)
 
 
 def first_collisions(prepare: object, near: Any, params: Array, asked: Array) -> tuple[Array, int]:
@@ -91,8 +93,38 @@ def first_collisions(prepare: object, near: Any, params: Array, asked: Array) ->
     agent["radius"][:] = _RADIUS
     times, walls = np.zeros(len(asked)), rows_of(1, WALL)
     functions = np.array([address_of(prepare, PREPARE), address_of(_time, EXCESS)])
-    _ask(functions, (agent, near, walls), params, work, asked, times)
+    _ask(functions, (agent, near, walls, 0, 0.0), params, work, asked, times)
     return times, int(work[0, 0])
+
+
+def first_walls(walls: Any, asked: Array, until: float = 0.0) -> Array:
+    """Times of the first collision with walls at velocities (K, 2) of up to 10 m/s, s."""
+    agent, work = rows_of(1, AGENT), np.zeros((len(walls) + 1, WORK_COLUMNS))
+    agent["radius"][:] = _RADIUS
+    times, params = np.zeros(len(asked)), np.array([_FAR, 0.0, 0.0, 0.0, 10.0, math.inf])
+    functions = np.array([address_of(_all, PREPARE), address_of(_time, EXCESS)])
+    scene = agent, rows_of(0, NEIGHBOUR), walls, len(walls), until
+    _ask(functions, scene, params, work, asked, times)
+    return times
+
+
+def walls_around(rng: np.random.Generator, count: int) -> Any:
+    """Walls at any angle of up to 12 m, every other one on from the one before; none is touched."""
+    walls: Any = rows_of(count, WALL)
+    distance, angle = rng.uniform(0.5, 15.0, count), rng.uniform(0.0, 2.0 * math.pi, count)
+    ax, ay = distance * np.cos(angle), distance * np.sin(angle)
+    turn, length = (
+        rng.integers(0, 16, count) * (math.pi / 8.0),
+        rng.choice([0.001, 1.0, 12.0], count),
+    )
+    bx, by = ax + length * np.cos(turn), ay + length * np.sin(turn)
+    ax[1::2], ay[1::2] = bx[: len(bx[1::2]) * 2 : 2], by[: len(by[1::2]) * 2 : 2]
+    ends = np.column_stack([ax, ay, bx, by])
+    nx, ny = np.array([nearest_on_segment(0.0, 0.0, *each) for each in ends.tolist()]).T
+    columns = (*ends.T, nx, ny, nx * nx + ny * ny)
+    for name, column in zip(("ax", "ay", "bx", "by", "nx", "ny", "d2"), columns, strict=True):
+        walls[name] = column
+    return walls[walls["d2"] > _RADIUS**2]
 
 
 def neighbours(rng: np.random.Generator, count: int) -> Any:
@@ -139,6 +171,21 @@ def test_the_order_of_neighbours_changes_no_time() -> None:
     for _ in range(5):
         again, _ = first_collisions(_all, rng.permutation(near), params, asked)
         np.testing.assert_array_equal(again, times)
+
+
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 120))
+def test_walls_behind_others_change_no_time(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    walls, asked = walls_around(rng, count), rng.normal(0.0, 1.0, (40, 2))
+    asked[::4] = asked[::4] @ np.array([[1.0, 0.0], [0.0, 1e-7]])  # along the walls, nearly
+    assume(len(walls))
+    times = first_walls(walls, asked)
+    alone = [first_walls(one, asked) for one in walls.reshape(-1, 1)]
+    np.testing.assert_array_equal(times, np.min(alone, axis=0))
+    until = float(np.median(times))
+    soon = first_walls(walls, asked, until)
+    np.testing.assert_array_equal(soon < until, times < until)
+    np.testing.assert_array_equal(soon[times >= until], times[times >= until])
 
 
 def test_a_narrow_disc_of_velocities_leaves_most_out() -> None:

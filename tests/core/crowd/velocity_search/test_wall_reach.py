@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from crowdbot.api import registry
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
@@ -18,6 +21,7 @@ from crowdbot.core.crowd.velocity_search.records import WALL, WORK_COLUMNS
 from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.plugin import Pointer
+from crowdbot.plugins.crowd.cost_functions.orca_build import change, is_out_of_the_way
 from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
     SAME,
     choose,
@@ -126,3 +130,20 @@ def test_walls_are_looked_up_by_someone_outside_of_their_box_and_by_someone_who_
     velocity = np.array([[1.2, 0.1], [1e-6, 2e-7], [0.0, -1.3]])
     given, whole = (_states(kind, whole, walls, at, velocity) for whole in (False, True))
     assert np.array_equal(given, whole)
+
+
+@given(
+    distance=st.floats(0.3, 40.0), angle=st.floats(0.0, 6.3), vx=st.floats(-3.0, 3.0),
+    vy=st.floats(-3.0, 3.0), radius=st.floats(0.1, 1.0), least=st.floats(-4.0, -0.1),
+    horizon=st.floats(0.2, 10.0),
+)  # fmt: skip
+def test_half_planes_that_orca_leaves_out_hold_every_velocity(
+    distance: float, angle: float, vx: float, vy: float, radius: float, least: float, horizon: float
+) -> None:
+    rx, ry = distance * math.cos(angle), distance * math.sin(angle)
+    if not is_out_of_the_way(rx, ry, rx * rx + ry * ry, vx, vy, radius, least, horizon):
+        return
+    assert distance > radius
+    assert (radius - distance) / 0.5 < least
+    nx, ny, way = change(rx, ry, vx, vy, radius, horizon, 1.0, False)
+    assert nx * vx + ny * vy + way < least
