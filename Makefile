@@ -11,7 +11,7 @@
 #   make generate renew all pages, tables and pictures that are made from the code
 #   make changelog show the entries since the last release, as they will be printed
 #   make check-js  lint the JavaScript of the pages (needs node and npm)
-#   make lock    rewrite requirements.lock (needs uv)
+#   make lock    rewrite requirements.lock and requirements-run.lock (needs uv)
 #   make sbom    list what a release consists of (CycloneDX), in build/crowdbot.cdx.json
 
 PYTHON ?= python3
@@ -21,6 +21,9 @@ BIN := .venv/bin
 # One more than cores: many tests wait for processes, which leaves a fifth of the machine idle.
 WORKERS = $(shell $(PYTHON) -c "import os; print(1 + (os.cpu_count() or 1))")
 READY := .venv/ready-$(shell cat requirements-pip.lock requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
+# With what crowdbot needs to run, a third of all that.
+RUNS := .venv/runs-$(shell cat requirements-pip.lock requirements-run.lock pyproject.toml | cksum | cut -d' ' -f1)
+LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --quiet
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # pip would use one core for this, for half of the set-up; a third are tests of packages, and half
 # of the rest is what few processes import, if any, which write it then. It fails where a package
@@ -34,7 +37,7 @@ JS_READY := $(JS)/node_modules/.package-lock.json
 
 .PHONY: demo check test test-here pythons tests tests-as-they-go test-all durations lint types style kernels coverage docs generate pictures changelog check-js js-where-node-is setup lock sbom clean
 
-demo: setup
+demo: $(RUNS)
 	$(BIN)/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa
 
 check: setup
@@ -116,19 +119,28 @@ $(JS_READY): $(JS)/package-lock.json
 
 setup: $(READY)
 
-$(READY): requirements-pip.lock requirements.lock pyproject.toml
+# A file $(1) says what is set up from the lock $(2).
+define set_up
 	@$(PYTHON) scripts/check_machine.py
 	@echo "setting up .venv (about a minute)"
 	@$(PIP) --version > /dev/null 2>&1 || $(PYTHON) -m venv --clear .venv  # none, or an interrupted one
 	@$(PIP) install --no-compile --require-hashes -r requirements-pip.lock
-	@$(PIP) install --no-compile --require-hashes -r requirements.lock
+	@$(PIP) install --no-compile --require-hashes -r $(2)
 	@$(PIP) install --no-compile --no-deps --no-build-isolation -e .
 	@$(BYTE_CODE) .venv/lib crowdbot || true
-	@rm -f .venv/ready-* && touch $@
+	@rm -f .venv/ready-* .venv/runs-* && touch $(1)
+endef
 
+$(READY): requirements-pip.lock requirements.lock pyproject.toml
+	$(call set_up,$(READY) $(RUNS),requirements.lock)
+
+$(RUNS): requirements-pip.lock requirements-run.lock pyproject.toml
+	$(call set_up,$(RUNS),requirements-run.lock)
+
+# The second one has the same versions.
 lock:
-	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
-		--quiet --group dev pyproject.toml -o requirements.lock
+	$(LOCK) --group dev pyproject.toml -o requirements.lock
+	$(LOCK) --group build pyproject.toml -c requirements.lock -o requirements-run.lock
 
 sbom: setup
 	$(BIN)/python scripts/write_sbom.py build/crowdbot.cdx.json

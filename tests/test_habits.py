@@ -62,7 +62,7 @@ TOP = {
     ".ci", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff",
     "CONTRIBUTING.md", "Containerfile", "LICENSE", "Makefile", "README.md", "benchmarks",
     "changelog.d", "crowdbot", "docs", "hatch_build.py", "pyproject.toml", "requirements-pip.lock",
-    "requirements.lock", "scenario_specs", "scripts", "tests",
+    "requirements-run.lock", "requirements.lock", "scenario_specs", "scripts", "tests",
 }  # fmt: skip
 
 

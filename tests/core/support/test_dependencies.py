@@ -39,6 +39,17 @@ def test_lower_bounds_exclude_known_faults() -> None:
         assert Version(version) not in found[name].specifier, name
 
 
+def test_what_is_needed_to_run_is_locked_to_the_versions_that_are_tested() -> None:
+    run, everything = (
+        {line.rstrip("\\ ") for line in (ROOT / lock).read_text("utf-8").splitlines() if "==" in line}
+        for lock in ("requirements-run.lock", "requirements.lock")
+    )
+    assert run < everything
+    names = {line.partition("==")[0] for line in run}
+    assert {"drake", "hatchling", "numba"} < names
+    assert not {"mypy", "pandas", "pytest"} & names
+
+
 def test_each_package_has_a_lower_bound() -> None:
     for requirement in _requirements():
         assert any(s.operator in (">=", "==") for s in requirement.specifier), requirement.name
