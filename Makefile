@@ -11,7 +11,7 @@
 #   make generate renew all pages, tables and pictures that are made from the code
 #   make changelog show the entries since the last release, as they will be printed
 #   make check-js  lint the JavaScript of the pages (needs node and npm)
-#   make lock    rewrite requirements.lock and requirements-run.lock (needs uv)
+#   make lock    rewrite requirements.lock and requirements-run.lock
 #   make sbom    list what a release consists of (CycloneDX), in build/crowdbot.cdx.json
 
 PYTHON ?= python3
@@ -23,8 +23,10 @@ WORKERS = $(shell $(PYTHON) -c "import os; print(1 + (os.cpu_count() or 1))")
 READY := .venv/ready-$(shell cat requirements-pip.lock requirements.lock pyproject.toml | cksum | cut -d' ' -f1)
 # With what crowdbot needs to run, a third of all that.
 RUNS := .venv/runs-$(shell cat requirements-pip.lock requirements-run.lock pyproject.toml | cksum | cut -d' ' -f1)
-LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --quiet
+LOCK := $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --quiet
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+# In a quarter of the time of pip, which helps where a package index is set up for pip alone.
+UV := $(BIN)/uv pip install --quiet --python $(BIN)/python
 # pip would use one core for this, for half of the set-up; a third are tests of packages, and half
 # of the rest is what few processes import, if any, which write it then. It fails where a package
 # has templates, which are not Python. Ours too: where the environment forbids Python to write byte
@@ -125,7 +127,8 @@ define set_up
 	@echo "setting up .venv (about a minute)"
 	@$(PIP) --version > /dev/null 2>&1 || $(PYTHON) -m venv --clear .venv  # none, or an interrupted one
 	@$(PIP) install --no-compile --require-hashes -r requirements-pip.lock
-	@$(PIP) install --no-compile --require-hashes -r $(2)
+	@$(UV) --require-hashes -r $(2) \
+		|| { echo "uv could not; pip will"; $(PIP) install --no-compile --require-hashes -r $(2); }
 	@$(PIP) install --no-compile --no-deps --no-build-isolation -e .
 	@$(BYTE_CODE) .venv/lib crowdbot || true
 	@rm -f .venv/ready-* .venv/runs-* && touch $(1)
@@ -138,7 +141,7 @@ $(RUNS): requirements-pip.lock requirements-run.lock pyproject.toml
 	$(call set_up,$(RUNS),requirements-run.lock)
 
 # The second one has the same versions.
-lock:
+lock: setup
 	$(LOCK) --group dev pyproject.toml -o requirements.lock
 	$(LOCK) --group build pyproject.toml -c requirements.lock -o requirements-run.lock
 
