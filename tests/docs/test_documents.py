@@ -220,8 +220,9 @@ def test_decisions_that_the_code_refers_to_exist() -> None:
 
 def test_every_dependency_has_a_reason() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    listed = [*project["project"]["dependencies"], *project["dependency-groups"]["dev"]]
-    names = {re.split(r"[<>=!~\[ ]", entry)[0] for entry in listed}
+    groups = project["dependency-groups"]
+    listed = [*project["project"]["dependencies"], *groups["build"], *groups["dev"]]
+    names = {re.split(r"[<>=!~\[ ]", entry)[0] for entry in listed if isinstance(entry, str)}
     given = set(re.findall(r"^\| ([\w.-]+) \|", read("decisions/0001-dependencies.md"), re.M))
     assert given - {"package"} == names
 
