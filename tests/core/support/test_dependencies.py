@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 
 import pytest
@@ -41,7 +42,7 @@ def test_lower_bounds_exclude_known_faults() -> None:
 
 def test_what_is_needed_to_run_is_locked_to_the_versions_that_are_tested() -> None:
     run, everything = (
-        {line.rstrip("\\ ") for line in (ROOT / lock).read_text("utf-8").splitlines() if "==" in line}
+        set(re.findall(r"^\S+==[^ ]+", (ROOT / lock).read_text("utf-8"), re.MULTILINE))
         for lock in ("requirements-run.lock", "requirements.lock")
     )
     assert run < everything
