@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
 import subprocess
 import tempfile
@@ -24,14 +25,16 @@ _GAP = 8  # px between pictures that stand side by side
 
 def write_gif(path: Path, images: Iterable[Image.Image], rate: float) -> None:
     """Write an endless GIF; all pictures share the colours of the first."""
-    small: list[Image.Image] = []
-    palette: Image.Image | None = None
-    for image in images:
-        palette = palette or _palette(image)
-        small.append(image.quantize(palette=palette, dither=Image.Dither.NONE))
+    pictures = iter(images)
+    first = next(pictures)
+    palette = _palette(first)
+    small = (
+        image.quantize(palette=palette, dither=Image.Dither.NONE)
+        for image in itertools.chain((first,), pictures)
+    )
     shown = round(1000.0 / rate / 10.0) * 10  # GIF counts hundredths of a second
-    small[0].save(
-        path, save_all=True, append_images=small[1:], duration=max(20, shown), loop=0,
+    next(small).save(
+        path, save_all=True, append_images=small, duration=max(20, shown), loop=0,
         optimize=False, disposal=1,
     )  # fmt: skip
 
@@ -68,7 +71,7 @@ def write_video(path: Path, images: Iterable[Image.Image], rate: float) -> None:
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said)
         assert process.stdin is not None
         try:
-            for image in (first, *pictures):
+            for image in itertools.chain((first,), pictures):  # a minute is gigabytes
                 process.stdin.write(np.asarray(image).tobytes())
         except BrokenPipeError:  # it has ended; it says why
             pass

@@ -6,6 +6,8 @@ import shutil
 import subprocess
 import sys
 import types
+import weakref
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -119,6 +121,27 @@ def test_video_has_all_pictures(tmp_path: Path, suffix: str) -> None:
     found = np.frombuffer(done.stdout, np.uint8).reshape(3, *images[0].size[::-1], 3)
     for drawn, image in zip(found, images, strict=True):
         assert np.abs(drawn.astype(int) - np.asarray(image).astype(int)).mean() < 6.0
+
+
+@pytest.mark.parametrize("suffix", ["gif", "mp4"])
+def test_pictures_are_not_kept(tmp_path: Path, suffix: str) -> None:
+    made: list[weakref.ref[Image.Image]] = []
+    most = 0
+
+    def pictures() -> Iterator[Image.Image]:
+        nonlocal most
+        for grey in range(30):
+            image = Image.new("RGB", (64, 64), (grey, grey, grey))
+            made.append(weakref.ref(image))
+            most = max(most, sum(one() is not None for one in made))
+            yield image
+
+    write = encode_film.write_gif if suffix == "gif" else encode_film.write_video
+    try:
+        write(tmp_path / f"a.{suffix}", pictures(), 25.0)
+    except MissingLibraryError:
+        pytest.skip("the extra film is not installed")
+    assert most < 5
 
 
 def test_a_package_without_ffmpeg_for_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
