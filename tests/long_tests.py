@@ -35,6 +35,7 @@ LONG = (
     "tests/cli/test_kills.py",
     "tests/cli/test_simulate_failures.py::test_interrupted_runs_can_be_read",
     "tests/core/planning/process/test_hostile.py::test_the_one_that_started_it_may_be_killed",
+    "tests/core/crowd/contact/test_places.py::test_crushes_stay_out_of_what_is_solid",
     "tests/core/recording/reading/test_damage.py::test_a_file_cut_anywhere_reads_up_to_its_last",
     "tests/docs/test_site.py::test_the_notebook_runs",
     "tests/plugins/planners/dwa/test_outlines.py::test_a_wheelchair",

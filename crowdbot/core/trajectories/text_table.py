@@ -109,7 +109,8 @@ def split(path: Path, text: str) -> TextTable:
     else:
         header = _header_of_comments(comments, len(rows[0]))
     told = " ".join(comments)
-    return TextTable(header, rows, numbers, _frame_rate(told), length_unit(told) or 1.0)
+    rate = _frame_rate(path, comments)
+    return TextTable(header, rows, numbers, rate, length_unit(told) or 1.0)
 
 
 def _plain_viswalk(lines: list[str]) -> list[str]:
@@ -159,12 +160,19 @@ _STARTS = (
 )  # fmt: skip
 
 
-def _frame_rate(told: str) -> float | None:
-    found = _RATE.search(told)
-    if found is None:
-        return None
-    rate = float(next(group for group in found.groups() if group).replace(",", "."))
-    return rate if rate > 0.0 else None
+def _frame_rate(path: Path, comments: Sequence[str]) -> float | None:
+    """Return the number of frames per second that comments state, if any does.
+
+    Raises:
+        InputError: they state several.
+    """
+    found = [match for comment in comments for match in _RATE.finditer(comment)]
+    texts = (next(group for group in match.groups() if group) for match in found)
+    rates = sorted({float(text.replace(",", ".")) for text in texts} - {0.0})
+    if len(rates) > 1:
+        told = " and ".join(f"{rate:g}" for rate in rates)
+        raise InputError(f"{path}: its comments state {told} frames per second; keep the true one")
+    return rates[0] if rates else None
 
 
 def _separator(head: str) -> str:

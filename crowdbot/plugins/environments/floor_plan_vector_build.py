@@ -107,7 +107,21 @@ def _from_json(text: str, name: str) -> Any:
     try:
         return parse_foreign_json(text)
     except ValueError as error:
+        if _is_by_lines(text):
+            raise InputError(
+                f"{name}: has one feature in each line; make them a FeatureCollection: "
+                "jq -s '{type: \"FeatureCollection\", features: .}' FILE > plan.geojson"
+            ) from error
         raise InputError(f"{name}: is not JSON: {error}") from error
+
+
+def _is_by_lines(text: str) -> bool:
+    """Return True if the first line is a document of its own, as in newline-delimited GeoJSON."""
+    first = next((line for line in text.removeprefix("\ufeff").splitlines() if line.strip()), "")
+    try:
+        return isinstance(parse_foreign_json(first.removeprefix("\x1e")), dict)
+    except ValueError:
+        return False
 
 
 def _features(content: Any, name: str, aside: Counter[str]) -> Iterator[_Found]:

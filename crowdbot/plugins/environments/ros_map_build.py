@@ -46,7 +46,8 @@ class RosMap:
         resolution: side of a cell, m.
         origin: x, y (m) and yaw (rad) of the lower left corner of the image.
         negate: True if dark cells are free.
-        occupied, free: probability above which a cell is occupied, below which it is free.
+        occupied, free: probability above which a cell is occupied, below which it is free; in
+            ``raw`` 0 per cent is free, too.
         mode: ``raw``: pixels are per cent, from 0 to 100; ``scale``: as ``trinary``, but
             transparent pixels are unknown; ``trinary``: opacity counts as one more colour.
     """
@@ -227,4 +228,7 @@ def free_cells(
 ) -> NDArray[np.bool_]:
     """Return a mask of walkable cells (H, W)."""
     probability = found.occupancy(grey)
-    return ~(probability > found.occupied) if unknown_is_free else probability < found.free
+    if unknown_is_free:
+        return ~(probability > found.occupied)
+    known_free = (probability == 0.0) if found.mode == "raw" else np.zeros(grey.shape, np.bool_)
+    return np.asarray((probability < found.free) | known_free)

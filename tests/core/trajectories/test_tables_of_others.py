@@ -66,6 +66,16 @@ def test_a_table_without_names_is_refused(tmp_path: Path) -> None:
         READ.from_csv(agents=_written(tmp_path / "a.csv", ""))
 
 
+def test_two_frame_rates_are_refused(tmp_path: Path) -> None:
+    same = "# framerate: 25\n# 25.0 fps\n# id frame x/m y/m z/m\n"
+    _check(READ.from_csv(agents=_written(tmp_path / "same.txt", same)))
+    path = _written(tmp_path / "a.txt", same.replace("25.0 fps", "frame rate: 10"))
+    with pytest.raises(InputError, match="state 10 and 25 frames per second"):
+        READ.from_csv(agents=path)
+    with pytest.raises(InputError, match="state 10 and 25 frames per second"):
+        READ.from_eth_ucy(path)
+
+
 def test_frames_need_a_rate(tmp_path: Path) -> None:
     path = _written(tmp_path / "a.csv", "id frame x y z\n")
     with pytest.raises(InputError, match="times are numbers of frames; frame_rate=25"):

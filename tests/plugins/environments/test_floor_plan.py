@@ -18,6 +18,7 @@ from crowdbot.plugins.environments import floor_plan_build as build_module
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.place_build import build
 
+_FEATURE = '{"type": "Feature", "geometry": {"type": "Point", "coordinates": [1, 2]}}'
 L_SHAPE = "POLYGON ((0 0, 12 0, 12 4, 8 4, 8 9, 0 9, 0 0), (3 2, 4 2, 4 3, 5 3, 5 4, 3 4, 3 2))"
 
 
@@ -158,6 +159,8 @@ def test_a_bow_tie_is_repaired_with_a_warning(caplog: pytest.LogCaptureFixture) 
             "is not JSON: line 2, column 15",
         ),
         ("a.geojson", '{"type": "Topology"}', "type 'Topology'"),
+        ("a.geojson", f"\n{_FEATURE}\n{_FEATURE}\n", "one feature in each line"),
+        ("a.geojson", f"\x1e{_FEATURE}\n\x1e{_FEATURE}\n", "one feature in each line"),
         ("a.geojson", '{"type": "Polygon", "coordinates": [[1]]}', "a Polygon is damaged"),
         ("a.geojson", "[" * 100_000, "is not JSON"),
         (
@@ -293,6 +296,8 @@ def test_raw_pixels_are_per_cent(tmp_path: Path, negate: int) -> None:
     assert _solid_area(parts) == pytest.approx(1.0)
     unknown = _plan(file=str(tmp_path / "map.yaml"), tolerance=0.0, unknown="free")
     assert _solid_area(unknown) == 0.0
+    none = _plan(file=_file(tmp_path, "none.yaml", f"{text}free_thresh: 0\n"), tolerance=0.0)
+    assert _floor(none).area == pytest.approx(_floor(parts).area - 0.25)  # 10 % is not free
 
 
 @pytest.mark.parametrize(

@@ -76,6 +76,17 @@ def longest_part(path: Path, topics: Mapping[str, Columns], notes: list[str]) ->
     return {t: c.only(numbers[t] == chosen) if t in numbers else c for t, c in topics.items()}
 
 
+def tell_disorder(topics: Mapping[str, Columns], notes: list[str]) -> None:
+    """Note where stamps go back from one message to the next; rows are sorted by them."""
+    for topic, columns in topics.items():
+        back = np.diff(columns.stamp[np.diff(columns.message, prepend=-1) > 0])
+        if count := np.count_nonzero(back < 0):
+            notes.append(
+                f"stamps of {topic} go back {count} times, by up to {-back.min() / 1e9:.3g} s: "
+                "its messages are sorted by stamp"
+            )
+
+
 def common_clock(robot: Columns, people: Columns, notes: list[str]) -> bool:
     """Return True if the stamps of two topics are of one clock, False to take times of recording.
 

@@ -11,7 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crowdbot.core.trajectories.bag.identities as identities
-from crowdbot.core.trajectories.bag.clocks import common_clock, filled, longest_part
+from crowdbot.core.trajectories.bag.clocks import (
+    common_clock,
+    filled,
+    longest_part,
+    tell_disorder,
+)
 from crowdbot.core.trajectories.bag.columns import Columns, Seen, columns_of
 from crowdbot.core.trajectories.bag.frames import TF, TF_STATIC, Edge, FrameTree, edges_of
 from crowdbot.core.trajectories.bag.into_one_frame import into_one_frame
@@ -154,6 +159,7 @@ class _Reading:
         for name, columns in topics.items():
             if not by_stamp or not columns.stamp.any():
                 topics[name] = replace(columns, stamp=columns.log)
+        tell_disorder(topics, self._notes)
         return by_stamp
 
     def _names(self, people: Columns | None) -> list[str]:

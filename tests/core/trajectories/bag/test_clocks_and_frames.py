@@ -93,6 +93,16 @@ def test_a_reset_in_the_middle(tmp_path: Path) -> None:
     assert len(run.t) == len(TIMES)
 
 
+def test_stamps_in_disorder_are_told(tmp_path: Path) -> None:
+    """A late message and one that overtook it, as over a network."""
+    rows = robot_rows()
+    (topic, first, late), (_, second, soon) = rows[4:6]
+    rows[4:6] = [(topic, first, soon), (topic, second, late)]
+    bag = write(tmp_path / "bag", rows + marker_rows())
+    with pytest.warns(RecordingWarning, match="/odom go back 1 times, by up to 0.1 s: its"):
+        check_walkers(read(bag))
+
+
 def test_a_reset_of_one_topic_alone(tmp_path: Path) -> None:
     rows = _later(robot_rows(TIMES[:12]), 100.0) + _later(robot_rows(), 200.0)
     bag = write(tmp_path / "bag", rows + _later(marker_rows(), 200.0))
