@@ -130,9 +130,12 @@ class RawTable:
 
     def _number(self, column: str, row: int, cell: Any) -> float:
         try:
-            return as_number(cell)
+            number = as_number(cell)
         except (TypeError, ValueError) as error:
             raise InputError(f"{self.where(row)}: {column}: {error}") from error
+        if math.isinf(number):
+            raise InputError(f"{self.where(row)}: {column} is infinite; leave unknown cells empty")
+        return number
 
     def _ticks(self, column: str, row: int, cell: Any) -> int:
         try:

@@ -63,6 +63,8 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     """
     known = list(known)
     table = split(path, input_text(path, LARGEST_TABLE))
+    if not table.rows:
+        raise InputError(f"{path}: the table has no rows")
     if not table.header:
         raise InputError(
             f"{path}:{table.lines[0]}: the table has no header row that names its columns: write "
@@ -99,6 +101,9 @@ def split(path: Path, text: str) -> TextTable:
     first = next((line for line in lines if line.strip() and line not in comments), "")
     if not first:
         raise InputError(f"{path}:1: the file is empty")
+    for start, other in _DOCUMENTS.items():
+        if first.strip().startswith(start) or first.strip() == "[":
+            raise InputError(f"{path}: is {other}, not a table of rows; convert it to CSV")
     mark = _separator(first)
     plain = "\n".join("" if line.lstrip().startswith(_COMMENTS) else line for line in lines)
     rows, numbers = _rows(path, plain, mark)
@@ -155,6 +160,8 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
 
 
 _VISWALK = "$PEDESTRIAN:"
+#: How files begin that are not tables.
+_DOCUMENTS = {"{": "JSON", "[{": "JSON", "[[": "JSON", "<": "XML or HTML"}
 _STARTS = (
     "id", "persid", "personid", "ped_id", "pers", "person", "t", "time", *FRAMES,
 )  # fmt: skip

@@ -155,14 +155,14 @@ def _geometry(content: dict[str, Any], name: str) -> Any:
     """Return a geometry; members of a collection that are null are left out, heights unknown."""
     kind = content["type"]
     members = content.get("geometries")
-    if kind == "GeometryCollection" and isinstance(members, list):
-        content = {**content, "geometries": [_placed(m) for m in members if m is not None]}
-    content = _placed(content)
     try:
+        if kind == "GeometryCollection" and isinstance(members, list):
+            content = {**content, "geometries": [_placed(m) for m in members if m is not None]}
+        content = _placed(content)
         with np.errstate(invalid="ignore"):  # NaN is reported separately
             return shape_of(content)
     except Exception as error:  # shapely raises many types for wrong nesting
-        raise InputError(f"{name}: a {kind} is damaged: {error}") from error
+        raise InputError(f"{name}: a {kind} is damaged: {str(error).strip()}") from error
 
 
 def _placed(content: Any) -> Any:
@@ -173,6 +173,8 @@ def _placed(content: Any) -> Any:
 
 
 def _with_heights(value: Any) -> Any:
+    if isinstance(value, bool):
+        raise ValueError(f"{str(value).lower()} is not a number")
     if not isinstance(value, list):
         return value
     if len(value) > 2 and isinstance(value[0], (int, float)):

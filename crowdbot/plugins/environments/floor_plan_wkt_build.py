@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
 from crowdbot.plugin import InputError
@@ -57,7 +58,8 @@ def _parts_of_wkt(text: str) -> Iterator[str]:
 
 def _one_of_wkt(part: str, name: str) -> Any:
     try:
-        return shapely.from_wkt(_SRID.sub("", part.strip().strip("\"';").strip(), count=1))
+        with np.errstate(invalid="ignore"):  # NaN is reported separately
+            return shapely.from_wkt(_SRID.sub("", part.strip().strip("\"';").strip(), count=1))
     except shapely.errors.ShapelyError as error:
         raise InputError(f"{name}: is not well-known text: {error}") from error
 

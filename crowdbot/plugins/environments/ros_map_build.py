@@ -5,6 +5,7 @@ Format: https://docs.nav2.org/configuration/packages/configuring-map-server.html
 
 from __future__ import annotations
 
+import logging
 import re
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
@@ -21,10 +22,13 @@ from crowdbot.plugin.for_environments import (
     read_document,
 )
 
+_LOG = logging.getLogger(__name__)
 #: Largest image, px; anything larger is a mistake.
 MOST_PIXELS = 64_000_000
 #: Default thresholds, those of ROS, by which the grey 205 is unknown.
 _OCCUPIED, _FREE = 0.65, 0.196
+#: Grey of unknown cells in the images of ROS.
+_UNKNOWN = 205 / 255
 #: Length of the beginning of a PNG image, up to its width and height, bytes.
 _PNG_HEADER = 24
 #: How a path begins that a shell, a launch file or a client of ROS resolves.
@@ -176,7 +180,7 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
     width, height, most = (int(header[k]) for k in (3, 4, 5))
     if not (0 < width * height <= MOST_PIXELS and 0 < most < 65536):
         raise InputError(f"{name}: {width} x {height} pixels up to {most} is not an image of a map")
-    rest = content[header.end() :]
+    rest = content[_first_pixel(header, width * height * (1 if most < 256 else 2)) :]
     try:
         if header[1] == b"P2":
             cells = np.array(rest.split()[: width * height], np.float64)
@@ -189,6 +193,18 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
     if (largest := int(cells.max())) > most:
         raise InputError(f"{name}: a pixel is {largest}, but its header says at most {most}")
     return cells.astype(np.float64).reshape(height, width) / most
+
+
+def _first_pixel(header: re.Match[bytes], size: int) -> int:
+    """Return where the pixels begin: after one blank, or what else makes their number right.
+
+    Programs of Windows end the header with two characters, and some with a comment.
+    """
+    content = header.string
+    tail = re.compile(rb"\n|[ \t]*#[^\n]*\n").match(content, header.end())
+    if header[1] == b"P5" and tail is not None and len(content) - tail.end() == size:
+        return tail.end()
+    return header.end()
 
 
 def _read_png(file: Path, content: bytes, alpha: Alpha) -> NDArray[np.float64]:
@@ -223,11 +239,21 @@ def _grey(image: Any, alpha: Alpha) -> NDArray[np.float64]:
     return np.asarray(grey)
 
 
+def _taken_for_free(found: RosMap) -> bool:
+    return bool(found.occupancy(np.array([_UNKNOWN]))[0] < found.free)
+
+
 def free_cells(
     found: RosMap, grey: NDArray[np.float64], *, unknown_is_free: bool
 ) -> NDArray[np.bool_]:
     """Return a mask of walkable cells (H, W)."""
     probability = found.occupancy(grey)
+    if found.mode == "trinary" and np.any(grey == _UNKNOWN) and _taken_for_free(found):
+        _LOG.warning(
+            "%s: %d cells are grey 205, which map savers write where nothing is known; with "
+            "free_thresh %g they are free, as nav2 takes them; with 0.196 they are not",
+            found.image, np.count_nonzero(grey == _UNKNOWN), found.free,
+        )  # fmt: skip
     if unknown_is_free:
         return ~(probability > found.occupied)
     known_free = (probability == 0.0) if found.mode == "raw" else np.zeros(grey.shape, np.bool_)

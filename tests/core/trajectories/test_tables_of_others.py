@@ -76,6 +76,23 @@ def test_two_frame_rates_are_refused(tmp_path: Path) -> None:
         READ.from_eth_ucy(path)
 
 
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("t,id,x,y\n0,1,0,0\n0.1,1,-inf,0\n", "x.csv:3: x is infinite; leave unknown cells empty"),
+        ("t,id,x,y\n", "the table has no rows"),
+        ('[\n {"t": 0, "id": 1, "x": 0, "y": 0}]', "is JSON, not a table of rows"),
+        ('{"t": [0]}', "is JSON, not a table of rows"),
+        ("<fcd-export/>", "is XML or HTML, not a table of rows"),
+    ],
+)
+def test_what_is_no_table_is_refused(tmp_path: Path, content: str, message: str) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text(content)
+    with pytest.raises(InputError, match=message):
+        READ.from_csv(agents=path)
+
+
 def test_frames_need_a_rate(tmp_path: Path) -> None:
     path = _written(tmp_path / "a.csv", "id frame x y z\n")
     with pytest.raises(InputError, match="times are numbers of frames; frame_rate=25"):

@@ -162,6 +162,11 @@ def test_a_bow_tie_is_repaired_with_a_warning(caplog: pytest.LogCaptureFixture) 
         ("a.geojson", f"\n{_FEATURE}\n{_FEATURE}\n", "one feature in each line"),
         ("a.geojson", f"\x1e{_FEATURE}\n\x1e{_FEATURE}\n", "one feature in each line"),
         ("a.geojson", '{"type": "Polygon", "coordinates": [[1]]}', "a Polygon is damaged"),
+        (
+            "a.geojson",
+            '{"type": "Polygon", "coordinates": [[[0, 0], [true, 0], [9, 8], [0, 0]]]}',
+            "a Polygon is damaged: true is not a number",
+        ),
         ("a.geojson", "[" * 100_000, "is not JSON"),
         (
             "a.geojson",
@@ -282,6 +287,31 @@ def test_thresholds_decide_what_is_unknown(tmp_path: Path) -> None:
     strict = _map(tmp_path, picture, occupied_thresh=0.1, free_thresh=0.1)
     taken = _plan(file=strict, tolerance=0.0, unknown="free")
     assert _solid_area(taken) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b" # brightest\n"])
+def test_pixels_begin_after_the_header_of_any_program(tmp_path: Path, end: bytes) -> None:
+    cells = np.full((6, 8), 254, np.uint8)
+    cells[[0, -1]], cells[:, [0, -1]] = 0, 0
+    _file(tmp_path, "m.pgm", b"P5\n8 6\n255" + end + cells.tobytes())
+    text = "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\n"
+    parts = _plan(file=_file(tmp_path, "map.yaml", text), tolerance=0.0)
+    assert _floor(parts).bounds == pytest.approx((0.5, 0.5, 3.5, 2.5))
+
+
+def test_unknown_cells_that_count_as_free_are_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    cells = np.full((6, 8), 205, np.uint8)
+    cells[1:-1, 1:-1] = 254
+    _file(tmp_path, "m.pgm", b"P5\n8 6\n255\n" + cells.tobytes())
+    text = "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\nfree_thresh: "
+    with caplog.at_level(logging.WARNING):
+        strict = _plan(file=_file(tmp_path, "a.yaml", text + "0.196\n"), tolerance=0.0)
+        assert caplog.text == ""
+        loose = _plan(file=_file(tmp_path, "b.yaml", text + "0.25\n"), tolerance=0.0)
+    assert _floor(strict).area < _floor(loose).area == pytest.approx(12.0)
+    assert "m.pgm: 24 cells are grey 205" in caplog.text
 
 
 @pytest.mark.parametrize("negate", [0, 1])
