@@ -5,6 +5,7 @@ Nothing here needs Drake.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -31,6 +32,8 @@ from crowdbot.errors import PluginError, did_you_mean, nearest
 
 Format = Literal["sdf", "urdf"]
 _ROUND = ("sphere", "cylinder", "ellipsoid")
+#: Shapes that a link collides as; Drake drops others without an error.
+_SOLID = ("box", "capsule", "empty", *_ROUND)
 _EXPAND = (
     "expand them into a file: xacro ROBOT.urdf.xacro > ROBOT.urdf, where ROS is installed, or "
     "after 'pip install xacro'"
@@ -296,10 +299,13 @@ def _checked(described: Description) -> Description:
         described.link(joint.parent)
         described.link(joint.child)
     for name, link in described.links.items():
-        if any(shape.tag == "mesh" and not is_piece(shape) for shape in collisions(link)):
+        for shape in collisions(link):
+            kind = re.split("[:}]", shape.tag)[-1]  # without the prefix of Drake's own shapes
+            if kind in _SOLID or is_piece(shape):
+                continue
+            way = ", or read the file with read_published" if kind == "mesh" else ""
             raise PluginError(
-                f"link '{name}' collides as a mesh; use box, cylinder, sphere or capsule, or "
-                "read the file with read_published"
+                f"link '{name}' collides as a {kind}; use box, cylinder, sphere or capsule{way}"
             )
     return described
 

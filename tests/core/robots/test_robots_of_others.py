@@ -347,3 +347,17 @@ def test_names_that_stand_twice_are_refused(more: str, what: str) -> None:
 def test_an_empty_text_is_told_as_such(text: str) -> None:
     with pytest.raises(PluginError, match="description is empty"):
         read_description(text)
+
+
+@pytest.mark.parametrize(
+    "shape", ["plane", "cone", "heightmap", "polyline", "image", "cilinder", "Box"]
+)
+def test_shapes_that_would_be_lost_are_refused(shape: str) -> None:
+    """Drake leaves out shapes that it does not know, and cannot drive with a plane."""
+    body = "<cylinder><radius>0.2</radius><length>0.2</length></cylinder>"
+    cart = CARTS["links at the axle"]
+    assert body in cart
+    with pytest.raises(PluginError, match=f"'base_link' collides as a {shape}; use box, cylinder"):
+        read_description(cart.replace(body, f"<{shape}/>"))
+    kept = '<drake:capsule xmlns:drake="drake.mit.edu" radius="0.2"/>'
+    assert read_description(cart.replace(body, kept)).links
