@@ -106,13 +106,13 @@ class Loader:
         for key in ("base", "scenario"):
             if key in entries and entries[key].node.entries:
                 part = entries[key]
-                entries[key] = replace(part, node=self._extended(part.node, file))
+                entries[key] = replace(part, node=self._extended(part.node, file, within=True))
         return self._extended(replace(root, value=entries), file)
 
     def _below(self, node: Node, file: _File, depth: int) -> Node:
         """Resolve the innermost maps of a map of maps, ``depth`` deep."""
         if depth == 0:
-            return self._extended(node, file)
+            return self._extended(node, file, within=True)
         if not node.entries:
             return node
         below = {
@@ -121,7 +121,8 @@ class Loader:
         }
         return replace(node, value=below)
 
-    def _extended(self, node: Node, file: _File) -> Node:
+    def _extended(self, node: Node, file: _File, *, within: bool = False) -> Node:
+        """Return a map over the files that it extends; ``within`` a scenario they are parts."""
         if "extends" not in node.entries:
             return node
         entries = dict(node.entries)
@@ -130,7 +131,8 @@ class Loader:
         items = extends.node.value if isinstance(extends.node.value, tuple) else (extends.node,)
         tree = Node(node.mark, {}, implied=True)
         for item in items:
-            tree = merge(tree, self._include(item, file))
+            found = self._include(item, file)
+            tree = merge(tree, self._part(found, item) if within else found)
         return merge(tree, own if own.entries else replace(own, implied=True))
 
     def _include(self, item: Node, file: _File) -> Node:
@@ -138,6 +140,16 @@ class Loader:
         if found is None:
             return Node(item.mark, {}, implied=True)
         return self._read(found, item.mark)
+
+    def _part(self, found: Node, item: Node) -> Node:
+        """Return a part of a scenario; that of a whole document, which is an error."""
+        if "crowdbot" not in found.entries:
+            return found
+        text = f"'{item.value}' is a whole document, and this wants a part of a scenario"
+        hint = f"write 'extends: {item.value}' at the top, beside 'crowdbot'"
+        self._add("E102", text, item.mark, hint)
+        of = found.child("scenario") or found.child("base")
+        return replace(of, implied=True) if of is not None else Node(item.mark, {}, implied=True)
 
     def _named_file(self, item: Node, file: _File, code: str, wanted: str) -> _File | None:
         """Return the file that a value names, if it may be read; otherwise record the error."""

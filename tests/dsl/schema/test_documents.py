@@ -63,6 +63,7 @@ BEYOND = {
     "E215": "a hash",
     "E103": "fields may come from another file, so that none is required",
     "E115": "a rule between fields",
+    "E102_document": "another file",
     "E102_routing_kind": "the kind may come from another file",
     "E120_included": "the error is in another file",
     "E130": "names that lead to zones",
