@@ -107,21 +107,30 @@ def _index(
 
 def take_part(site: Site) -> list[tuple[str, str]]:
     """Return the commands with which a team takes part: what each does, and the command."""
-    name = site.suite
-    run = ("Run your planner in all scenarios.", f"crowdbot campaign {name} --planner mine.py:Mine")
-    first = [
-        ("Install crowdbot.", "pip install crowdbot"),
-        ("Write a planner to start from.", "crowdbot plugins new mine"),
-    ]
+    install = ("Install crowdbot.", "pip install crowdbot")
+    campaign = f"crowdbot campaign {site.suite} --planner"
     if site.round.planners == "sealed":
-        practise = f"{run[1]} --set crowd.seed.root=1" if site.hidden else run[1]
+        practise = f"{campaign} mine.py:Mine{' --set crowd.seed.root=1' if site.hidden else ''}"
         return [
-            *first,
+            install,
+            (
+                "Write a class Mine into mine.py; here is how.",
+                "crowdbot docs tutorial/first_planner",
+            ),
             ("Try it.", practise),
             ("Seal it, and send the file.", "crowdbot seal mine.py:Mine --team 'Us' --out us.cbs"),
         ]
-    hand_in = f"crowdbot bundle runs --suite {name} --planner Mine --team 'Us' --out us.cbz --check"
-    return [*first, run, ("Pack and check your runs, and send the file.", hand_in)]
+    write = "crowdbot plugins new mine --planner && pip install -e crowdbot-mine"
+    bundle = f"crowdbot bundle runs --suite {site.suite} --planner mine.give_way"
+    return [
+        install,
+        ("Have a planner written to start from, and change it.", write),
+        ("Run your planner in all scenarios.", f"{campaign} mine.give_way"),
+        (
+            "Pack and check your runs, and send the file.",
+            f"{bundle} --team 'Us' --out us.cbz --check",
+        ),
+    ]
 
 
 __all__ = ["INDEX", "LEADERBOARD", "Site", "take_part", "write_site"]

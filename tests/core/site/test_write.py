@@ -13,7 +13,9 @@ from crowdbot import cli
 from crowdbot.core.bundle.check_edition import late
 from crowdbot.core.bundle.manifest import Edition
 from tests.core.bundle.made_up_runs import make_bundle, write_suite
+from tests.paths import ROOT
 
+TEMPLATE = ROOT / "crowdbot" / "templates" / "planner" / "package"
 ROUND = "round: {closes: 2027-03-31, planners: sealed, contact: us@example.org}\n"
 
 
@@ -57,7 +59,10 @@ def test_bundles_are_ranked_where_a_round_takes_them(tmp_path: Path) -> None:
     assert cli.main(["challenge-page", str(suite), str(tmp_path), "--out", str(out)]) == 0
     page = (out / "index.html").read_text()
     assert "A &lt;b&gt;team&lt;/b&gt; · dwa" in page
-    assert "crowdbot bundle runs" in page
+    assert "crowdbot plugins new mine --planner" in page
+    assert (TEMPLATE / "give_way.py.tmpl").is_file()
+    assert "tiny.yaml --planner mine.give_way</pre>" in page
+    assert "tiny.yaml --planner mine.give_way --team" in page
 
 
 def test_bundles_of_another_suite_are_no_site(folder: Path, tmp_path: Path) -> None:
