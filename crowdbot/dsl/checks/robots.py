@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 from crowdbot.dsl.checks.facts import Facts
 from crowdbot.dsl.checks.known_places import known_place, standing_in
+from crowdbot.dsl.checks.person_goals import agents_of
 from crowdbot.dsl.checks.reach import areas_connected
+from crowdbot.dsl.scenario.person_goals import PersonGoal
 from crowdbot.dsl.scenario.scenario import Robot
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.dsl.spec.outlines import Point
@@ -91,6 +93,8 @@ def _check_robot(facts: Facts, place: Place, name: str, robot: Robot) -> Iterato
         hint = f"there is {missing:.3g} m too little room"
         yield Diagnostic("E143", text, facts.mark(*path, "start"), hint)
         return
+    if robot.task.person is not None and facts.scenario.crowd is not None:
+        yield from _check_way_to_person(facts, place, name, robot, robot.task.person)
     zone = facts.scenario.environment.zones.get(robot.task.zone or "")
     if zone is None:
         return  # already an error, or the goal is a person
@@ -99,6 +103,23 @@ def _check_robot(facts: Facts, place: Place, name: str, robot: Robot) -> Iterato
         text = f"no way leads robot '{name}' from {_at(start)} to zone '{robot.task.zone}'"
         hint = f"around {_at(goal.centre)}, for a body that is {2.0 * radius:g} m wide"
         yield Diagnostic("E143", text, facts.mark(*path, "goal", "zone"), hint)
+
+
+def _check_way_to_person(
+    facts: Facts, place: Place, name: str, robot: Robot, goal: PersonGoal
+) -> Iterator[Diagnostic]:
+    """Check that a way leads to where an agent starts, or to one of the places where it walks."""
+    start, radius = robot.task.start[:2], robot.model.half_width
+    agents = [agent for agent in agents_of(facts.crowd, goal) if not agent.portals]
+    body = max((agent.radius or facts.crowd.body.radius for agent in agents), default=0.0)
+    side = 2.0 * (goal.distance + goal.tolerance + radius + body)
+    places = [at for agent in agents for at in ((agent.x, agent.y), *agent.goals)]
+    around = [Area(centre=(x, y), size=(side, side)) for x, y in places]
+    if around and not any(_leads(facts, place, radius, start, area) for area in around):
+        text = f"no way leads robot '{name}' from {_at(start)} to {goal.person}"
+        hint = f"around {_at(places[0])}, for a body that is {2.0 * radius:g} m wide"
+        mark = facts.mark("robots", name, "task", "goal", "person")
+        yield Diagnostic("E143", text, mark, hint)
 
 
 def _leads(facts: Facts, place: Place, radius: float, start: Point, goal: Area) -> bool:

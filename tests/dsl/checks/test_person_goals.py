@@ -136,6 +136,33 @@ def test_what_fits_is_not_refused(goal: str, tmp_path: Path) -> None:
     assert _errors(tmp_path, DOCUMENT.replace("GOAL", f"{{kind: {goal}}}")) == ()
 
 
+@pytest.mark.parametrize("kind", ["approach", "follow", "accompany", "lead, zone: exit"])
+def test_a_person_to_whom_no_way_leads(kind: str, tmp_path: Path) -> None:
+    text = DOCUMENT.replace("GOAL", f"{{kind: {kind}, person: {{agent: 3}}}}")
+    wall = "walls: {w: {start: [2 m, 0 m], end: [2 m, 10 m]}}\n    zones: {floor"
+    walled = text.replace("zones: {floor", wall)
+    found = _errors(tmp_path, walled)
+    told = "no way leads robot 'robot' from (1, 5) to agent 3"
+    (error,) = [d for d in found if d.message == told]
+    assert error.code == "E143"
+    line = walled.splitlines()[error.mark.line]
+    assert line[error.mark.column :].startswith("{agent")
+    gap = walled.replace("end: [2 m, 10 m]", "end: [2 m, 8 m]")
+    assert _errors(tmp_path, gap) == ()
+
+
+def test_a_person_who_comes_to_this_side_can_be_reached(tmp_path: Path) -> None:
+    text = DOCUMENT.replace("GOAL", "{kind: follow, person: {agent: 4}}")
+    walled = text.replace(
+        "zones: {floor", "walls: {w: {start: [2 m, 0 m], end: [2 m, 10 m]}}\n    zones: {floor"
+    )
+    assert [d.code for d in _errors(tmp_path, walled)] == ["E143"]
+    there = walled.replace(
+        "x: 8 m, y: 5 m, goals: [[12 m, 5 m]]", "x: 8 m, y: 5 m, goals: [[1 m, 9 m]]"
+    )
+    assert "E143" not in {d.code for d in _errors(tmp_path, there) if "robot" in d.message}
+
+
 def test_two_robots_cannot_lead_the_same_person(tmp_path: Path) -> None:
     goal = "{kind: lead, zone: exit, person: {agent: 3}}"
     other = (
