@@ -21,7 +21,7 @@ from crowdbot.cli.app.streams import prepare_streams
 from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.support.gc_throttle import collect_seldom
 from crowdbot.core.support.skip_final_gc import end_without_collecting
-from crowdbot.errors import CrowdbotError, PluginError, SpecError, printable
+from crowdbot.errors import CrowdbotError, InputError, PluginError, SpecError, printable
 
 __all__ = ["command_names", "main"]
 
@@ -69,6 +69,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(argv: Sequence[str] | None) -> int:
+    if re.fullmatch(r"\s*(-\d+|0+)\s*", os.environ.get("NUMBA_NUM_THREADS", "")):
+        raise InputError("the environment's NUMBA_NUM_THREADS must be above 0, or not set")
     words = sys.argv[1:] if argv is None else list(argv)
     if argv is None and not _LOADING.isdisjoint(words[:1]):
         collect_seldom()

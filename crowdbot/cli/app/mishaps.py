@@ -38,12 +38,22 @@ def internal_error(error: Exception) -> str:
 
 def system_error(error: OSError) -> str:
     """Return one line that names the file, or the limit that was reached."""
+    if error.filename is None and error.errno == errno.ENOENT and _has_no_folder():
+        return "error: the current folder is gone; change to one that exists"
     where = error.filename or "operating system"
     text = f"error: {where}: {error.strerror or error}"
     if error.errno == errno.EMFILE:
         limit = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
         text += f" (this process may open {limit}; raise it with 'ulimit -n')"
     return text
+
+
+def _has_no_folder() -> bool:
+    try:
+        os.getcwd()  # noqa: PTH109 - asks whether there is one
+    except FileNotFoundError:
+        return True
+    return False
 
 
 def left_by(error: BaseException) -> str:

@@ -19,10 +19,18 @@ _NAME = "crowdbot.plain"
 def prepare_streams() -> None:
     """Replace closed streams, and let open ones print something for every character."""
     _fill_closed()
+    _drop_sizes_of_nothing()
     codecs.register_error(_NAME, _plainly)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors=_NAME)
+
+
+def _drop_sizes_of_nothing() -> None:
+    """Forget a terminal of no width or height, as some containers have: nothing fits in it."""
+    for name in ("COLUMNS", "LINES"):
+        if os.environ.get(name, "1").strip().strip("0") == "":
+            del os.environ[name]
 
 
 def _fill_closed() -> None:
