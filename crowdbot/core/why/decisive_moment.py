@@ -53,7 +53,7 @@ def decisive_moment(run: Trajectories, ended: EndedPart) -> DecisiveMoment:
     contacts = person_contacts(run, JUMP_SPEED, CONTACT_TOL, RELEASE_GAP)
     last = float(run.t[-1])
     if ended.status == Ending.PLANNER_FAILED:
-        return DecisiveMoment(cause=Cause.PLANNER, t=last, agent=_nearest(run, len(run.t) - 1))
+        return DecisiveMoment(cause=Cause.PLANNER, t=last)
     if ended.status == Ending.TOPPLED:
         t = last if ended.toppled_time is None else ended.toppled_time
         return DecisiveMoment(cause=Cause.TOPPLED, t=t, agent=_last_touch(contacts, t))

@@ -91,7 +91,7 @@ def explain(directory: Path, robot: str | None = None, *, sensors: bool = True) 
         if run.robot is None:
             raise InputError(f"{directory}: there is no robot in this run")
         moment = decisive_moment(run, ended)
-        said = what_happened(run, moment)
+        said = what_happened(run, moment, ended.reason)
         if sensors:
             said += what_was_seen(run, moment, recording.scans(robot=robot))
     return Explanation(

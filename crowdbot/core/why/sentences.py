@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from crowdbot.core.geometry.footprint import body_side
 from crowdbot.core.recording.reading.scans import ReplayScan
+from crowdbot.core.support.text import plural
 from crowdbot.core.trajectories.encounters import encounter, people, robot_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.worst_moment import JUMP_SPEED
@@ -29,12 +31,22 @@ _HAPPENED = {
     Cause.STRUCK: "a person walked into the robot",
     Cause.CLOSE: "the robot was closest to a person",
 }
+#: The beginning of a reason that names the planner, and its file.
+_PLANNER = re.compile(r"^planner '[^']*'( \([^)]*\))?:? ")
+#: Sensors that have a line of their own.
+_NEAREST = 4
 
 
-def what_happened(run: Trajectories, moment: DecisiveMoment) -> list[str]:
-    """Return what happened, and what the person and the robot did."""
+def what_happened(run: Trajectories, moment: DecisiveMoment, reason: str = "") -> list[str]:
+    """Return what happened, and what the person and the robot did.
+
+    Args:
+        reason: why the run ended; told if the planner failed.
+    """
     sample = max(0, int(np.searchsorted(run.t, moment.t, side="right")) - 1)
     happened = _HAPPENED[moment.cause].format(stood=moment.stood)
+    if moment.cause == Cause.PLANNER and reason:
+        happened += f": {_PLANNER.sub('', reason)}"
     return [f"{moment.t:.1f} s: {happened}", *_person(run, moment, sample), _robot(run, sample)]
 
 
@@ -75,7 +87,16 @@ def _robot(run: Trajectories, sample: int) -> str:
 
 
 def _seen(scans: Iterable[ReplayScan], t: float) -> Iterator[str]:
-    """Yield the nearest return of each sensor of distances at the last reading before."""
+    """Yield the nearest returns of sensors of distances at their last reading before."""
+    found = sorted(_returns(scans, t))
+    for _, text in found[:_NEAREST]:
+        yield text
+    if len(found) > _NEAREST:
+        yield f"{plural(len(found) - _NEAREST, 'further sensor')} saw nothing nearer"
+
+
+def _returns(scans: Iterable[ReplayScan], t: float) -> Iterator[tuple[float, str]]:
+    """Yield each sensor's least distance, m, and a sentence about it."""
     for scan in scans:
         k = int(np.searchsorted(scan.t, t, side="right")) - 1
         if k < 0:
@@ -84,12 +105,13 @@ def _seen(scans: Iterable[ReplayScan], t: float) -> Iterator[str]:
         seen = np.isfinite(row)
         age = t - float(scan.t[k])
         if not seen.any():
-            yield f"{scan.sensor} saw nothing within {scan.range_max:g} m, {age:.2f} s before"
+            text = f"{scan.sensor} saw nothing within {scan.range_max:g} m, {age:.2f} s before"
+            yield math.inf, text
             continue
         beam = int(np.argmin(np.where(seen, row, np.inf)))
         angle = scan.mount[3] + float(np.mean(scan.angles) if scan.cone else scan.angles[beam])
         side = _SIDES[body_side(angle)]
-        yield f"{scan.sensor} saw {row[beam]:.2f} m {side}, {age:.2f} s before"
+        yield float(row[beam]), f"{scan.sensor} saw {row[beam]:.2f} m {side}, {age:.2f} s before"
 
 
 def _logged(run: Trajectories, t: float) -> Iterator[str]:

@@ -49,7 +49,7 @@ CASES = {
     Cause.STRUCK: (drive(1.0, line(T, (-3, 0), (1.5, 0))), ended("arrived", goal_time=10.0), 0),
     Cause.CLOSE: (drive(1.0, line(T, (5, 2), (0, 0))), ended("arrived", goal_time=10.0), 0),
     Cause.TOPPLED: (drive(0.5, AHEAD), ended("toppled", toppled_time=5.5), 0),
-    Cause.PLANNER: (drive(0.5, line(T, (3, 3), (0, 0))), ended("planner_failed"), 0),
+    Cause.PLANNER: (drive(0.5, line(T, (3, 3), (0, 0))), ended("planner_failed"), None),
 }
 
 
