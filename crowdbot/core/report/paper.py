@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.lead import LeadColumn, main_columns
 from crowdbot.core.report.methods import methods
+from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.statistics import Comparison, Summary
 from crowdbot.core.statistics.estimate_text import estimate_text
 from crowdbot.core.support.atomic_write import atomic_write
@@ -41,6 +42,8 @@ STYLE: Any = {
 }  # fmt: skip
 #: Width of a page's text, and height without planners and of each, inches.
 _WIDTH, _MARGIN, _ROW = 7.0, 0.75, 0.24
+#: Most rows of a table that fit on a page.
+_ROWS = 48
 #: Metadata without times, so that equal results give equal bytes.
 _META: dict[str, dict[str, Any]] = {
     "pdf": {"CreationDate": None, "Producer": "crowdbot"},
@@ -133,17 +136,23 @@ def _named(column: LeadColumn) -> str:
 
 
 def _comparisons(contents: Contents, columns: Sequence[LeadColumn]) -> str:
-    summary = contents.figures.headline
+    summary, known = contents.figures.headline, set(contents.heading.references)
     roles = {(c.scores[0].metric, c.scores[0].variant): c.role for c in columns}
+    found = [c for c in summary.comparisons if (c.metric, c.variant) in roles]
+    shown = [c for c in found if not {c.a, c.b} <= known] or found
+    caption = _compared(summary)
+    if len(shown) > _ROWS:
+        shown = [c for c in shown if roles[c.metric, c.variant] == PRIMARY.role] or shown
+        caption += f" Only {PRIMARY.role} is shown."
     rows = [
         [roles[c.metric, c.variant], c.a, c.b, " ".join(estimate_text(c.difference)),
          _p(c), str(c.pairs), str(c.draws), c.verdict]
-        for c in summary.comparisons if (c.metric, c.variant) in roles
+        for c in shown
     ]  # fmt: skip
     if not rows:
         return ""
     head = ["score", "a", "b", "a − b", "p (Holm)", "pairs", "draws", "a is"]
-    return _table(_compared(summary), "comparisons", "lllrrrrl", head, rows)
+    return _table(caption, "comparisons", "lllrrrrl", head, rows)
 
 
 def _compared(summary: Summary) -> str:

@@ -6,6 +6,7 @@ import re
 
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.paper import escaped, pictures, tex
+from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from tests.core.report.report_cases import AXES, DRAWN, campaign, contents
 from tests.core.report.test_page import METRICS
 
@@ -30,6 +31,28 @@ def test_tables_have_a_row_for_each_planner_and_columns_that_fit() -> None:
     assert "dwa & 18 & " in scores
     assert r"my\_50\%\_\{plan\} & 18 & " in scores
     assert "\\includegraphics[width=\\linewidth]{report.pdf}" in text
+
+
+def test_pairs_of_references_are_left_out_and_few_rows_remain() -> None:
+    few = {
+        "axes": {"density": ("d1", "d2")},
+        "metrics": [s.metric for s in MAIN_SCORES],
+        "failures": 0,
+    }
+    skill = {f"p{i}": i / 10.0 for i in range(8)}
+    results = campaign(skill, **few)  # type: ignore[arg-type]
+    known = tuple(skill)[1:]
+    pairs = []
+    for references in ((), known):
+        text = tex(contents(results, references=references), "x.pdf")
+        table = text.partition("tab:comparisons")[2].partition("\\bottomrule")[0]
+        rows = [row.split(" & ")[:3] for row in table.splitlines() if row.endswith("line")]
+        pairs.append([row for row in rows if row[0] != "score"])
+        assert ("Only safe efficiency is shown." in text) == (not references)
+    assert len(pairs[0]) == 28
+    assert {score for score, _, _ in pairs[0]} == {"safe efficiency"}
+    assert {name for _, *both in pairs[1] for name in both} == set(skill)
+    assert all("p0" in both for _, *both in pairs[1])
 
 
 def test_wide_tables_shrink_to_the_text() -> None:
