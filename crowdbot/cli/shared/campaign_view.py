@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from crowdbot.cli.output.campaign_hints import OwnFirst, known_runs
 from crowdbot.cli.output.say import say
-from crowdbot.core.support.text import plural
+from crowdbot.core.support.text import plural, rough_time
 from crowdbot.core.types.ending import has_failed, shown
 
 if TYPE_CHECKING:
@@ -128,18 +128,14 @@ def _busy(job: Job, progress: object) -> str:
 
 def _rate(state: State) -> str:
     ended = len(state.plan.jobs) - len(state.left)
-    return f"{ended} of {len(state.plan.jobs)} jobs, about {_minutes(state.remaining)} left"
-
-
-def _minutes(seconds: float) -> str:
-    return f"{seconds / 60.0:.0f} min" if seconds >= 90.0 else f"{seconds:.0f} s"
+    return f"{ended} of {len(state.plan.jobs)} jobs, about {rough_time(state.remaining)} left"
 
 
 def _line(state: State, job: Job, done: Done) -> str:
     ended = len(state.plan.jobs) - len(state.left)
     ended_as = "done" if job.kind == "crowd_alone" else done.status  # people cannot be too late
     how = f"failed: {_first(done.error)}" if done.error else ended_as
-    left = f", {_minutes(state.remaining)} left" if state.left else ""
+    left = f", {rough_time(state.remaining)} left" if state.left else ""
     return f"[{ended}/{len(state.plan.jobs)}] {job.title}: {how} ({done.wall_time:.1f} s{left})"
 
 

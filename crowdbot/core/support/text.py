@@ -7,6 +7,11 @@ import re
 _PART = re.compile(r"[^_+-]*[_+-]|[^_+-]+")
 
 
+def rough_time(seconds: float) -> str:
+    """Return a time that is only estimated: whole seconds, or minutes."""
+    return f"{seconds / 60.0:.0f} min" if seconds >= 90.0 else f"{seconds:.0f} s"
+
+
 def plural(count: int, noun: str) -> str:
     """Return a count and its noun, such as ``1 pair`` and ``2 pairs``."""
     return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -6,13 +6,13 @@ from crowdbot.core.trajectories.encounters import robot_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.view.shapes import Drawing, Path, Text
 from crowdbot.core.view.snapshot import ground, people_at, robot_at, sample_at
-from crowdbot.core.view.world import LEFT, Map
+from crowdbot.core.view.world import Map
 from crowdbot.core.why.decisive_moment import DecisiveMoment
 
 #: Times of the pictures before the moment, s.
 BEFORE = (5.0, 4.0, 3.0, 2.0, 1.0, 0.0)
 _RADIUS = 3.5  # m, half the width of a picture
-_SCALE, _TOP = 34.0, 26.0  # px per metre, px
+_SCALE, _TOP, _SIDE = 34.0, 26.0, 6.0  # px per metre, px, px
 
 
 def strip(run: Trajectories, moment: DecisiveMoment) -> list[Drawing]:
@@ -24,7 +24,7 @@ def strip(run: Trajectories, moment: DecisiveMoment) -> list[Drawing]:
     last = sample_at(run, moment.t)
     robot = robot_of(run)
     x, y = float(robot.x[last]), float(robot.y[last])
-    world = Map(x - _RADIUS, y - _RADIUS, x + _RADIUS, y + _RADIUS, _SCALE, _TOP)
+    world = Map(x - _RADIUS, y - _RADIUS, x + _RADIUS, y + _RADIUS, _SCALE, _TOP, _SIDE)
     return [_picture(run, moment, t, world) for t in times]
 
 
@@ -35,7 +35,7 @@ def _picture(run: Trajectories, moment: DecisiveMoment, t: float, world: Map) ->
     before = moment.t - t
     title = f"{t:.1f} s" + (f", {before:.0f} s before" if before > 0.5 else "")
     return Drawing(
-        width=width + 2 * LEFT,
+        width=width + 2 * _SIDE,
         height=height + 2 * _TOP,
         map_box=world.box,
         title=title,

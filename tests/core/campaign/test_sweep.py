@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -95,6 +96,22 @@ def test_the_verdict_says_what_is_left_on_other_people(
     assert "<script" not in page
     assert as_json(found)["defaults"]["score"]["value"] == 0.5
     assert as_json(found)["trials"][0]["parameters"] == {"speed": "1"}
+
+
+def test_a_check_with_the_same_people_says_nothing(tmp_path: Path) -> None:
+    usual, best = tried("", 0.5, 0.5), tried("1", 0.6, 0.6)
+    placed = replace(best, motions=frozenset({"a", "b"}), motions_elsewhere=frozenset({"a", "b"}))
+    drawn = replace(placed, motions_elsewhere=frozenset({"a", "c"}))
+    for one, is_told in ((placed, True), (drawn, False)):
+        text = " ".join(verdict(Sweep(request=request(tmp_path), tried=(one,), usual=usual)))
+        assert ("the same people" in text) == is_told
+        assert ("as large there" in text) != is_told
+
+
+def test_rounds_are_trials_and_checks(tmp_path: Path) -> None:
+    assert request(tmp_path).rounds == 4 + 1 + 1 + 1
+    assert request(tmp_path, check=0).rounds == 4 + 1
+    assert request(tmp_path, how="grid", check=9).rounds == 3 + 1 + 3 + 1
 
 
 def test_sensitivity_is_the_share_between_values(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,6 +13,7 @@ import typer
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.scoring.four_scores import PRIMARY
+from crowdbot.core.support.text import rough_time
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
@@ -92,8 +94,13 @@ def sweep(
         plugins=plugin or (),
     )  # fmt: skip
 
+    began, done = time.monotonic(), 0
+
     def execute(plan: Plan, title: str) -> State:
-        say(title, err=True)
+        nonlocal done
+        left = (time.monotonic() - began) / max(1, done) * (request.rounds - done)
+        say(title + (f" (about {rough_time(left)} left)" if done else ""), err=True)
+        done += 1
         return run_plan(plan, worker_count(jobs), None)
 
     try:

@@ -100,6 +100,11 @@ def parse_axes(texts: Sequence[str]) -> tuple[ParameterAxis, ...]:
     return axes
 
 
+def trial_count(axes: Sequence[ParameterAxis], how: How, count: int, steps: int) -> int:
+    """Return the number of trials; a few less where chance repeats one."""
+    return math.prod(len(axis.steps(steps)) for axis in axes) if how == "grid" else count
+
+
 def run_trials(
     axes: Sequence[ParameterAxis], how: How, count: int, seed: int, steps: int,
     score: Callable[[Trial], float | None], better: str,

@@ -81,6 +81,9 @@ def _fit(sweep: Sweep, best: Tried) -> Iterator[str]:
     if best.elsewhere is None or best.elsewhere.value is None or best.score.value is None:
         yield "It was not tried on other people: some of its lead may be chance."
         return
+    if not best.met_others:
+        yield "Every seed gives these scenarios the same people: nothing is known about others."
+        return
     yield f"On people that the search did not see: {joined_text(best.elsewhere)}."
     if usual is None or usual.elsewhere is None or usual.elsewhere.value is None:
         return

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core.campaign.plan import Plan, make_plan
 from crowdbot.core.campaign.request import CampaignRequest
 from crowdbot.core.campaign.run import State
-from crowdbot.core.campaign.sweep.axes import How, ParameterAxis, Trial, run_trials
+from crowdbot.core.campaign.sweep.axes import How, ParameterAxis, Trial, run_trials, trial_count
 from crowdbot.core.planning.given_planner import choose_planner
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.results.results import Results
@@ -64,6 +64,17 @@ class SweepRequest:
     plugins: Sequence[Path] = ()
 
     @property
+    def trials(self) -> int:
+        """Return the number of trials, without that of the defaults."""
+        return trial_count(self.axes, self.how, self.count, self.steps)
+
+    @property
+    def rounds(self) -> int:
+        """Return how often a planner runs in all scenarios, checks included."""
+        checks = min(self.check, self.trials)
+        return self.trials + 1 + checks + bool(checks)
+
+    @property
     def document(self) -> dict[str, Any]:
         """Everything that decides the trials, for the file of the sweep."""
         plain = asdict(self)
@@ -74,13 +85,23 @@ class SweepRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tried:
-    """One trial: its parameters, label, and score on the people of the search and others."""
+    """One trial: its parameters, label, and score on the people of the search and others.
+
+    ``motions`` are the hashes of its runs' trajectories: equal ones met the same people.
+    """
 
     trial: Trial
     label: str
     score: Estimate
     runs: int
     elsewhere: Estimate | None = None
+    motions: frozenset[str] = frozenset()
+    motions_elsewhere: frozenset[str] = frozenset()
+
+    @property
+    def met_others(self) -> bool:
+        """Return False if the check had the people of the search, as where all have a place."""
+        return not self.motions or self.motions != self.motions_elsewhere
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,11 +143,11 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
     def score(trial: Trial) -> float | None:
         key = tuple(sorted(trial.items()))
         if key not in found:
-            title = f"trial {len(found) + 1}: {words(trial)}"
+            title = f"trial {len(found) + 1} of {request.trials}: {words(trial)}"
             found[key] = rounds[_SEARCH].run(trial, title)
         return found[key].score.value
 
-    usual = rounds[_SEARCH].run({}, "defaults")
+    usual = rounds[_SEARCH].run({}, "the planner's defaults")
     for _ in run_trials(
         request.axes, request.how, request.count, request.seed, request.steps, score,
         request.better,
@@ -138,11 +159,15 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
         key=lambda t: (t.score.value is None, sign * (t.score.value or 0.0), words(t.trial)),
     )
     checked = [
-        rounds[_CHECK].again(t, f"check {i + 1}: {words(t.trial)}") if i < request.check else t
+        rounds[_CHECK].again(
+            t, f"check {i + 1} of {request.check} on other people: {words(t.trial)}"
+        )
+        if i < request.check
+        else t
         for i, t in enumerate(ordered)
     ]
     if request.check:
-        usual = rounds[_CHECK].again(usual, "check of the defaults")
+        usual = rounds[_CHECK].again(usual, "check of the defaults on other people")
     _write(request, checked)
     return Sweep(request=request, tried=tuple(checked), usual=usual)
 
@@ -200,15 +225,13 @@ class _Round:
         name = (asked.metric, asked.variant)
         known = name in table.names and label in table.planners
         score = planner_mean(table, name, label) if known else Estimate(reason="not scored")
-        return Tried(trial=trial, label=label, score=score, runs=len(plan.runs))
+        motions = frozenset(run.trajectory_hash for run in kept)
+        return Tried(trial=trial, label=label, score=score, runs=len(plan.runs), motions=motions)
 
     def again(self, tried: Tried, title: str) -> Tried:
         """Return a trial with its score on these people."""
         found = self.run(tried.trial, title)
-        return Tried(
-            trial=tried.trial, label=tried.label, score=tried.score, runs=tried.runs,
-            elsewhere=found.score,
-        )  # fmt: skip
+        return replace(tried, elsewhere=found.score, motions_elsewhere=found.motions)
 
 
 def _derived(request: SweepRequest, registry: Registry, name: str, seed: int) -> Path:
