@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from inspect import signature
 from typing import Any, Literal
 
 from pydantic import ValidationError
@@ -65,6 +66,22 @@ class EnvSetup:
         for other in found.values():
             _check_alike(first, other)
         return found
+
+
+def resolve_named(arguments: Mapping[str, Any]) -> EnvSetup:
+    """Check the keywords of an environment, then as `resolve`.
+
+    Raises:
+        UnknownNameError: there is no such keyword, or as `resolve`.
+        InputError: no suite is named, or as `resolve`.
+    """
+    known = signature(resolve).parameters
+    for name in arguments:
+        if name not in known:
+            raise UnknownNameError("argument", name, known)
+    if "suite" not in arguments:
+        raise InputError("an environment needs a suite, such as suite='challenge-2020'")
+    return resolve(**arguments)
 
 
 def resolve(

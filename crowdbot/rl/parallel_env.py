@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.errors import InputError
-from crowdbot.rl.env_setup import resolve
+from crowdbot.rl.env_setup import resolve_named
 from crowdbot.rl.libraries import ParallelEnv, gym
 from crowdbot.rl.picture import picture
 from crowdbot.rl.rollout import Rollout
@@ -39,7 +39,7 @@ class ParallelNavEnv(ParallelEnv):
     def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
         check_render_mode(render_mode)
         seed = int(np.random.SeedSequence().generate_state(1)[0])
-        self.rollout, self.render_mode = Rollout(resolve(**arguments), [seed]), render_mode
+        self.rollout, self.render_mode = Rollout(resolve_named(arguments), [seed]), render_mode
         self.possible_agents = list(self.rollout.world(0).blueprint.names)
         self.agents: list[str] = []
         self._window = Window(ParallelNavEnv.__name__)

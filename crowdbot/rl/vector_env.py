@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core.types.arrays import Mask
 from crowdbot.errors import InputError
 from crowdbot.rl.actor import StepResult, Vectors
-from crowdbot.rl.env_setup import resolve
+from crowdbot.rl.env_setup import resolve_named
 from crowdbot.rl.episodes import seeds_of
 from crowdbot.rl.libraries import DISABLED, NEXT_STEP, SAME_STEP, VectorEnv, gym
 from crowdbot.rl.picture import picture
@@ -65,7 +65,7 @@ class NavVectorEnv(VectorEnv):
         self.num_envs, self.render_mode, self.autoreset_mode = num_envs, render_mode, mode
         self._most_steps = max_episode_steps
         seeds = np.random.SeedSequence().generate_state(num_envs, np.uint32).tolist()
-        self.rollout = Rollout(resolve(**arguments), seeds, threads)
+        self.rollout = Rollout(resolve_named(arguments), seeds, threads)
         if len(self.rollout.actors) > 1:
             raise InputError(
                 f"{self.rollout.scenarios[0]} has {len(self.rollout.actors)} robots; "

@@ -44,3 +44,9 @@ def test_a_folder_that_cannot_be_written_is_told(
     file.write_text("x")
     assert cli.main(["export-ros", str(file)]) == 1
     assert "cannot be written" in capsys.readouterr().err
+
+
+def test_info_names_the_tool_for_a_bag(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "metadata.yaml").write_text("rosbag2_bagfile_information: {}")
+    assert cli.main(["info", str(tmp_path)]) == 1
+    assert f"is a bag for ROS: 'ros2 bag info {tmp_path}'" in capsys.readouterr().err

@@ -196,12 +196,18 @@ def test_levels_choose_scenarios() -> None:
         ({"draws": 0}, "at least 1"),
         ({"contact": "stop"}, "'go_on' or 'end'"),
         ({"scenario": "nowhere"}, "nowhere"),
+        ({"scenarios": "x"}, "unknown argument 'scenarios'; did you mean 'scenario'"),
     ],
 )
 def test_wrong_arguments_are_named(wrong: dict[str, Any], message: str) -> None:
     with pytest.raises(CrowdbotError, match=message) as caught:
         gym.make(rl.NAV, **{**FEW, **wrong})
     assert isinstance(caught.value, InputError | UnknownNameError)
+
+
+def test_a_missing_suite_is_named() -> None:
+    with pytest.raises(InputError, match="an environment needs a suite"):
+        gym.make(rl.NAV)
 
 
 def test_wrong_actions_are_named() -> None:

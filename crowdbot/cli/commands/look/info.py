@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.errors import printable
+from crowdbot.errors import InputError, printable
 
 if TYPE_CHECKING:
     from crowdbot.core.recording.reading.contents import RecordingContents
@@ -30,6 +30,8 @@ def info(
     from crowdbot.core.runs.run_directory import RECORDING
 
     path = file / RECORDING if file.is_dir() else file
+    if not path.is_file() and (file / "metadata.yaml").is_file():
+        raise InputError(f"{file} is a bag for ROS: 'ros2 bag info {file}' describes it")
     found = contents(path)
     about = _about(path, found)
     if as_json:
@@ -68,7 +70,6 @@ def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
 def _hash(recording: Recording) -> str | None:
     """Return the trajectory hash; None without samples."""
     from crowdbot.core.runs.read_and_score import recorded_run
-    from crowdbot.errors import InputError
 
     try:
         return recorded_run(recording).trajectory
