@@ -43,6 +43,8 @@ _BACK, _WAY_BACK, _BACK_TIME, _ROOM = 0.2, 0.4, 5.0, 0.1
 _AHEAD, _SPACING = 0.03, 0.05
 #: Places nearer than this belong to one barrier: each doubles the width of the next, m.
 _SAME, _WIDEST = 1.5, 1.6
+#: Places are forgotten once the robot has stayed within this radius (m) for this time (s).
+_STAYED, _FORGET = 0.2, 10.0
 _NOTHING = np.empty((0, 2))
 
 
@@ -80,6 +82,7 @@ class Stuck:
         self._back_from: tuple[float, Pose, float] | None = None
         self._start: tuple[Observation, Pose, Array, Mask] | None = None
         self._held: Pose | None = None
+        self._stays: tuple[float, Pose] | None = None
 
     def see(self, obs: Observation, pose: Pose, points: Array) -> tuple[Pose, Array]:
         """Return the pose without slip, and the points with the remembered places.
@@ -99,7 +102,22 @@ class Stuck:
             pose = self._watch(obs, pose, points)
         elif obs.twist[0] * self._back_from[2] <= 0.0:  # wheels that slow down slip on
             pose = self._hold(pose, self._back_from[1])
-        return pose, (self._with_places(pose, points) if len(self.places) else points)
+        if not len(self.places) or self._forgets(obs.t, pose):
+            return pose, points
+        return pose, self._with_places(pose, points)
+
+    def _forgets(self, t: float, pose: Pose) -> bool:
+        """Forget the places of a robot that stays among them: they may be wider than what is there.
+
+        Where it pushed is not forgotten: the next barrier there is as wide.
+        """
+        since = self._stays
+        if since is None or math.hypot(pose.x - since[1].x, pose.y - since[1].y) > _STAYED:
+            self._stays = (t, pose)
+        elif t - since[0] > _FORGET:
+            self.places, self._stays = _NOTHING, None
+            return True
+        return False
 
     def way_back(self, obs: Observation, pose: Pose, points: Array) -> Command | None:
         """Return the command that leads away from what was pushed; None if there is none.

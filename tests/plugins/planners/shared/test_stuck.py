@@ -168,3 +168,45 @@ def test_barriers_met_again_are_taken_for_wider() -> None:
             widths.append(float(np.ptp(stuck.places[:, 1])))
     assert len(widths) > 3
     assert 0.0 < widths[1] < widths[2] < widths[3]
+
+
+def _pushed() -> tuple[Stuck, float, float]:
+    """Return one that was just noticed to push, the way that its wheels rolled, and the time."""
+    stuck, still = Stuck(_RADIUS), _scan(Pose(0.0, 0.0, 0.0))
+    for k in range(64):
+        t = k * _PERIOD
+        odometry = Pose(0.6 * t, 0.0, 0.0)
+        obs = _observation(t, odometry, 0.6)
+        corrected, points = stuck.see(obs, odometry, still)
+        if stuck.way_back(obs, corrected, points) is not None:
+            return stuck, odometry.x, t
+        stuck.told(Command(0.6, 0.0), _PERIOD)
+    raise AssertionError("nothing was noticed")
+
+
+def _walk(stuck: Stuck, rolled: float, start: float, seconds: float, reach: float) -> int:
+    """Drive to and fro behind the barrier; return how many places the last step added."""
+    added = 0
+    for k in range(round(seconds / _PERIOD)):
+        t, back = start + k * _PERIOD, 0.5 * reach * (math.cos(0.1 * k) - 1.0)
+        speed = -0.05 * reach * math.sin(0.1 * k) / _PERIOD
+        odometry, seen = Pose(rolled + back, 0.0, 0.0), _scan(Pose(back, 0.0, 0.0))
+        obs = _observation(t, odometry, speed)
+        corrected, points = stuck.see(obs, odometry, seen)
+        stuck.way_back(obs, corrected, points)
+        added = len(points) - len(seen)
+    return added
+
+
+def test_a_robot_that_stays_among_remembered_places_forgets_them() -> None:
+    """They may be wider than what is there, and would hold it for ever."""
+    stuck, rolled, t = _pushed()
+    assert _walk(stuck, rolled, t, 9.0, 0.0) > 0
+    assert _walk(stuck, rolled, t + 9.0, 3.0, 0.0) == 0
+    assert (len(stuck.places), stuck.count) == (0, 1)
+
+
+def test_a_robot_that_moves_on_keeps_them() -> None:
+    stuck, rolled, t = _pushed()
+    assert _walk(stuck, rolled, t, 30.0, 0.3) > 0
+    assert stuck.count == 1
