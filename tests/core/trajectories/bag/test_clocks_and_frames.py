@@ -93,6 +93,17 @@ def test_a_reset_in_the_middle(tmp_path: Path) -> None:
     assert len(run.t) == len(TIMES)
 
 
+def test_ids_that_are_places_in_a_list_are_told(tmp_path: Path) -> None:
+    """A detector that sorts people anew for each message."""
+    rows: list[Row] = []
+    for k, t in enumerate(TIMES):
+        people = walkers(t)[:: 1 if k % 2 else -1]
+        rows.append(("/people", t, array(marker(t, i, p[1:]) for i, p in enumerate(people))))
+    bag = write(tmp_path / "bag", robot_rows() + rows)
+    with pytest.warns(RecordingWarning, match=r"but 0.8 m/s if each .* ids that change"):
+        read(bag)
+
+
 def test_stamps_in_disorder_are_told(tmp_path: Path) -> None:
     """A late message and one that overtook it, as over a network."""
     rows = robot_rows()
