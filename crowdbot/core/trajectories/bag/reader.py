@@ -158,6 +158,8 @@ _REMEDIES = {
     "no such column: offered_qos": "it is older than ROS 2 Foxy; 'ros2 bag convert' renews it",
     "image is malformed": "'sqlite3 FILE .recover | sqlite3 OUT' saves what is left",
     "end-of-stream marker": "a file is cut off",
+    **dict.fromkeys(("'.zip'", "'.gz'", "'.tgz'", "'.xz'", "'.7z'", "'.tar'"), "unpack it first"),
+    "database files are missing": "metadata.yaml names its files: rename them back, or remove it",
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shutil
 import sqlite3
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -139,6 +140,20 @@ def test_what_the_library_finds_amid_a_bag_is_the_bags(
     monkeypatch.setattr("rosbags.highlevel.AnyReader.messages", broken)
     with pytest.raises(InputError, match="not a bag that can be read: row 3"):
         read(bag)
+
+
+def test_what_to_do_with_a_packed_bag_and_with_a_renamed_file(tmp_path: Path) -> None:
+    bag = write(tmp_path / "bag", [*robot_rows(), *marker_rows()])
+    for kind in ("zip", "gztar", "tar"):
+        packed = Path(shutil.make_archive(str(tmp_path / "packed"), kind, bag))
+        with pytest.raises(InputError, match=r"not a bag .*\(unpack it first\)"):
+            read(packed)
+    (file,) = bag.glob("*.mcap")
+    file.rename(bag / "other.mcap")
+    with pytest.raises(InputError, match=r"metadata\.yaml names its files: rename them back"):
+        read(bag)
+    (bag / "metadata.yaml").unlink()
+    check_walkers(read(bag))
 
 
 def _driven(turn: Any, x: Callable[[float], float] = lambda t: 0.5 * t) -> list[Row]:
