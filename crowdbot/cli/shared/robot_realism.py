@@ -40,7 +40,7 @@ def robot_realism(
     path = Path(text)
     if path.is_dir() or path.suffix.lower() == ".mcap":
         if overrides:
-            raise UsageError(f"--set: {text} are runs, which cannot be changed any more")
+            raise UsageError(f"--set changes crowds that are simulated; {text} holds recorded runs")
         found = [_of_runs(path, reference)]
     else:
         found = _simulated(text, registry, reference, overrides, seeds)

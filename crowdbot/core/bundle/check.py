@@ -149,7 +149,7 @@ def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:
     read = {f"{PLANNER_FILES}{d}{KEPT}": d for _, d in digests_of_files(manifest.planner)}
     for name in sorted(set(read) & names):
         if manifest.members[name].sha256 != read[name]:
-            yield f"{name} is not the file that the planner read: it has another content"
+            yield f"{name} is not the file that the planner read: its content differs"
     for name in sorted(set(read) - names):
         yield f"{name[:200]} is missing, which the planner reads"
     for name in sorted(names - own - recordings - {LOCK} - set(read)):

@@ -63,5 +63,5 @@ def _found(spec: PlannerSpec, field: str, asset: Asset, folder: Path, kept: Path
     except (OSError, ValueError) as error:
         raise InputError(f"{where}: {reason_of(error)}{suggest_files(file)}") from None
     if asset.sha256 not in (None, digest):
-        raise InputError(f"{where} has another content than its sha256 says: it is {digest}")
+        raise InputError(f"{where} does not have the sha256 of its document, but {digest}")
     return Asset.at(file, name, digest)

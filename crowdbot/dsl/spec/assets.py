@@ -68,7 +68,7 @@ class Asset(Spec):
         except OSError as error:
             raise InputError(f"{file}: cannot be read: {error.strerror or error}") from error
         if self.sha256 not in (None, found):
-            raise InputError(f"{file}: has another content than the one in the scenario")
+            raise InputError(f"{file}: its content differs from that in the scenario")
         return file
 
     @classmethod

@@ -96,7 +96,7 @@ class AssetFiles:
             problems.append(Diagnostic("E201", text, mark))
             return None
         if asset.sha256 not in (None, digest):
-            text = f"'{asset.path}' has another content than the sha256 written here"
+            text = f"'{asset.path}' does not have the sha256 written here"
             problems.append(Diagnostic("E213", text, mark, f"its sha256 is {digest}"))
             return None
         return Asset.at(file, self._finder.name_of(file), digest)

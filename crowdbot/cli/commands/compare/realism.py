@@ -90,7 +90,9 @@ def realism(
     path = Path(crowd)
     if path.is_dir() or path.suffix.lower() == ".mcap":
         if overrides:
-            raise UsageError(f"--set: {crowd} are runs, which cannot be changed any more")
+            raise UsageError(
+                f"--set changes crowds that are simulated; {crowd} holds recorded runs"
+            )
         found = [_of_runs(path, beside)]
     else:
         found = _simulated(crowd, registry, beside, overrides or [], read_seeds(seeds or "1..16"))
