@@ -197,6 +197,10 @@ class _Work:
         for name, joint in self.joints.items():
             wheel, kind = self.wheels.get(name), joint.get("type", "")
             mimic = joint.find("mimic")
+            if mimic is not None and wheel is not None and wheel.effort is not None:
+                joint.remove(mimic)
+                self.notes.append(f"driven wheel has a motor of its own, and mimics none: {name}")
+                continue
             if mimic is not None and {name, mimic.get("joint")}.isdisjoint(self.positions):
                 mimics.append(name)
             elif wheel is not None and wheel.effort is None:

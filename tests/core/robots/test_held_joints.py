@@ -62,6 +62,16 @@ def test_joints_are_held_where_it_is_said_and_those_that_mimic_follow() -> None:
     assert not any("held at zero" in note for note in moved.notes)
 
 
+def test_a_driven_wheel_that_mimics_another_keeps_its_axis_and_gets_a_motor() -> None:
+    axis = '<joint name="right_wheel" type="continuous"><axis xyz="0 1 0"/>'
+    text = ROBOT.replace(axis, f'{axis}<mimic joint="left_wheel"/>')
+    made = read_published(text, wheels=WHEELS, shell="")
+    assert "driven wheel has a motor of its own, and mimics none: right_wheel" in made.notes
+    assert "joint that mimics another is held at zero: thumb_joint" in made.notes
+    wheel = made.joint("right_wheel")
+    assert (wheel.free, wheel.effort, wheel.axis.tolist()) == (True, 5.0, [0.0, 1.0, 0.0])
+
+
 def test_positions_that_no_joint_can_have_are_errors() -> None:
     with pytest.raises(PluginError, match=r"no joint 'sholder'; did you mean 'shoulder'"):
         described(sholder=0.1)

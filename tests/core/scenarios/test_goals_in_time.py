@@ -16,6 +16,7 @@ FILES = sorted(
     path.relative_to(ROOT)
     for folder in ("scenario_specs/examples", "docs/howto/files", "docs/tutorial/files")
     for path in (ROOT / folder).glob("*.yaml")
+    if "goal: {zone" in path.read_text(encoding="utf-8")
 )
 
 
