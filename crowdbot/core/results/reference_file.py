@@ -30,7 +30,7 @@ from crowdbot.errors import InputError
 #: The word that names the file that comes with crowdbot, the file, and its largest size, bytes.
 SHIPPED, NAME, LARGEST = "crowdbot", "reference_scores.json.xz", 1_000_000
 SUFFIX = ".json.xz"
-_UNPACKED, _FORMAT, _DIGITS = 64_000_000, 1, 6
+_UNPACKED, _FORMAT, _DIGITS = 64_000_000, 2, 6
 _HASH = "cb1-sha256:"
 #: Metrics that are kept, with all of their variants.
 METRICS = (
@@ -44,26 +44,30 @@ _OF_SCENARIO = (
     "suite_metrics",
 )  # fmt: skip
 _OF_PLANNER = ("planner", "role", "privileged", "pinned", "planner_process")
-_OF_ALL = ("versions", "plugins", "machine", "allowed_plugins")
+_OF_MAKER = ("versions", "plugins", "machine", "allowed_plugins")
+#: Those of a run alone, as they stand in its row.
+_OWN = ("seed", "status", "reason", "goal_time", "sim_time", "density")
 
 
 class _File(BaseModel):
     """The document in the file.
 
     Attributes:
-        command: the command that made it.
-        shared: what all runs have in common, as in ``run.json``.
-        scenarios, planners: parts of ``run.json`` that many runs share.
+        commands: those that made it, the first one first.
+        metrics: the versions of the metrics, as in ``run.json``.
+        makers, scenarios, planners: parts of ``run.json`` that many runs share; a maker is a
+            machine with its versions.
         columns: category, metric, symbol, variant, unit, better of each score.
-        runs: scenario, planner, seed, ending, time of arrival, simulated time, density, trajectory,
-            scores.
+        runs: maker, scenario, planner, seed, ending, time of arrival, simulated time, density,
+            trajectory, scores.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     references: int
-    command: str
-    shared: dict[str, Any]
+    commands: list[str]
+    metrics: dict[str, Any]
+    makers: list[dict[str, Any]]
     scenarios: list[dict[str, Any]]
     planners: list[dict[str, Any]]
     columns: list[list[str]]
@@ -75,11 +79,11 @@ class ReferenceScores:
     """The content of a file of reference scores.
 
     Attributes:
-        command: the command that made it.
+        commands: those that made it, the first one first.
         results: its runs and scores, as of a folder of runs.
     """
 
-    command: str
+    commands: tuple[str, ...]
     results: Results
 
     @cached_property
@@ -98,33 +102,35 @@ class ReferenceScores:
 
 
 # ------------------------------------------------------------------------- writing
-def write_references(out: Path, results: Results, command: str) -> int:
+def write_references(out: Path, results: Results, commands: Sequence[str]) -> int:
     """Write runs and scores into a small file; equal results give equal bytes.
 
     Args:
         out: the file.
-        results: of one crowdbot on one machine.
-        command: the command that made them.
+        results: scores of one version of each metric; machines may differ.
+        commands: those that made them.
 
     Returns:
         Its size, bytes.
 
     Raises:
-        InputError: there are no runs, runs are of several machines, or it would be too large.
+        InputError: there are no runs, versions of a metric differ, or it would be too large.
     """
     if not results.runs:
         raise InputError("there are no runs to keep as references")
-    shared = _common(results)
-    scenarios, planners, columns = _Table(), _Table(), _Table()
+    metrics = _metrics(results)
+    makers, scenarios, planners, columns = _Table(), _Table(), _Table(), _Table()
     by_run: dict[str, dict[int, float | None]] = {}
     for score in results.scores:
         if score.metric in METRICS:
             number = columns.number([getattr(score, n) for n in _COLUMNS])
             by_run.setdefault(score.run_id, {})[number] = _rounded(score.value)
-    rows = [_row(run, by_run.get(run.run_id, {}), scenarios, planners) for run in results.runs]
+    tables = makers, scenarios, planners
+    rows = [_row(run, by_run.get(run.run_id, {}), *tables) for run in results.runs]
     document = {
-        "references": _FORMAT, "command": command, "shared": shared,
-        "scenarios": scenarios.items, "planners": planners.items, "columns": columns.items,
+        "references": _FORMAT, "commands": list(commands), "metrics": metrics,
+        "makers": makers.items, "scenarios": scenarios.items, "planners": planners.items,
+        "columns": columns.items,
         "runs": [[*row[:-1], [row[-1].get(n) for n in range(len(columns.items))]] for row in rows],
     }  # fmt: skip
     text = json.dumps(document, ensure_ascii=False, separators=(",", ":"))
@@ -153,24 +159,27 @@ class _Table:
         return self._numbers[key]
 
 
-def _common(results: Results) -> dict[str, Any]:
-    """Return what all runs share."""
-    metrics: dict[str, Any] = {}
+def _metrics(results: Results) -> dict[str, Any]:
+    """Return what runs say of the metrics that are kept."""
     found: dict[str, Any] = {}
     for run in results.runs:
         document = run.record.document()
-        own = {n: document[n] for n in _OF_ALL if n in document}
-        if found and own != found:
+        own = {n: m for n, m in document["metrics"].items() if n in METRICS}
+        changed = [n for n, m in own.items() if found.setdefault(n, m) != m]
+        if changed:
             raise InputError(
-                f"{run.directory} was made by another machine or other versions than the first run"
+                f"{run.directory}: other runs have another version of {', '.join(changed)}; "
+                "make all references again"
             )
-        found = own
-        metrics |= {n: m for n, m in document["metrics"].items() if n in METRICS}
-    return {**found, "metrics": metrics}
+    return found
 
 
 def _row(
-    run: RunRow, scores: Mapping[int, float | None], scenarios: _Table, planners: _Table
+    run: RunRow,
+    scores: Mapping[int, float | None],
+    makers: _Table,
+    scenarios: _Table,
+    planners: _Table,
 ) -> list[Any]:
     document = run.record.document()
     if document.get("robots") or run.changes:
@@ -178,11 +187,13 @@ def _row(
     hashes = document["hashes"]
     about = {n: document[n] for n in _OF_SCENARIO if n in document}
     about |= {"spec": hashes["spec"], "realisation": hashes["realisation"]}
-    planner = {n: document[n] for n in _OF_PLANNER if n in document}
+    maker, planner = (
+        {n: document[n] for n in part if n in document} for part in (_OF_MAKER, _OF_PLANNER)
+    )
+    own = {**document, "density": _rounded(run.density)}
     return [
-        scenarios.number(about), planners.number(planner), run.seed, run.status, run.reason,
-        run.goal_time, run.sim_time, _rounded(run.density),
-        hashes["trajectory"].removeprefix(_HASH), dict(scores),
+        makers.number(maker), scenarios.number(about), planners.number(planner),
+        *(own[n] for n in _OWN), hashes["trajectory"].removeprefix(_HASH), dict(scores),
     ]  # fmt: skip
 
 
@@ -202,6 +213,18 @@ def open_references(text: str) -> ReferenceScores | None:
     return read_references(Path(text)) if text.endswith(SUFFIX) else None
 
 
+def opened(text: str) -> ReferenceScores:
+    """Return reference scores: those that come with crowdbot, or of a file.
+
+    Raises:
+        InputError: it is not a file of reference scores.
+    """
+    found = open_references(text)
+    if found is None:
+        raise InputError(f"{text}: a file of reference scores ends in {SUFFIX}")
+    return found
+
+
 def shipped_file() -> Traversable:
     """Return the file that comes with crowdbot."""
     return files("crowdbot.core.results") / NAME
@@ -219,7 +242,12 @@ def read_references(file: Traversable) -> ReferenceScores:
         text = unpacker.decompress(packed, _UNPACKED)
         if not unpacker.eof:
             raise InputError(f"{file}: cut, or larger than {_UNPACKED // 10**6} MB")
-        found = _File.model_validate(parse_json(text.decode()))
+        document = parse_json(text.decode())
+        if document["references"] != _FORMAT:
+            raise InputError(
+                f"{file}: format {document['references']}; this crowdbot reads {_FORMAT}"
+            )
+        found = _File.model_validate(document)
         runs = tuple(_runs(found))
         scores = tuple(_scores(found, runs))
     except (OSError, lzma.LZMAError) as error:
@@ -227,26 +255,23 @@ def read_references(file: Traversable) -> ReferenceScores:
     except (ValidationError, ValueError, LookupError, TypeError, AttributeError) as error:
         some = str(error).splitlines()[0][:200]
         raise InputError(f"{file} is not a file of reference scores: {some}") from None
-    if found.references != _FORMAT:
-        raise InputError(f"{file}: format {found.references}; this crowdbot reads {_FORMAT}")
-    return ReferenceScores(found.command, Results(runs=runs, scores=scores))
+    return ReferenceScores(tuple(found.commands), Results(runs=runs, scores=scores))
 
 
 def _runs(found: _File) -> Iterator[RunRow]:
-    for scenario, planner, seed, status, reason, goal, sim, density, trajectory, _ in found.runs:
+    for maker, scenario, planner, *own, trajectory, _ in found.runs:
         about = dict(found.scenarios[scenario])
         known = {"spec": about.pop("spec"), "realisation": about.pop("realisation")}
         document = {
-            **found.shared, **about, **found.planners[planner], "seed": seed, "status": status,
-            "reason": reason, "goal_time": goal, "sim_time": sim, "wall_time": 0.0,
-            "density": density, "references": {},
+            **found.makers[maker], **about, **found.planners[planner], "metrics": found.metrics,
+            **dict(zip(_OWN, own, strict=True)), "wall_time": 0.0, "references": {},
             "hashes": {**known, "trajectory": f"{_HASH}{trajectory}"},
         }  # fmt: skip
         document["run_id"] = RunIdentity.model_validate(
             {n: document[n] for n in RunIdentity.model_fields if n in document}
         ).id()
         record = RunRecord.parse(document, document["scenario"])
-        place = f"{record.suite}/{record.scenario}/{record.planner.label}/seed-{seed}"
+        place = f"{record.suite}/{record.scenario}/{record.planner.label}/seed-{record.seed}"
         yield RunRow(record=record, directory=place)
 
 

@@ -11,6 +11,7 @@ import pytest
 
 import crowdbot
 from crowdbot.cli import main
+from crowdbot.core.campaign.extend_references import extended
 from crowdbot.core.campaign.remake import RemakeSetup, remake, sample_of
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.results.reference_file import (
@@ -43,13 +44,13 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("references") / "r.json.xz"
-    write_references(out, Results.open(root), "by hand")
+    write_references(out, Results.open(root), ["by hand"])
     return out
 
 
 def test_what_is_written_is_read_again(root: Path, file: Path) -> None:
     wanted, found = Results.open(root), read_references(file)
-    assert found.command == "by hand"
+    assert found.commands == ("by hand",)
     assert [r.run_id for r in found.results.runs] == [r.run_id for r in wanted.runs]
     for one, other in zip(found.results.runs, wanted.runs, strict=True):
         assert one.trajectory_hash == other.trajectory_hash
@@ -64,8 +65,59 @@ def test_what_is_written_is_read_again(root: Path, file: Path) -> None:
 
 
 def test_equal_results_give_equal_bytes(root: Path, file: Path, tmp_path: Path) -> None:
-    write_references(tmp_path / "r.json.xz", Results.open(root), "by hand")
+    write_references(tmp_path / "r.json.xz", Results.open(root), ["by hand"])
     assert (tmp_path / "r.json.xz").read_bytes() == file.read_bytes()
+
+
+def test_what_was_read_is_written_as_it_was(file: Path, tmp_path: Path) -> None:
+    found = read_references(file)
+    write_references(tmp_path / "r.json.xz", found.results, found.commands)
+    assert (tmp_path / "r.json.xz").read_bytes() == file.read_bytes()
+
+
+def test_references_are_extended_by_what_is_missing(file: Path, tmp_path: Path) -> None:
+    out, runs = tmp_path / "more.json.xz", tmp_path / "runs"
+    asked = [
+        "references", "make", SUITE, "--only", SCENARIO, "--extend", str(file), "--out", str(out),
+        "--runs", str(runs), "--seeds", "0", "--jobs", "1",
+        "--planner", "goal_seek", "--planner", "stand_still", "--planner", "wall_hug",
+    ]  # fmt: skip
+    assert main(asked) == 0
+    old, new = read_references(file), read_references(out)
+    assert [r.planner for r in new.results.runs] == ["goal_seek", "stand_still", "wall_hug"]
+    for one, other in zip(new.results.runs, old.results.runs, strict=False):
+        assert (one.run_id, one.trajectory_hash) == (other.run_id, other.trajectory_hash)
+    assert {s.run_id for s in new.results.scores} == {r.run_id for r in new.results.runs}
+    assert {p.parent.name for p in runs.glob(f"*/{SCENARIO}/*/seed-*")} == {"wall_hug"}
+    assert (new.commands[0], len(new.commands)) == ("by hand", 2)
+    first = out.read_bytes()
+    assert main([*asked[:-1], "stand_still"]) == 0  # nothing is missing
+    assert out.read_bytes() == file.read_bytes() != first
+
+
+def test_a_run_that_is_made_again_takes_the_place_of_the_old_one(file: Path) -> None:
+    old = read_references(file).results
+    (one, *_) = old.runs
+    changed = one.record.model_copy(update={"sim_time": 1.0})
+    new = Results(runs=(replace(one, record=changed),), scores=())
+    both = extended(old, new)
+    assert [(r.planner, r.sim_time) for r in both.runs] == [
+        (old.runs[1].planner, old.runs[1].sim_time), (one.planner, 1.0),
+    ]  # fmt: skip
+    assert {s.run_id for s in both.scores} == {old.runs[1].run_id}
+
+
+def test_scores_of_two_versions_of_a_metric_do_not_mix(file: Path, tmp_path: Path) -> None:
+    found = read_references(file)
+    first, second = found.results.runs
+    metrics = dict(second.record.metrics)
+    name = next(iter(metrics))
+    metrics[name] = metrics[name].model_copy(update={"version": 99})
+    other = replace(second, record=second.record.model_copy(update={"metrics": metrics}))
+    with pytest.raises(InputError, match=f"another version of {name}; make all"):
+        write_references(
+            tmp_path / "r.json.xz", replace(found.results, runs=(first, other)), ["by hand"]
+        )
 
 
 def test_own_planners_stand_among_the_references(root: Path, file: Path) -> None:

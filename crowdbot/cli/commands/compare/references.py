@@ -5,14 +5,20 @@ from __future__ import annotations
 import json
 import shlex
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
+
+if TYPE_CHECKING:
+    from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.results.results import Results
+    from crowdbot.core.results.rows import RunRow
 
 references = typer.Typer(
     add_completion=False, invoke_without_command=True, pretty_exceptions_enable=False
@@ -35,24 +41,35 @@ def show(
     """
     if context.invoked_subcommand is not None:
         return
-    from crowdbot.core.results.reference_file import open_references
-    from crowdbot.errors import InputError
+    from crowdbot.core.results.reference_file import opened
 
-    found = open_references(file)
-    if found is None:
-        raise InputError(f"{file}: a file of reference scores ends in .json.xz")
-    record = found.results.runs[0].record
+    found = opened(file)
     about: dict[str, Any] = {
-        "command": found.command, "runs": len(found.results.runs), "held": list(found.held),
-        "versions": record.versions, "machine": record.machine,
+        "commands": list(found.commands), "runs": len(found.results.runs),
+        "held": list(found.held), "made": _makers(found.results.runs),
     }  # fmt: skip
     if as_json:
         say(json.dumps(about, indent=2))
         return
     say("\n".join(found.held))
-    for name in ("machine", "versions"):
-        say(f"{name}: {', '.join(f'{k} {v}' for k, v in about[name].items())}")
-    say(f"made by: {found.command}")
+    for maker in about["made"]:
+        say(f"{plural(maker['runs'], 'run')} made with:")
+        for name in ("machine", "versions"):
+            say(f"  {name}: {', '.join(f'{k} {v}' for k, v in maker[name].items())}")
+    for command in found.commands:
+        say(f"made by: {command}")
+
+
+def _makers(runs: Sequence[RunRow]) -> list[dict[str, Any]]:
+    """Return machines with their versions, and how many of the runs each has made."""
+    found: list[dict[str, Any]] = []
+    for run in runs:
+        own = {"machine": run.record.machine, "versions": run.record.versions}
+        known = next((m for m in found if own.items() <= m.items()), None)
+        if known is None:
+            found.append(known := {"runs": 0, **own})
+        known["runs"] += 1
+    return found
 
 
 @references.command()
@@ -75,6 +92,12 @@ def make(
     out: Annotated[Path, typer.Option(metavar="FILE", help="File to write, .json.xz.")] = Path(
         "reference_scores.json.xz"
     ),
+    extend: Annotated[
+        str | None,
+        typer.Option(
+            metavar="crowdbot|FILE", help="Add to these; runs that they have are not made again."
+        ),
+    ] = None,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -82,12 +105,15 @@ def make(
 ) -> None:
     """Run planners in suites, and keep their scores in one file; finished runs are skipped.
 
-    Example: crowdbot references make challenge-2026 --only '*-n01' --seeds 0
+    Examples:
+    crowdbot references make challenge-2026 --only '*-n01' --seeds 0
+    crowdbot references make challenge-2026 --planner dwa --seeds 1 --extend crowdbot
     """
     from crowdbot.cli.shared.campaign_run import read_seeds, run_plan, worker_count
+    from crowdbot.core.campaign.extend_references import extended, without_known
     from crowdbot.core.campaign.plan import make_plan
     from crowdbot.core.campaign.request import CampaignRequest
-    from crowdbot.core.results.reference_file import SUFFIX, write_references
+    from crowdbot.core.results.reference_file import SUFFIX, opened, write_references
     from crowdbot.core.results.results import Results
     from crowdbot.core.runs.run_options import RunOptions
     from crowdbot.errors import UsageError
@@ -99,19 +125,37 @@ def make(
         suites=suites, planners=planner or _all_planners(registry), seeds=read_seeds(seeds),
         only=only or (), out=runs, options=RunOptions(replay=False), plugins=plugin or (),
     )  # fmt: skip
+    old = None if extend is None else opened(extend)
     plan = make_plan(request, registry)
+    if old is not None:
+        plan = without_known(plan, old.results.runs)
     state = run_plan(plan, worker_count(jobs), None)
     if state.exit_code:
         raise typer.Exit(state.exit_code)
-    wanted = {str(r.directory.relative_to(plan.out)) for r in plan.runs}
-    found = Results.open(runs)
-    chosen = [r for r in found.runs if r.directory in wanted]
-    kept = Results(runs=tuple(chosen), scores=found.scores)
-    size = write_references(out, kept, shlex.join(["crowdbot", *sys.argv[1:]]))
+    made = _made(plan) if plan.runs else Results(runs=(), scores=())
+    kept = made if old is None else extended(old.results, made)
+    commands = [*(old.commands if old else ()), *([_command()] if made.runs else ())]
+    size = write_references(out, kept, commands)
+    about = {"file": str(out), "bytes": size, "runs": len(kept.runs), "made": len(made.runs)}
     if as_json:
-        say(json.dumps({"file": str(out), "bytes": size, "runs": len(chosen)}, indent=2))
+        say(json.dumps(about, indent=2))
     else:
-        say(f"{out}: {plural(len(chosen), 'run')}, {size} bytes")
+        say(f"{out}: {plural(len(kept.runs), 'run')}, {len(made.runs)} of them now, {size} bytes")
+
+
+def _made(plan: Plan) -> Results:
+    """Return the results of a plan's runs."""
+    from crowdbot.core.results.results import Results
+
+    wanted = {str(r.directory.relative_to(plan.out)) for r in plan.runs}
+    found = Results.open(plan.out)
+    chosen = tuple(r for r in found.runs if r.directory in wanted)
+    ids = {r.run_id for r in chosen}
+    return Results(runs=chosen, scores=tuple(s for s in found.scores if s.run_id in ids))
+
+
+def _command() -> str:
+    return shlex.join(["crowdbot", *sys.argv[1:]])
 
 
 def _all_planners(registry: Any) -> list[str]:
