@@ -152,7 +152,7 @@ class Archive:
 
 
 def open_zip(path: Path, what: str) -> zipfile.ZipFile:
-    """Open a zip file; ``what`` it is to be stands in errors.
+    """Open a zip file; errors call it ``what``.
 
     Raises:
         InputError: missing file, or not a zip file.
