@@ -46,7 +46,7 @@ class BuildWithHalf:
 
     @property
     def died(self) -> str:
-        """Return how the half's process died on loading; empty if it did not."""
+        """Return how the process of this half ended while it loaded; empty if it still runs."""
         return self.half.died
 
 

@@ -246,7 +246,7 @@ class Scene:
 
     @property
     def _everything(self) -> Obstacles:
-        """Return `obstacles` in reused arrays; people are placed on demand."""
+        """Return all obstacles, in arrays that are reused; people are placed when asked for."""
         if not self._placed:
             self._place()
             self._placed = True

@@ -171,7 +171,7 @@ class _Folded:
 
 @dataclass(frozen=True, slots=True)
 class _Bare:
-    """A combination: its id, crowd seed key, labels per axis, and tree."""
+    """A combination of the matrix: its id, crowd seed key, labels of the axes, and document."""
 
     name: str
     key: str

@@ -91,7 +91,7 @@ class Seat:
         return True
 
     def attend(self, who: Hashable, away: Away) -> None:
-        """Note that the page in the seat has a hand on the stick, or why it has none."""
+        """Note that the page that drives has a hand on the stick, or why not."""
         with self._lock:
             if self._page != who:
                 return

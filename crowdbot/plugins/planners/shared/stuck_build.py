@@ -248,7 +248,7 @@ class _Felt:
 
 
 def _moved(then: Pose, now: Pose) -> tuple[float, float]:
-    """Return the way from one pose to another in the frame of the first, m."""
+    """Return the displacement from one pose to another in the frame of the first, m."""
     c, s = math.cos(then.yaw), math.sin(then.yaw)
     dx, dy = now.x - then.x, now.y - then.y
     return c * dx + s * dy, c * dy - s * dx

@@ -41,7 +41,7 @@ X, Y, VX, VY, RADIUS = range(5)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannerScene:
-    """The surroundings in one step; a frame at rest, which is that of odometry at the start.
+    """The robot's surroundings in one step, in the frame of odometry, which does not move.
 
     Attributes:
         pose: the robot's.
