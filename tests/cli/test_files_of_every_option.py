@@ -73,6 +73,9 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("realism", "reference"): (".csv", "realism", "rvo", "--reference", "{}"),
     ("recover", "file"): (".mcap", "recover", "{}"),
     ("references make", "suites"): (".yaml", "references", "make", "{}", "--runs", "RUNS"),
+    ("references make", "extend"): (
+        ".json.xz", "references", "make", SHORT, "--extend", "{}", "--runs", "RUNS",
+    ),
     ("references make", "planner"): (
         ".yaml", "references", "make", SHORT, "--planner", "{}", "--runs", "RUNS",
     ),
