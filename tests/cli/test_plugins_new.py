@@ -71,7 +71,7 @@ def test_the_package_keeps_its_promises(site: Site, project: Path) -> None:
 
 def test_the_other_scenario_runs(site: Site) -> None:
     options = ["--planner", "my_lab.wander", "--set", "robots.robot.task.time_limit=1 s"]
-    done = site.run("simulate", "my_lab:first", "choosing", *options, "--no-references")
+    done = site.run("simulate", "my_lab:first", "choosing", *options, "--no-references", "--all")
     assert done.returncode == 0, done.stderr
     assert "my_lab.pauses" in done.stdout
     assert "pinned" not in done.stdout
