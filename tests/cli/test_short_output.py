@@ -73,6 +73,19 @@ def test_a_run_without_the_four_scores_shows_its_first(capsys: pytest.CaptureFix
     assert "higher is better" in out
 
 
+def test_reasons_of_the_four_scores_are_words(capsys: pytest.CaptureFixture[str]) -> None:
+    from crowdbot.core.registry.registry import discover
+    from crowdbot.core.scoring.score_factory import ScoreFactory
+
+    factory = ScoreFactory(discover(allow=()).components("metric")["contacts_per_km"])  # type: ignore[arg-type]
+    scores = factory.all_undefined("zero_denominator")
+    run: Any = SimpleNamespace(record=SimpleNamespace(people_alone=False))
+    run_summary._print_scores(run, scores, everything=False)
+    assert "undefined: the robot made no progress" in capsys.readouterr().out
+    run_summary._print_scores(run, scores, everything=True)
+    assert "zero_denominator" in capsys.readouterr().out
+
+
 def test_suites_are_listed_with_a_sentence(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

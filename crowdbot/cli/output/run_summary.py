@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import logging
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output.say import say
@@ -19,6 +20,12 @@ if TYPE_CHECKING:
 _BETTER = {
     "higher": "higher is better", "lower": "lower is better", "reference": "near people's is best",
 }  # fmt: skip
+#: Reasons of the four scores without a value, in words; `--all` shows the reasons themselves.
+_WORDS = {
+    "zero_denominator": "the robot made no progress",
+    "no_neighbours": "no one was near the robot",
+    "no_agents": "there were no people",
+}
 #: Number of scores shown where a run has none of the four.
 _FEW = 6
 
@@ -94,7 +101,8 @@ def _few(shown: Sequence[Score]) -> Table:
     main = [s for s in shown if is_main(s.metric, s.variant)]
     table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False, show_header=False)
     for s in main or shown[:_FEW]:
-        cells = (roles.get(s.metric, s.metric), verdict(s), _BETTER.get(s.better, ""))
+        told = replace(s, reason=_WORDS.get(s.reason, s.reason)) if s in main else s
+        cells = (roles.get(s.metric, s.metric), verdict(told), _BETTER.get(s.better, ""))
         table.add_row(*map(Text, cells), style="" if s.status == "ok" else "dim")
     return table
 

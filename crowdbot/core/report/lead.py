@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.statistics import PlannerScore, Summary
 from crowdbot.core.statistics.sample_size import SampleSize
+from crowdbot.core.support.text import listed
 
 _ARROWS = {"higher": "higher is better", "lower": "lower is better"}
 
@@ -63,14 +63,14 @@ def _by_ranks(summary: Summary, column: LeadColumn) -> str:
     first = [p for p in summary.planners if ranks.get(p) == 1]
     others = [p for p in summary.planners if p not in first]
     if not others:
-        return f"No difference in {column.role} beyond chance between {_and(first)}."
+        return f"No difference in {column.role} beyond chance between {listed(first)}."
     if len(first) == 1:
         beaten = _surely_beaten(summary, column, first[0])
         if set(beaten) == set(others):
-            return f"{first[0]} is better than {_and(others)} in {column.role}."
+            return f"{first[0]} is better than {listed(others)} in {column.role}."
     return (
-        f"{_and(first)} {'leads' if len(first) == 1 else 'lead'} in {column.role}; "
-        f"{_and(others)} {'is' if len(others) == 1 else 'are'} worse than at least one planner."
+        f"{listed(first)} {'leads' if len(first) == 1 else 'lead'} in {column.role}; "
+        f"{listed(others)} {'is' if len(others) == 1 else 'are'} worse than at least one planner."
     )
 
 
@@ -84,7 +84,3 @@ def _surely_beaten(summary: Summary, column: LeadColumn, planner: str) -> list[s
 def _about(score: PlannerScore) -> str:
     unit = "" if score.unit == "1" else score.unit
     return ", ".join(filter(None, (unit, _ARROWS.get(score.better, ""))))
-
-
-def _and(names: Sequence[str]) -> str:
-    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))

@@ -15,6 +15,7 @@ from crowdbot.cli.output.say import say
 from crowdbot.cli.serving.serve_arguments import AllowOrigin
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
+from crowdbot.core.support.text import listed
 from crowdbot.errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ def _replay(
     shown = replayed_runs(folders, installed(plugin, no_plugins))
     path = out or Path("compare.html")
     scenario = shown[0].facts["Scenario"]
-    write_replay(path, *shown, title=f"{scenario} · {' and '.join(one.label for one in shown)}")
+    write_replay(path, *shown, title=f"{scenario} · {listed([one.label for one in shown])}")
     return path
 
 
