@@ -23,6 +23,9 @@ _RUN, _BEND, _SHORT, _LONG = 6, 0.01, 0.12, 1.2
 _BLUR = 4
 #: Number of straight runs needed for an estimate, and largest unnoticed turn, rad.
 _FEW, _WINDOW = 12.0, 0.75
+#: A larger turn in one step, rad, needs this many: a table or a pillar fits a memory of others in
+#: any direction. Walls of a corridor give 200 and more, also where a person has turned the robot.
+_JUMP, _MANY = 0.35, 60.0
 #: Differences up to this are left to odometry, rad, so that an untouched robot drives straight.
 _NOISE = 0.02
 #: Weight of one step's histogram in the memory.
@@ -115,7 +118,7 @@ def heading(
 ) -> float:
     """Return the yaw at which the walls fit the memory, rad, and update the memory.
 
-    NaN without walls.
+    NaN without walls, or with too few for so large a turn.
 
     Args:
         points: as for `directions`.
@@ -124,9 +127,12 @@ def heading(
         memory: (BINS,) changed in place.
         seen, filled: (BINS,) scratch.
     """
-    if directions(points, seen) < _FEW:
+    count = directions(points, seen)
+    if count < _FEW:
         return math.nan
     fitting = turned(memory, seen, guess, filled) if knows else guess
+    if abs(fitting - guess) > _JUMP and count < _MANY:
+        return math.nan
     learn(memory, seen, fitting, _LEARN if knows else 1.0)
     return fitting
 

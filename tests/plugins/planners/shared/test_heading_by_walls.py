@@ -114,3 +114,18 @@ def test_all_directions_are_counted_once() -> None:
     assert np.argmax(out) == 0
     directions(line[:, ::-1].copy(), out)
     assert np.argmax(out) == BINS // 2
+
+
+def line(angle: float, points: int) -> Array:
+    """Points 3 cm apart on a straight line 2 m away at an angle, (P, 2), base frame, m."""
+    along = 0.03 * (np.arange(points) - points / 2)
+    way = np.array([math.cos(angle), math.sin(angle)])
+    return along[:, None] * way + 2.0 * np.array([-way[1], way[0]])
+
+
+@pytest.mark.parametrize(("points", "noticed"), [(24, False), (200, True)])
+def test_a_table_at_an_angle_is_no_turn_and_a_wall_is(points: int, noticed: bool) -> None:
+    heading, told = HeadingByWalls(), Pose(0.0, 0.0, 0.0)
+    heading.pose(told, line(0.0, 200))
+    found = heading.pose(told, line(0.5, points))
+    assert (off(found.yaw, 0.0) > 0.4) is noticed
