@@ -185,7 +185,7 @@ def _pushed() -> tuple[Stuck, float, float]:
 
 
 def _walk(stuck: Stuck, rolled: float, start: float, seconds: float, reach: float) -> int:
-    """Drive to and fro behind the barrier; return how many places the last step added."""
+    """Drive back and forth behind the barrier; return how many places the last step added."""
     added = 0
     for k in range(round(seconds / _PERIOD)):
         t, back = start + k * _PERIOD, 0.5 * reach * (math.cos(0.1 * k) - 1.0)
