@@ -70,6 +70,6 @@ def test_known_runs_are_named(plan: Plan, tmp_path: Path) -> None:
     altered = planned(
         tmp_path, "counter-d020-late-n01", overrides=["robots.robot.task.time_limit=20 s"]
     )
-    other = planned(tmp_path, "counter-d020-late-n02")
+    other = planned(tmp_path, "counter-d020-late-n18")
     without = planned(tmp_path, "counter-d020-late-n01", floors=False)
     assert [known_runs(p) for p in (altered, other, without)] == ["", "", ""]

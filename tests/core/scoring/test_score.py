@@ -155,7 +155,7 @@ def test_trajectories_from_tables(tmp_path: Path) -> None:
         ("agents", "t,id,x,y\n0.5,1,0,0\n", "not a sample of the robot"),
         ("agents", "t,id,x,y\n0,1,0,0\n0,1,0,0\n", "two rows of id 1"),
         ("agents", "t,id,x,y\n0,,0,0\n", "no id"),
-        ("trips", "agent,t0\n", "columns? t1, reached|column t1, reached is missing"),
+        ("trips", "agent,t0\n1,0\n", "columns? t1, reached|column t1, reached is missing"),
     ],
 )
 def test_tables_that_do_not_fit(tmp_path: Path, table: str, text: str, message: str) -> None:

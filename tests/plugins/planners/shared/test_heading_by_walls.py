@@ -120,7 +120,7 @@ def line(angle: float, points: int) -> Array:
     """Points 3 cm apart on a straight line 2 m away at an angle, (P, 2), base frame, m."""
     along = 0.03 * (np.arange(points) - points / 2)
     way = np.array([math.cos(angle), math.sin(angle)])
-    return along[:, None] * way + 2.0 * np.array([-way[1], way[0]])
+    return np.asarray(along[:, None] * way + 2.0 * np.array([-way[1], way[0]]))
 
 
 @pytest.mark.parametrize(("points", "noticed"), [(24, False), (200, True)])
