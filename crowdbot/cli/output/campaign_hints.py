@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from crowdbot.core.support.text import plural
+from crowdbot.core.support.text import listed, plural
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
@@ -13,19 +13,18 @@ if TYPE_CHECKING:
 
 def known_runs(plan: Plan) -> str:
     """Return a line about missing runs that the shipped reference scores hold, or nothing."""
-    from crowdbot.core.results.reference_file import SHIPPED, open_references
+    from crowdbot.core.campaign.extend_references import known_jobs
+    from crowdbot.core.results.reference_file import SHIPPED, opened
 
     missing = [job for job in plan.jobs if job.kind == "run"]
-    # reading them takes 0.2 s; without floors and ceilings they have been weighed already
-    found = open_references(SHIPPED) if any(job.added for job in missing) else None
-    if found is None:
+    # Reading them takes 0.2 s. A user who left out floors and ceilings knows the hint.
+    if not any(job.added for job in missing):
         return ""
-    held = {(r.record.hashes.spec, r.planner, r.seed) for r in found.results.runs}
-    known = [job for job in missing if (job.spec_hash, job.label, job.seed) in held]
+    known = known_jobs(plan, opened(SHIPPED).results.runs)
     if not known:
         return ""
-    named = dict.fromkeys(job.label for job in known if not job.added)
-    without = f"leave out {' and '.join(named)} and " if named else ""
+    named = [*dict.fromkeys(job.label for job in known if not job.added)]
+    without = f"leave out {listed(named)} and " if named else ""
     return (
         f"{len(known)} of {plural(len(missing), 'run')} are in the reference scores: to save time, "
         f"{without}add --no-floors, then see 'crowdbot results --reference {SHIPPED}'"

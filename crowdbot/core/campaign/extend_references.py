@@ -5,23 +5,41 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from crowdbot.core.campaign.job import Job
 from crowdbot.core.campaign.plan import Plan
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow
+from crowdbot.core.support.json_digest import digest
+
+_NAMES = ("name", "label")  # what a record adds to what defines a planner
 
 
-def without_known(plan: Plan, known: Iterable[RunRow]) -> Plan:
-    """Return a plan without the runs that references have of the same scenario.
+def known_jobs(plan: Plan, known: Iterable[RunRow]) -> list[Job]:
+    """Return the missing runs that references have: of the same scenario, planner and seed.
 
-    Calibration runs that no other run needs go, too.
+    A planner whose parameters have changed since is another one.
     """
-    there = {(r.suite, r.scenario, r.planner, r.seed, r.spec_hash) for r in known}
-    runs = [
+    there = {(r.suite, r.scenario, r.spec_hash, r.seed, _planner_digest(r)) for r in known}
+    return [
         job
         for job in plan.jobs
         if job.kind == "run"
-        and (job.suite, job.scenario, job.label, job.seed, job.spec_hash) not in there
+        and (job.suite, job.scenario, job.spec_hash, job.seed, job.planner_digest) in there
     ]
+
+
+def _planner_digest(run: RunRow) -> str:
+    planner = run.record.document()["planner"]
+    return digest({name: value for name, value in planner.items() if name not in _NAMES})
+
+
+def without_known(plan: Plan, known: Iterable[RunRow]) -> Plan:
+    """Return a plan without the runs that references have.
+
+    Calibration runs that no other run needs go, too.
+    """
+    held = {job.key for job in known_jobs(plan, known)}
+    runs = [job for job in plan.jobs if job.kind == "run" and job.key not in held]
     keys = {job.key for job in runs}
     needed = {key for job in runs for key in job.depends_on}
     jobs = (job for job in plan.jobs if job.key in keys | needed)

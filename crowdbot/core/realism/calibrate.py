@@ -77,7 +77,7 @@ class FitTask:
 
     @property
     def what(self) -> list[Any]:
-        """Return the line that identifies this fit in its log."""
+        """Return the values that identify this fit in its log."""
         return [self.crowd, self.overrides, [digest(Path(f)) for f in self.files]]
 
     def loss(self, overrides: Sequence[str], seed: int) -> float:
@@ -100,7 +100,7 @@ class Fitted(Protocol):
 
     @property
     def what(self) -> list[Any]:
-        """Return the line that identifies this fit in its log."""
+        """Return the values that identify this fit in its log."""
 
     def loss(self, overrides: Sequence[str], seed: int) -> float:
         """Return the loss with some parameters in one draw."""

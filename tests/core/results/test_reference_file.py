@@ -11,8 +11,10 @@ import pytest
 
 import crowdbot
 from crowdbot.cli import main
-from crowdbot.core.campaign.extend_references import extended
+from crowdbot.core.campaign.extend_references import extended, without_known
+from crowdbot.core.campaign.plan import make_plan
 from crowdbot.core.campaign.remake import RemakeSetup, remake, sample_of
+from crowdbot.core.campaign.request import CampaignRequest
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.results.reference_file import (
     LARGEST,
@@ -93,6 +95,20 @@ def test_references_are_extended_by_what_is_missing(file: Path, tmp_path: Path) 
     first = out.read_bytes()
     assert main([*asked[:-1], "stand_still"]) == 0  # nothing is missing
     assert out.read_bytes() == file.read_bytes() != first
+
+
+def test_a_planner_with_other_parameters_is_made_again(file: Path, tmp_path: Path) -> None:
+    found, registry = read_references(file).results, discover()
+    request = CampaignRequest(
+        suites=[SUITE], planners=["goal_seek", "stand_still"], only=[SCENARIO], out=tmp_path
+    )
+    plan = make_plan(request, registry)
+    assert without_known(plan, found.runs).jobs == ()
+    (one, *_) = found.runs
+    planner = one.record.planner.model_copy(update={"speed": 0.123})
+    before = replace(one, record=one.record.model_copy(update={"planner": planner}))
+    left = without_known(plan, [before, *found.runs[1:]])
+    assert {job.label for job in left.jobs if job.kind == "run"} == {one.planner}
 
 
 def test_a_run_that_is_made_again_takes_the_place_of_the_old_one(file: Path) -> None:
