@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shlex
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,6 +16,7 @@ from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
+    from crowdbot.core.campaign.request import CampaignRequest
     from crowdbot.core.results.results import Results
     from crowdbot.core.results.rows import RunRow
 
@@ -134,7 +134,7 @@ def make(
         raise typer.Exit(state.exit_code)
     made = _made(plan) if plan.runs else Results(runs=(), scores=())
     kept = made if old is None else extended(old.results, made)
-    commands = [*(old.commands if old else ()), *([_command()] if made.runs else ())]
+    commands = [*(old.commands if old else ()), *([_command(request, seeds)] if made.runs else ())]
     size = write_references(out, kept, commands)
     about = {"file": str(out), "bytes": size, "runs": len(kept.runs), "made": len(made.runs)}
     if as_json:
@@ -154,8 +154,14 @@ def _made(plan: Plan) -> Results:
     return Results(runs=chosen, scores=tuple(s for s in found.scores if s.run_id in ids))
 
 
-def _command() -> str:
-    return shlex.join(["crowdbot", *sys.argv[1:]])
+def _command(request: CampaignRequest, seeds: str) -> str:
+    """Return the command that makes these runs anywhere: without folders and number of processes."""
+    named = {
+        "--only": request.only, "--planner": request.planners, "--seeds": [seeds],
+        "--plugin": request.plugins,
+    }  # fmt: skip
+    options = [word for name, values in named.items() for v in values for word in (name, str(v))]
+    return shlex.join(["crowdbot", "references", "make", *request.suites, *options])
 
 
 def _all_planners(registry: Any) -> list[str]:
