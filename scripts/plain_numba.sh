@@ -7,7 +7,7 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
 trajectory() {
-	.venv/bin/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner dwa \
+	.venv/bin/crowdbot simulate challenge-2020 counter-d0250-dispersed-c20-r05 --planner goal_seek \
 		--set robots.robot.task.time_limit=1 --no-references --quiet --out "$out/$1"
 	grep -h '"trajectory"' "$out/$1"/*/*/*/*/run.json
 }

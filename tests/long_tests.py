@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-#: The longest tests, 12 minutes of processor time together.
+#: The longest tests, 13 minutes of processor time together.
 LONG = (
     "tests/core/statistics/test_power.py::test_so_many_draws_find_it_in_four_cases_of_five",
     "tests/core/support/test_gc_throttle.py::test_many_new_objects_are_made_without_a_collection",
@@ -79,6 +79,19 @@ LONG = (
     "tests/dsl/schema/test_documents.py::test_what_the_schema_refuses_validate_refuses",
     "tests/cli/test_campaign.py::test_killed_and_resumed_it_ends_the_same",
     # A quicker test of `make test` guards most of what these do.
+    "tests/core/report/test_browser.py::test_it_opens_offline",
+    "tests/core/campaign/test_judge.py::test_a_planner_that_always_fails_does_not_keep_the_next",
+    "tests/core/crowd/routing/test_held_out_plans.py::test_a_hundred_people",
+    "tests/core/crowd/test_oracle_ties.py::test_a_corner_is_counted_once_wherever_it_lies",
+    "tests/core/crowd/test_properties.py::test_four_thousand_people_in_a_small_box",
+    "tests/core/planning/containment/test_what_is_left.py",
+    "tests/core/sensing/test_hidden_walls.py::test_no_point_sees_a_hidden_wall",
+    "tests/dsl/schema/test_documents.py::test_schemas_are_schemas",
+    "tests/dsl/test_safety.py::test_memory_stays_bounded",
+    "tests/plugins/crowd/test_named_policies.py::test_people_walk_through_a_corridor",
+    "tests/plugins/planners/dwa/test_manoeuvring.py::test_one_that_is_held_looks_for_another_way",
+    "tests/plugins/planners/shared/test_field.py::test_it_drives_every_kind_of_robot",
+    "tests/testing/test_helpers.py::test_random_specs_are_valid_and_come_back",
     "tests/cli/test_audit.py::test_many_scenarios_have_few_with_floors",
     "tests/cli/test_hostile_packages.py::test_a_build_that_does_not_resolve",
     "tests/cli/test_planner_processes.py::test_the_planner_is_killed",
