@@ -155,7 +155,7 @@ def _made(plan: Plan) -> Results:
 
 
 def _command(request: CampaignRequest, seeds: str) -> str:
-    """Return the command that makes these runs anywhere: without folders and number of processes."""
+    """Return the command that makes these runs anywhere, without folders of this machine."""
     named = {
         "--only": request.only, "--planner": request.planners, "--seeds": [seeds],
         "--plugin": request.plugins,
