@@ -30,6 +30,8 @@ EFFICIENCY, FAULTS = "safe_efficiency", "contacts_at_fault"
 PLANNERS = ("people_mpc", "dwa", "stop_and_go", "goal_seek", "bully")
 OWN = "as it is"
 _PEOPLE = "crowd.robot_response."
+#: As `never` says already; other conditions could not be expanded with a share.
+_DISTRACTED = (f"{_PEOPLE}reaction=distracted",)
 #: Row of the table -> fields of the scenario.
 PEOPLE: Mapping[str, tuple[str, ...]] = {
     OWN: (),
@@ -37,8 +39,8 @@ PEOPLE: Mapping[str, tuple[str, ...]] = {
     "late_time 1.2 s": (f"{_PEOPLE}late_time=1.2 s",),
     "reaction_time 0.15 s": (f"{_PEOPLE}reaction_time=0.15 s",),
     "reaction_time 0.6 s": (f"{_PEOPLE}reaction_time=0.6 s",),
-    "2 % never look": (f"{_PEOPLE}ignoring_fraction=0.02",),
-    "25 % never look": (f"{_PEOPLE}ignoring_fraction=0.25",),
+    "2 % never look": (*_DISTRACTED, f"{_PEOPLE}ignoring_fraction=0.02"),
+    "25 % never look": (*_DISTRACTED, f"{_PEOPLE}ignoring_fraction=0.25"),
     "clearance 0.05 m": (f"{_PEOPLE}clearance=0.05 m",),
     "clearance 0.35 m": (f"{_PEOPLE}clearance=0.35 m",),
 }

@@ -62,6 +62,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("import", "files"): (".xml", "import", "{}", "--out", "RUNS/imported.yaml"),
     ("info", "file"): (".mcap", "info", "{}"),
     ("leaderboard", "folder"): ("", "leaderboard", "{}", "--out", "RUNS/l.html"),
+    ("leaderboard", "suite"): (".yaml", "leaderboard", "RUNS", "--suite", "{}"),
     ("leaderboard", "audit"): (".json", "leaderboard", "RUNS", "--audit", "{}"),
     ("challenge-page", "suite"): (".yaml", "challenge-page", "{}", "--out", "RUNS"),
     ("challenge-page", "bundles"): ("", "challenge-page", SHORT, "{}", "--out", "RUNS"),

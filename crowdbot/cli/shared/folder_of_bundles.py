@@ -15,6 +15,7 @@ from crowdbot.errors import InputError
 if TYPE_CHECKING:
     from crowdbot.core.bundle.standings import Standings
     from crowdbot.core.registry.registry import Registry
+    from crowdbot.dsl.suite.expand import Expansion
 
 Accept = Annotated[
     list[str] | None,
@@ -44,7 +45,7 @@ def read_bundles(
     accept: Sequence[str] = (),
     keys: Sequence[str] = (),
     audits: Sequence[Path] = (),
-    suite: str = "",
+    suites: Sequence[Expansion] = (),
 ) -> FolderOfBundles:
     """Return the tables of a folder, and say why bundles are left out or a record is not believed.
 
@@ -55,10 +56,11 @@ def read_bundles(
         accept: differences that are accepted.
         keys: public keys of organisers, besides the user's own.
         audits: audits of suites; default: those of the folder.
-        suite: id of the only suite; empty: all.
+        suites: the organisers' suites: only their bundles count, by the dates and the form of
+            their rounds; none: bundles of every suite, by what they say themselves.
 
     Raises:
-        InputError: there is no bundle, or none of that suite.
+        InputError: there is no bundle, or none of these suites.
     """
     from crowdbot.core.bundle.entries import load_entries
     from crowdbot.core.bundle.signature import check_public_key, own_public_key
@@ -71,10 +73,14 @@ def read_bundles(
     for entry in entries:
         if entry.doubt:
             say(f"warning: {entry.doubt}", err=True)
-    wanted = [e for e in entries if suite in ("", e.manifest.edition.suite)]
+    rounds = {suite.suite_id: suite.round for suite in suites}
+    wanted = [e for e in entries if not rounds or e.manifest.edition.suite in rounds]
+    names = ", ".join(rounds)
     if entries and not wanted:
-        raise InputError(f"{folder}: no bundle of {suite} there")
-    left_out |= {e.path.name: f"it is not of {suite}" for e in entries if e not in wanted}
+        raise InputError(f"{folder}: no bundle of {names} there")
+    left_out |= {e.path.name: f"it is not of {names}" for e in entries if e not in wanted}
+    if rounds:
+        wanted = [e.in_round(rounds[e.manifest.edition.suite]) for e in wanted]
     kept, apart = set_apart(wanted, accept)
     left_out = dict(sorted((left_out | apart).items()))
     for name, why in left_out.items():

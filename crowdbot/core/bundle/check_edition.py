@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
-from crowdbot.core.bundle.manifest import LOCK, RULES, Edition, Manifest
+from crowdbot.core.bundle.manifest import LOCK, RULES, Manifest
 from crowdbot.core.bundle.verification import content_hash
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.dsl.suite.round import Round
@@ -36,12 +36,17 @@ def lock_of(expansion: Expansion) -> Path | None:
     return path if path is not None and path.exists() else None
 
 
-def late(bundle: Path, edition: Edition) -> str:
-    """Return why a bundle was not in time, by the time of its file; empty if it was."""
-    if not edition.closes:
+def late(bundle: Path, closes: str) -> str:
+    """Return why a bundle was not in time, by the time of its file; empty if it was.
+
+    Args:
+        bundle: the archive.
+        closes: day or moment at which the round closes; empty: never.
+    """
+    if not closes:
         return ""
     arrived = datetime.fromtimestamp(bundle.stat().st_mtime, UTC)
-    reason = Round(closes=edition.closes).problem(arrived)
+    reason = Round(closes=closes).problem(arrived)
     return reason and f"{reason}; the file is of {arrived:%Y-%m-%d %H:%M} UTC"
 
 

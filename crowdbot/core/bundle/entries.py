@@ -13,12 +13,14 @@ from crowdbot.core.bundle.check_edition import late
 from crowdbot.core.bundle.check_run import ClaimedRun, declared_problems
 from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.score_members import score_member
-from crowdbot.core.bundle.verification import JUDGED, content_hash, read_verification
+from crowdbot.core.bundle.verification import JUDGED, REFUSED, content_hash, read_verification
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import MetricPart
 from crowdbot.core.support.look_alike import alike
+from crowdbot.core.support.text import plural
 from crowdbot.core.types.ending import has_failed
+from crowdbot.dsl.suite.round import Round
 from crowdbot.errors import InputError, printable
 
 SUFFIX = ".cbz"
@@ -50,19 +52,34 @@ class LeaderboardEntry:
 
     @property
     def ranked(self) -> bool:
-        """Return True if it is complete, and was handed in as the round asks."""
-        return not self.manifest.missing and not self.wrong_form
+        """Return True if nothing speaks against a rank."""
+        return not self.unranked
 
     @property
-    def wrong_form(self) -> bool:
-        """Return True if the round takes sealed planners only, and the team ran this one itself."""
-        judged = (self.verification or {}).get("outcome") == JUDGED
-        return self.manifest.edition.handed_in == "sealed" and not judged
+    def unranked(self) -> str:
+        """Return why it has no rank: incomplete, refused, or handed in otherwise than asked."""
+        outcome = (self.verification or {}).get("outcome")
+        if outcome in REFUSED:
+            return f"the organisers found it {outcome}"
+        if self.manifest.missing:
+            return f"{plural(len(self.manifest.missing), 'run')} missing"
+        if self.manifest.edition.handed_in == "sealed" and outcome != JUDGED:
+            return "this round ranks sealed planners only"
+        return ""
+
+    def in_round(self, held: Round | None) -> LeaderboardEntry:
+        """Return the entry with the dates and form of the organisers' round, not of the bundle."""
+        told = {
+            "closes": (held and held.closes) or "",
+            "handed_in": held.planners if held else "any",
+        }
+        edition = self.manifest.edition.model_copy(update=told)
+        return replace(self, manifest=self.manifest.model_copy(update={"edition": edition}))
 
     @property
     def late(self) -> str:
         """Return why the archive was not in time, by the time of its file; empty if it was."""
-        return late(self.path, self.manifest.edition)
+        return late(self.path, self.manifest.edition.closes)
 
     @property
     def is_verified(self) -> bool:

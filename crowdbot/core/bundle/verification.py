@@ -16,6 +16,8 @@ from crowdbot.errors import InputError
 
 #: Outcome of a bundle whose runs the organisers made themselves.
 JUDGED = "judged"
+#: Outcomes with which an entry has no rank.
+REFUSED = ("invalid", "suspicious", "nondeterministic")
 
 
 def content_hash(bundle: Path) -> str:

@@ -232,7 +232,7 @@ def _prepared(setup: Judge, sealed: Sealed, folder: Path) -> tuple[CampaignReque
         raise SimulationError(f"{where}: cannot be written: {error.strerror or error}") from None
     options = replace(setup.options, place=replace(setup.options.place, sealed=folder.resolve()))
     choice = resolve_planner(text, setup.registry, about.settings, options.place)
-    if choice.spec_dump.get("sha256") != about.digest:
+    if choice.digest != about.digest:
         raise InputError(f"{about.planner} is not the planner that was sealed")
     request = CampaignRequest(
         suites=[setup.suite],

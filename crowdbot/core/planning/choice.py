@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from crowdbot.core.planning.containment.offer import Aspect, kernel_offer
+from crowdbot.core.support.json_digest import digest
 from crowdbot.dsl.spec.component_specs import PlannerRole
 
 if TYPE_CHECKING:
@@ -93,6 +94,12 @@ class PlannerChoice:
     patience: float | None = None
     fleet: Mapping[str, PlannerChoice] = field(default_factory=dict)
     files: Mapping[str, Path] = field(default_factory=dict)
+
+    @property
+    def digest(self) -> str:
+        """Return the SHA-256 of its code; of its parameters where the code is installed."""
+        own = self.spec_dump.get("sha256") or digest(self.spec_dump)
+        return str(own).rpartition(":")[2]
 
     def of(self, robot: str) -> PlannerChoice:
         """Return the planner of one robot."""

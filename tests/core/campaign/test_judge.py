@@ -81,6 +81,18 @@ def _judge(folder: Path) -> int:
                      str(folder / "out"), "--jobs", "1"])  # fmt: skip
 
 
+def test_parameters_without_code_are_sealed(tmp_path: Path) -> None:
+    digests = set()
+    for speed in (0.5, 0.6):
+        (tmp_path / "slow.yaml").write_text(f"kind: dwa\nspeed: {speed}\n")
+        out = tmp_path / f"{speed}.cbs"
+        assert cli.main(["seal", str(tmp_path / "slow.yaml"), "--out", str(out)]) == 0
+        sealed = read_submission(out)
+        assert set(sealed.about.files) == {"slow.yaml"}
+        digests.add(sealed.about.digest)
+    assert len(digests) == 2
+
+
 def test_a_submission_is_what_was_sealed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from datetime import UTC, datetime
@@ -11,7 +12,7 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.core.bundle.check_edition import late
-from crowdbot.core.bundle.manifest import Edition
+from crowdbot.core.bundle.verification import content_hash, save_verification
 from tests.core.bundle.made_up_runs import make_bundle, write_suite
 from tests.paths import ROOT
 
@@ -48,7 +49,52 @@ def test_with_bundles(folder: Path, tmp_path: Path) -> None:
     board = (tmp_path / "leaderboard.html").read_text()
     assert "A &lt;b&gt;team&lt;/b&gt;" in board
     assert board.count("not ranked: this round ranks sealed planners only") == 2
-    assert "· dwa" not in (tmp_path / "index.html").read_text()
+    page = (tmp_path / "index.html").read_text()
+    assert "<li value" not in page
+    assert "· dwa is not ranked: this round ranks sealed planners only</p>" in page
+
+
+def test_a_copy_of_the_suite_with_other_rules_decides_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    suite = write_suite(tmp_path)
+    own = suite.read_text()
+    suite.write_text(own + "round: {closes: 2099-01-01}\n")  # the forger's copy
+    make_bundle(tmp_path, "dwa", "dwa.cbz", team="Sly")
+    for said, told in (
+        ("closes: 2020-01-01", "late: the round closed on 2020-01-01"),
+        ("planners: sealed", "not ranked: this round ranks sealed planners only"),
+    ):
+        suite.write_text(f"{own}round: {{{said}}}\n")
+        for command in (
+            ["challenge-page", str(suite), str(tmp_path), "--out", str(tmp_path / "site")],
+            ["leaderboard", str(tmp_path), "--suite", str(suite), "--out",
+             str(tmp_path / "site" / "leaderboard.html")],
+        ):  # fmt: skip
+            assert cli.main(command) == 0
+            assert told in (tmp_path / "site" / "leaderboard.html").read_text()
+    arguments = ["verify", str(tmp_path / "dwa.cbz"), "--suite", str(suite), "--sample", "0"]
+    suite.write_text(f"{own}round: {{closes: 2020-01-01}}\n")
+    capsys.readouterr()
+    assert cli.main([*arguments, "--json"]) == 0
+    assert "closed on 2020-01-01" in json.loads(capsys.readouterr().out)["late"]
+
+
+@pytest.mark.parametrize("outcome", ["suspicious", "invalid", "nondeterministic"])
+def test_what_the_organisers_refused_has_no_rank(tmp_path: Path, outcome: str) -> None:
+    suite = write_suite(tmp_path)
+    for planner in ("dwa", "goal_seek"):
+        bundle = make_bundle(tmp_path, planner, f"{planner}.cbz", team=planner.title())
+    record = {"sha256": content_hash(bundle), "outcome": outcome, "ok": False, "runs": {}}
+    save_verification(bundle, record)
+    out = tmp_path / "site"
+    assert cli.main(["challenge-page", str(suite), str(tmp_path), "--out", str(out)]) == 0
+    page = (out / "index.html").read_text()
+    assert re.findall(r"<li value[^>]*>([^<]+)", page) == ["Dwa · dwa"]
+    assert f"is not ranked: the organisers found it {outcome}</p>" in page
+    board = (out / "leaderboard.html").read_text()
+    assert f'class="{outcome}"' in board
+    assert f"not ranked: the organisers found it {outcome}" in board
 
 
 def test_bundles_are_ranked_where_a_round_takes_them(tmp_path: Path) -> None:
@@ -76,11 +122,10 @@ def test_bundles_of_another_suite_are_no_site(folder: Path, tmp_path: Path) -> N
 def test_a_bundle_after_the_round_is_told(tmp_path: Path) -> None:
     bundle = tmp_path / "a.cbz"
     bundle.touch()
-    edition = Edition(suite="a", title="", lock="", scenarios=1, rules=2, closes="2027-03-31")
     for moment, told in (
         (datetime(2027, 3, 31, 20, tzinfo=UTC), ""),
         (datetime(2027, 4, 1, 8, 30, tzinfo=UTC), "the file is of 2027-04-01 08:30 UTC"),
     ):
         os.utime(bundle, (moment.timestamp(), moment.timestamp()))
-        assert late(bundle, edition).endswith(told)
-        assert bool(late(bundle, edition)) is bool(told)
+        assert late(bundle, "2027-03-31").endswith(told)
+        assert bool(late(bundle, "2027-03-31")) is bool(told)

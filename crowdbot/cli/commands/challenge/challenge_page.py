@@ -49,7 +49,7 @@ def challenge_page(
     found = FolderOfBundles(tables=(), left_out={})
     if bundles is not None:
         found = read_bundles(
-            bundles, registry, RULE, accept=accept or (), keys=key or (), suite=expansion.suite_id
+            bundles, registry, RULE, accept=accept or (), keys=key or (), suites=[expansion]
         )
     site = Site(suite=suite, expansion=expansion, tables=found.tables, left_out=found.left_out)
     files = write_site(out, site, registry)

@@ -26,6 +26,14 @@ def leaderboard(
         ),
     ] = "rule",
     title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
+    suite: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SPEC",
+            help="Only bundles of this suite, by the dates and form of its round, whatever they "
+            "say; repeatable.",
+        ),
+    ] = None,
     accept: Accept = None,
     audit: Annotated[
         list[Path] | None,
@@ -47,6 +55,7 @@ def leaderboard(
     Example: crowdbot leaderboard bundles --out leaderboard.html --by spl
     """
     from crowdbot.core.bundle.leaderboard import write_leaderboard
+    from crowdbot.core.scenarios.library import open_suite
     from crowdbot.core.statistics.rules import RULE
     from crowdbot.errors import UnknownNameError
 
@@ -55,8 +64,9 @@ def leaderboard(
     if by != RULE and by not in registry.components("metric"):
         raise UnknownNameError("metric", by, registry.components("metric"), registry.why_absent(by))
     found = read_bundles(
-        folder, registry, by, accept=accept or (), keys=key or (), audits=audit or ()
-    )
+        folder, registry, by, accept=accept or (), keys=key or (), audits=audit or (),
+        suites=[open_suite(name, registry)[0] for name in suite or ()],
+    )  # fmt: skip
     tables = found.tables
     write_leaderboard(out, tables, found.left_out, title)
     if as_json:

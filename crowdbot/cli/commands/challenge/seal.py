@@ -57,10 +57,9 @@ def seal(
     choice = resolve_planner(planner, registry, planner_set or ())
     files = planner_files(planner, [*(include or ()), *([environment] if environment else [])])
     name = Path(planner).name
-    digest = str(choice.spec_dump["sha256"])
     about = About(
         team=team, contact=contact, planner=name, settings=list(planner_set or ()),
-        digest=digest, environment=environment, files={},
+        digest=choice.digest, environment=environment, files={},
     )  # fmt: skip
     target = out or Path(f"{choice.name}.cbs")
     check_ending(target, ".cbs")
@@ -74,7 +73,7 @@ def seal(
         except InputError as error:
             target.unlink()
             raise InputError(f"the sealed copy does not load: {error}; see --include") from None
-    if again.spec_dump.get("sha256") != digest:
+    if again.digest != choice.digest:
         target.unlink()
         raise InputError("the sealed copy is another planner: a file is missing; see --include")
     if as_json:

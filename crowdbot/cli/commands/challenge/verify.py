@@ -103,8 +103,11 @@ def verify(
 
     Example: crowdbot verify team.cbz --sample 10 --seed 7
     """
+    from crowdbot.core.bundle.signature import sign
     from crowdbot.core.bundle.verification import save_verification
 
+    if save:
+        sign({})  # fails at once where the key or the library is missing, not after all runs
     place = planner_place(in_process, planner_memory, contained=not not_contained)
     registry = installed(plugin, no_plugins)
     size = None if everything else sample
@@ -168,20 +171,21 @@ def verify_bundle(
     asked = replace(asked, seed=seed)
     with open_archive(bundle) as archive, stdout_to_stderr():
         digest = content_hash(bundle)
-        verdict = _verify(archive, registry, suite, planner, asked, digest)
+        expansion = _suite(archive, registry, suite)
+        verdict = _verify(archive, registry, (suite, expansion), planner, asked, digest)
         manifest = archive.manifest
     names = {"planner": manifest.label, "edition": manifest.edition_name}
     odds = odds_of_finding(len(manifest.runs), len(verdict.relations))
     return names | _document(verdict, seed, digest) | {
         "odds": {str(k): round(p, 4) for k, p in odds.items()}, "trusted": list(asked.trusted),
-        "late": late(bundle, manifest.edition),
+        "late": late(bundle, (expansion.round and expansion.round.closes) or ""),
     }  # fmt: skip
 
 
 def _verify(
     archive: Archive,
     registry: Registry,
-    suite: str | None,
+    suite: tuple[str | None, Expansion],
     planner: tuple[str | None, PlannerPlace],
     asked: Asked,
     digest: str,
@@ -189,13 +193,13 @@ def _verify(
     from crowdbot.core.bundle.check import problems_of
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict
 
-    expansion = _suite(archive, registry, suite)
+    given, expansion = suite
     runs, problems = problems_of(archive, expansion, registry)
     if problems:
         return RerunVerdict(outcome="invalid", findings=tuple(problems))
     if asked.size == 0 and not asked.fresh:
         return RerunVerdict(outcome="not re-run")
-    verdict = _make_reruns(archive, expansion, registry, planner, suite, runs, asked, digest)
+    verdict = _make_reruns(archive, expansion, registry, planner, given, runs, asked, digest)
     return _trusting(archive, registry, verdict, asked.trusted)
 
 
