@@ -7,10 +7,11 @@ docs/howto/train_a_policy.md has the commands of the policy that comes along.
 
 It learns in short corridors that no edition has, among few people first and many later: the next
 level begins once nine of ten episodes arrive, or when its share of the time is over. ``--start``
-goes on from a policy at the last level, among people who walk along, too, with less noise in its
-actions: what drives well among people in spite of much noise keeps too far away without it. Beside
-the policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and ``policy.svg``, its
-learning curve.
+goes on from a policy at the last level, among people who walk along, too, or in a ``--suite`` with
+new draws of people; with less noise in its actions: what drives well among people in spite of much
+noise keeps too far away without it. With more ``--directions`` than before it begins with the same
+actions. Beside the policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and
+``policy.svg``, its learning curve.
 Time is the processor time of this process.
 """
 
@@ -40,18 +41,20 @@ WORLDS: dict[str, Any] = {
     "levels": [["counter-d000-*", "counter-d005-*"], "counter-d010-*",
                ["counter-d010-*", "counter-d020-*"],
                ["counter-d010-*", "counter-d020-*", "in-d010-mixed-*"]],
-    "set": ["rates.planner=4 Hz", *(f"robots.robot.sensors.{name}_lidar.{field}"
-            for name in ("front", "rear") for field in ("angle_step=3 deg", "rate=4 Hz"))],
-    "observation": {"kind": "free_velocities", "sensor": "front_lidar", "others": ["rear_lidar"]},
+    "observation": {
+        "kind": "free_velocities", "sensor": "front_lidar", "others": ["rear_lidar"],
+        "directions": 17, "widest": 2.0,
+    },
     "start_spread": {"x": 0.5, "y": 3.5, "yaw": 2.0},
     "reward": {
-        "kind": "comfort", "advance": 2.0, "contact": 0.0, "arrival": 5.0,
-        "change": 0.02, "wall": 5.0, "time": 0.1,
+        "kind": "comfort", "contact": 0.0, "arrival": 5.0, "change": 0.02, "wall": 5.0,
     },
     "contact": "end",
     "draws": 24,
 }  # fmt: skip
 COLUMNS = ("processor_s", "steps", "level", "episodes", "reward", "arrived", "touched", "seconds")
+#: Costs that options set.
+COSTS = ("touch", "forced", "aside", "advance", "time")
 #: Share of the time after which each level ends at the latest.
 ENDS = (0.15, 0.4, 1.0)
 READY = 0.9
@@ -60,10 +63,12 @@ READY = 0.9
 class Course(BaseCallback):
     """Writes the curve, raises the level, saves the policy and stops when the time is over."""
 
-    def __init__(self, minutes: float, out: Path, before: Sequence[tuple[float, ...]]) -> None:
+    def __init__(self, given: argparse.Namespace, before: Sequence[tuple[float, ...]]) -> None:
         super().__init__()
-        self._budget, self._out, self._rate = 60.0 * minutes, out, 1e-4 if before else 3e-4
-        self._level = len(ENDS) if before else 0
+        self._budget: float = 60.0 * given.minutes
+        self._out: Path = given.out
+        self._rate: float = given.learning_rate or (1e-4 if before else 3e-4)
+        self._level = len(ENDS) + bool(given.suite) if before else 0
         self._ended: list[tuple[float, bool, bool, float]] = []
         self._rows, self._earlier = list(before), before[-1][:2] if before else (0.0, 0)
         self._begun = time.process_time()
@@ -153,30 +158,77 @@ def draw(curve: Path, out: Path) -> None:
 def train(given: argparse.Namespace) -> None:
     """Train for some processor time and save the policy."""
     torch.set_num_threads(1)
-    costs = {"touch": given.touch, "forced": given.forced, "time": given.time}
-    worlds = {**WORLDS, "reward": {**WORLDS["reward"], **costs}}
-    env = StableVecEnv(given.worlds, threads=given.threads, **worlds)
+    env = StableVecEnv(given.worlds, threads=given.threads, **worlds_of(given))
     before: list[tuple[float, ...]] = []
     if given.start:
-        model = PPO.load(given.start, env, device="cpu")
-        model.policy.log_std.data.fill_(math.log(given.noise))
+        model = go_on(env, given)
         rows = np.loadtxt(given.start.with_suffix(".csv"), delimiter=",", skiprows=1, ndmin=2)
         before = [tuple(row) for row in rows.tolist()]
     else:
-        model = begin(env, given.seed, given.noise)
-    course = Course(given.minutes, given.out, before)
+        model = begin(env, given)
+    course = Course(given, before)
     model.learn(10**9, callback=course)
     course.save()
     env.close()
 
 
-def begin(env: StableVecEnv, seed: int, noise: float) -> PPO:
+def worlds_of(given: argparse.Namespace) -> dict[str, Any]:
+    """Return the arguments of the environment."""
+    costs = {name: getattr(given, name) for name in COSTS}
+    lidars = (f"robots.robot.sensors.{name}_lidar.{field}" for name in ("front", "rear")
+              for field in ("angle_step=3 deg", f"rate={given.hertz} Hz"))  # fmt: skip
+    step = WORLDS["observation"]["widest"] / (WORLDS["observation"]["directions"] // 2)
+    fan = {"directions": given.directions, "widest": step * (given.directions // 2)}
+    worlds = {**WORLDS, "set": [f"rates.planner={given.hertz} Hz", *lidars],
+              "observation": {**WORLDS["observation"], **fan}}  # fmt: skip
+    if given.suite:
+        only = given.only or ["*"]
+        worlds |= {"suite": given.suite, "levels": [only] * (len(WORLDS["levels"]) + 1)}
+    return worlds | {"reward": {**WORLDS["reward"], **costs}}
+
+
+def horizon(hertz: int) -> dict[str, Any]:
+    """Return what makes the horizons of learning equally long in seconds at any rate."""
+    share = 4.0 / hertz
+    return {"n_steps": 16 * hertz, "gamma": 0.985**share, "gae_lambda": 0.95**share}
+
+
+def begin(env: StableVecEnv, given: argparse.Namespace) -> PPO:
     """Return a policy that knows nothing."""
     return PPO(
-        "MlpPolicy", env, n_steps=64, batch_size=2048, n_epochs=6, gamma=0.985, gae_lambda=0.95,
-        learning_rate=3e-4, seed=seed, device="cpu",
-        policy_kwargs={"net_arch": [128, 128], "log_std_init": math.log(noise)},
+        "MlpPolicy", env, batch_size=2048, n_epochs=6, learning_rate=3e-4, seed=given.seed,
+        device="cpu", **horizon(given.hertz),
+        policy_kwargs={"net_arch": [128, 128], "log_std_init": math.log(given.noise)},
     )  # fmt: skip
+
+
+def go_on(env: StableVecEnv, given: argparse.Namespace) -> PPO:
+    """Return a policy that knows what another one does, and may see in more directions."""
+    model, before = begin(env, given), PPO.load(given.start, device="cpu")
+    fan = before.crowdbot["observation"]  # type: ignore[attr-defined]
+    known = before.policy.state_dict()
+    for name, weight in known.items():
+        if name.startswith("mlp_extractor") and name.endswith("net.0.weight"):
+            known[name] = widened(weight, fan["directions"], given.directions, fan["speeds"])
+    model.policy.load_state_dict(known)
+    if fan["directions"] == given.directions:
+        model.policy.optimizer.load_state_dict(before.policy.optimizer.state_dict())
+    model.policy.log_std.data.fill_(math.log(given.noise))
+    return model
+
+
+def widened(weight: torch.Tensor, before: int, after: int, speeds: int) -> torch.Tensor:
+    """Return the first weights of a fan with more directions on both sides, which weigh nothing.
+
+    Args:
+        weight: (outputs, inputs); the fan comes first, speed by speed.
+        before, after: how many directions it has.
+        speeds: how many speeds.
+    """
+    size, more = 2 * speeds * before, (after - before) // 2
+    fan = weight[:, :size].reshape(len(weight), speeds, before, 2)
+    wider = torch.nn.functional.pad(fan, (0, 0, more, more)).flatten(1)
+    return torch.cat([wider, weight[:, size:]], dim=1)
 
 
 def main(arguments: list[str]) -> None:
@@ -188,7 +240,14 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--start", type=Path, help="policy.zip, beside policy.csv, to go on from")
     parser.add_argument("--touch", type=float, default=20.0, help="cost of touching a person")
     parser.add_argument("--forced", type=float, default=40.0, help="of forcing people aside, kg/J")
+    parser.add_argument("--aside", type=float, default=0.0, help="cost of a person driven aside")
+    parser.add_argument("--advance", type=float, default=2.0, help="of a metre towards them, 1/m")
     parser.add_argument("--time", type=float, default=0.1, help="cost of a second, 1/s")
+    parser.add_argument("--directions", type=int, default=17, help="seen, 0.25 rad apart")
+    parser.add_argument("--hertz", type=int, default=4, help="decisions a second")
+    parser.add_argument("--suite", help="to go on in, instead of the corridors")
+    parser.add_argument("--only", action="append", help="pattern of its scenario ids")
+    parser.add_argument("--learning-rate", type=float, help="at the beginning")
     parser.add_argument("--threads", type=int, default=1, help="that step the worlds")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("policy.onnx"))

@@ -114,6 +114,7 @@ class Actor:
             advance=found[c.ADVANCE],
             work=found[c.WORK],
             forced=found[c.FORCED],
+            aside=found[c.ASIDE],
             command=given,
             before=self._before.copy(),
         )

@@ -150,7 +150,7 @@ class _Reader:
                 arrived=np.array([n == last and self._robot.goal_time is not None]),
                 contact=self._touching(n, wall=False),
                 wall=self._touching(n, wall=True),
-                gap=none, advance=none, work=none, forced=none,  # progress does not use them
+                gap=none, advance=none, work=none, forced=none, aside=none,
                 command=self._given[n : n + 1],
                 before=before[n : n + 1],
             ))[0]

@@ -183,6 +183,7 @@ def _changes(worlds: int) -> list[StepChange]:
                 advance=rng.uniform(0.0, 0.1, worlds),
                 work=rng.uniform(0.0, 20.0, worlds),
                 forced=rng.uniform(0.0, 0.3, worlds),
+                aside=rng.uniform(0.0, 1.0, worlds),
                 command=rng.uniform(-0.5, 1.0, (worlds, 3)) * [1.0, 1.0, 0.0],
                 before=np.zeros((worlds, 3)),
             )

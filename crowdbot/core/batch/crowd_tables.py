@@ -20,14 +20,14 @@ CROWD_FIELDS = (
     "boundary", "rules", "response", "solids", "grid_frame", "grid_first", "grid_near", "reaction",
     "placed", "order", "room", "discs", "numbers", "stiffnesses", "outlines", "robots", "seen",
     "radius", "avoided", "preferred", "fastest_change", "heeds", "late", "attention", "evades",
-    "position", "velocity", "goal", "present",
+    "position", "velocity", "goal", "present", "pressed",
 )  # fmt: skip
 (
     FLAT, COUNTS, TRAITS, ROUTE, ORIGIN, ENTRY_ORDER, WALLS, ENTRANCE, OUT,
     BOUNDARY, RULES, RESPONSE, SOLIDS, GRID_FRAME, GRID_FIRST, GRID_NEAR, REACTION,
     PLACED, ORDER, ROOM, DISCS, NUMBERS, STIFFNESSES, OUTLINES, ROBOTS, SEEN,
     RADIUS, AVOIDED, PREFERRED, FASTEST_CHANGE, HEEDS, LATE, ATTENTION, EVADES,
-    POSITION, VELOCITY, GOAL, PRESENT,
+    POSITION, VELOCITY, GOAL, PRESENT, PRESSED,
 ) = range(len(CROWD_FIELDS))  # fmt: skip
 
 #: Entries of ``counts``: ticks between decisions; key of goals; 1 if robots' motion is seen.
@@ -101,6 +101,7 @@ def crowd_table(
         late=np.ascontiguousarray(a.late),
         attention=_owned(engine.room),
         evades=engine.evades,
+        pressed=np.zeros((len(robots), people)),
     )
     pool.put(
         own,

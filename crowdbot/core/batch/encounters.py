@@ -29,6 +29,8 @@ _STILL = 1e-3
 _SIGHT = 8.0
 #: Those whom the robot reaches sooner, if they stand, are forced aside, s; looks ahead until then.
 _HEADWAY, _LOOKS = 0.5, 4
+#: A person who is pushed by more in an episode is driven aside, J/kg.
+FORCED_PUSH = 0.25
 #: More than rounding.
 _CLEARLY = 1.0 + 1e-9
 
@@ -76,12 +78,13 @@ def meet(
 @kernel
 def press(
     drive: DriveStateRecord, robot: RobotRecord, outlines: Array, r: int, people: People,
-    traits: Rows[TraitsRecord], dt: float,
+    traits: Rows[TraitsRecord], pressed: Array, dt: float,
 ) -> None:  # fmt: skip
-    """Add the push of a tick to ``forced``.
+    """Add the push of a tick to ``forced``, and what it drives people aside to ``aside``.
 
     Args:
         outlines: (R, K, 2) of the robots, of which this is number ``r``.
+        pressed: (N,) the push of each person since the episode began, J/kg, changed.
         dt: how long the tick takes, s.
     """
     outline = outlines[r][: corners_of(outlines, r)]
@@ -96,7 +99,20 @@ def press(
         if far2 > _NEAR * _NEAR or approach <= 0.0 or evades <= 0.0:
             continue
         if _within_headway(robot, outline, px, py, robot.body + traits[i].radius):
-            drive.forced += dt * evades * approach / far2
+            push = dt * evades * approach / far2
+            drive.forced += push
+            drive.aside -= driven_aside(pressed[i])
+            pressed[i] += push
+            drive.aside += driven_aside(pressed[i])
+
+
+@kernel
+def driven_aside(push: float) -> float:
+    """Return how far a person is driven aside, 0 to 1: 1 is a person whom the score counts.
+
+    Below it is the square of the push, so that little pushes cost little, but not nothing.
+    """
+    return min(1.0, (push / FORCED_PUSH) ** 2)
 
 
 @kernel

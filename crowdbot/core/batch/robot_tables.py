@@ -57,6 +57,8 @@ class DriveStateRecord:
         work: work that people need against it to keep room, J.
         forced: its work, per mass, against people who evade it at the last moment, since the step
             began, J/kg.
+        aside: people whom it has driven aside since the step began, each as of
+            `encounters.driven_aside`.
     """
 
     v: float
@@ -74,6 +76,7 @@ class DriveStateRecord:
     advance: float
     work: float
     forced: float
+    aside: float
 
 
 DRIVE_LIMITS, DRIVE_STATE = record_type(DriveLimitsRecord), record_type(DriveStateRecord)

@@ -82,7 +82,7 @@ def _command(commands: Array, least: Array, most: Array, drives: Array) -> None:
             drive.wanted_v = _within(commands[w, r, 0], low[0], high[0])
             drive.wanted_w = _within(commands[w, r, 1], low[1], high[1])
             drive.wanted_vy = _within(commands[w, r, 2], low[2], high[2])
-            drive.blocked = drive.touched = drive.since = drive.forced = 0.0
+            drive.blocked = drive.touched = drive.since = drive.forced = drive.aside = 0.0
 
 
 @kernel
@@ -157,7 +157,7 @@ def _advance_robots(world: Indices, crowd: Indices, robots: Indices, drives: Arr
             felt = as_record(flat[first:], FELT)
             if felt.robot_fx != 0.0 or felt.robot_fy != 0.0:
                 drive.touched += 1.0
-            press(drive, rows[r], outlines, r, walkers, traits, TICK)
+            press(drive, rows[r], outlines, r, walkers, traits, floats2(crowd, c.PRESSED)[r], TICK)
         x, y = rows[r].x, rows[r].y
         move(rows[r], drive, robots[r])
         drive.since += TICK

@@ -16,12 +16,12 @@ from crowdbot.core.support.records import as_record
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Rows of what `write_changes` writes.
-PROGRESS, DISTANCE, CONTACT, WALL, GAP, ADVANCE, WORK, FORCED = range(8)
-_ROWS = 8
+PROGRESS, DISTANCE, CONTACT, WALL, GAP, ADVANCE, WORK, FORCED, ASIDE = range(9)
+_ROWS = 9
 
 
 def changes(count: int) -> tuple[Array, Mask]:
-    """Return room for `write_changes`: (8, W) numbers and (3, W) arrived, touched, late."""
+    """Return room for `write_changes`: (9, W) numbers and (3, W) arrived, touched, late."""
     return np.empty((_ROWS, count)), np.empty((3, count), np.bool_)
 
 
@@ -50,7 +50,7 @@ def write_changes(
         distance[w] = away
         found[CONTACT, w], found[WALL, w] = drive.touched / ticks, drive.blocked / ticks
         found[GAP, w], found[ADVANCE, w], found[WORK, w] = drive.gap, drive.advance, drive.work
-        found[FORCED, w] = drive.forced
+        found[FORCED, w], found[ASIDE, w] = drive.forced, drive.aside
         happened[0, w] = here[w] and drive.arrived >= 0.0
         happened[1, w] = here[w] and drive.touched > 0.0
         happened[2, w] = here[w] and now[w] >= limits[w] and not happened[0, w]

@@ -117,6 +117,8 @@ class BatchWorld:
         """Return to the initial state."""
         self.flat[:] = self._initial
         self.robots[:] = self._start
+        if self.engine is not None:
+            self.crowd.arrays["pressed"][:] = 0.0
         for drawn, first in zip(self._drawn, self._drawn_first, strict=True):
             drawn[:] = first
         for scanner in self.scanners:

@@ -28,6 +28,9 @@ class ProgressSpec(RewardSpec):
         description="Taken off for each J/kg of work against people who evade at the last moment, "
         "kg/J.",
     )
+    aside: Amount = Field(
+        default=0.0, description="Taken off for each person who is driven aside, a number."
+    )
     wall: Amount = Field(
         default=1.0, description="Taken off for each second stopped by a wall, 1/s."
     )

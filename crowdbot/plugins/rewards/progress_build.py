@@ -24,6 +24,7 @@ class ProgressReward:
         cost = spec.time + spec.contact * change.contact + spec.wall * change.wall
         found = spec.progress * change.progress - step * cost - spec.change * changed.sum(axis=1)
         found -= spec.touch * (change.contact > 0.0) + spec.forced * change.forced
+        found -= spec.aside * change.aside
         return np.asarray(found + spec.arrival * change.arrived)
 
 

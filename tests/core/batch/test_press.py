@@ -22,11 +22,13 @@ DISC, LONG = np.full((1, 2, 2), np.nan), np.array([[[-0.6, 0.0], [0.6, 0.0]]])
 
 
 @kernel
-def call(drive: Array, robot: Array, outlines: Array, people: Array, traits: Array) -> None:
+def call(
+    drive: Array, robot: Array, outlines: Array, people: Array, traits: Array, pressed: Array
+) -> None:
     """Call with rows of numbers."""
     press(
         as_record(drive, DRIVE_STATE), as_record(robot, ROBOT), outlines, 0,
-        as_rows(people, PERSON), as_rows(traits, TRAITS), 0.1,
+        as_rows(people, PERSON), as_rows(traits, TRAITS), pressed, 0.1,
     )  # fmt: skip
 
 
@@ -40,7 +42,7 @@ def row(record: Any, **values: float) -> Array:
 def forced(outlines: Array = DISC, /, **person: float) -> float:
     drive, robot = row(DRIVE_STATE), row(ROBOT, vx=0.8, body=0.2)
     here = {"x": 0.8, "ax": 1.5, "waiting": PRESENT, **person}
-    call(drive, robot, outlines, row(PERSON, **here), row(TRAITS, radius=0.3))
+    call(drive, robot, outlines, row(PERSON, **here), row(TRAITS, radius=0.3), np.zeros(1))
     return float(drive[DRIVE_STATE.names.index("forced")])
 
 
@@ -73,6 +75,19 @@ def test_the_outline_counts() -> None:
     assert forced(LONG, x=1.6) == 0.0
 
 
+def test_each_person_is_driven_aside_once() -> None:
+    drive, robot = row(DRIVE_STATE), row(ROBOT, vx=0.8, body=0.2)
+    people = np.concatenate([row(PERSON, x=0.8, ax=a, waiting=PRESENT) for a in (1.0, 0.5)])
+    traits, pressed, counted = np.tile(row(TRAITS, radius=0.3), 2), np.zeros(2), []
+    for _ in range(8):
+        call(drive, robot, DISC, people, traits, pressed)
+        counted.append(float(drive[DRIVE_STATE.names.index("aside")]))
+    # 0.08 and 0.04 J/kg in each call, of 0.25 J/kg.
+    assert counted[0] == pytest.approx((0.08**2 + 0.04**2) / 0.25**2)
+    assert counted[3] == pytest.approx(1.0 + (0.16 / 0.25) ** 2)
+    assert counted[-1] == pytest.approx(2.0)
+
+
 @pytest.mark.slow
 def test_it_is_about_that_of_the_score() -> None:
     gym = pytest.importorskip("gymnasium", reason="the extra rl is not installed")
@@ -83,11 +98,16 @@ def test_it_is_about_that_of_the_score() -> None:
         reward={"kind": "progress", "forced": 1.0, **nothing},
     ))  # fmt: skip
     ours = scores = 0.0
+    aside = [0, 0]
     for seed in (2, 3):
         env.reset(seed=seed)
         ours -= sum(env.step(np.array([1.0, 0.0], np.float32))[1] for _ in range(16 * 40))
-        run = env.trajectories
+        run, pressed = env.trajectories, env.unwrapped.rollout.world(0).crowd.arrays["pressed"]
         share = share_below(run, 0.5, 8.0) * own_legs(run, 2.0, 8.0)
-        scores += float(evasion(run, 2.0, 8.0).push(share).sum())
+        pushes = evasion(run, 2.0, 8.0).push(share)
+        scores += float(pushes.sum())
+        aside = [aside[0] + int((pressed > 0.25).sum()), aside[1] + int((pushes > 0.25).sum())]
     assert scores > 1.0
     assert 0.7 < ours / scores < 1.5
+    assert aside[1] > 3
+    assert 0.6 < aside[0] / aside[1] < 1.6
