@@ -23,6 +23,7 @@ KINDS: Mapping[str, tuple[Literal["error", "warning"], str]] = {
     "metrics": ("error", "metrics of different versions or parameters"),
     "versions": ("error", "different versions of software"),
     "privileged": ("error", "planners that know ground truth among planners that sense"),
+    "libraries": ("warning", "versions of libraries that only read and write files"),
     "agents": ("warning", "people read from a lock in some runs, sampled in others"),
     "unpinned": ("warning", "code of no installed version, which others cannot get by name"),
     "processor": ("warning", "different processors, which round differently"),
@@ -53,8 +54,10 @@ _CONDITIONS = {
     "version": "versions",
     "processor": "processor",
 }
+#: Conditions that decide no number of a run.
+_FILES = ("versions.mcap", "versions.pydantic", "versions.rosbags")
 #: Conditions that must be equal in all runs; the others in all runs of one scenario.
-_EVERYWHERE = ("metrics", "versions", "processor")
+_EVERYWHERE = ("metrics", "versions", "libraries", "processor")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +124,7 @@ def check_comparable(findings: Sequence[Finding]) -> None:
         lines = "\n".join(_lines(errors))
         raise InputError(
             f"these runs differ in more than the planner:\n{lines}\n"
-            f"compare them apart, or accept what differs by name: {kinds}"
+            f"compare them apart, or accept what differs: --accept {kinds.replace(' ', '')}"
         )
 
 
@@ -175,7 +178,7 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
     for name in sorted(names):
         if len({found.get(name, "") for found in different.values()}) == 1:
             continue
-        kind = _CONDITIONS.get(name.partition(".")[0], "condition")
+        kind = "libraries" if name in _FILES else _kind_of(name)
         groups = [("", runs)] if kind in _EVERYWHERE else _grouped(runs, _scenario)
         for scenario, group in groups:
             subject = f"{name}, {scenario}" if scenario else name
@@ -187,6 +190,10 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
                 return all_conditions[r.run_id].get(name, "")
 
             yield _finding(kind, subject, group, value)
+
+
+def _kind_of(condition: str) -> str:
+    return _CONDITIONS.get(condition.partition(".")[0], "condition")
 
 
 def _head(name: str) -> str:

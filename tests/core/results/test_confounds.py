@@ -55,7 +55,7 @@ def test_what_differs_is_refused_unless_it_is_accepted(kind: str, changes: dict[
     assert {f.kind for f in findings} == {kind}
     with pytest.raises(InputError, match=rf"differ in more than the planner:\n  {kind}: .*") as e:
         check_comparable(findings)
-    assert str(e.value).endswith(f"accept what differs by name: {kind}")
+    assert str(e.value).endswith(f"accept what differs: --accept {kind}")
     accepted = confounds(results, accept=[kind])
     assert all(f.accepted for f in accepted)
     check_comparable(accepted)
@@ -64,6 +64,7 @@ def test_what_differs_is_refused_unless_it_is_accepted(kind: str, changes: dict[
 @pytest.mark.parametrize(("kind", "changes"), [
     ("agents", {"record": RECORD | {"agents": "drawn"}}),
     ("unpinned", {"pinned": False}),
+    ("libraries", {"record": RECORD | {"versions": {**RECORD["versions"], "pydantic": "2.14.4"}}}),
     ("processor", {"record": RECORD | {"machine": {"processor": "generic"}}}),
 ])  # fmt: skip
 def test_what_only_warns(kind: str, changes: dict[str, Any]) -> None:
