@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from crowdbot.core.trajectories.demanded_evasion import MOST, demanded_evasion, robot_approach
 from crowdbot.core.trajectories.disc_around_robot import as_disc
+from crowdbot.core.trajectories.driven_aside import driven_aside
 from crowdbot.core.trajectories.dynamic_time_warping import least_warping, spaced
 from crowdbot.core.trajectories.encounters import (
     approach,
@@ -74,6 +75,7 @@ __all__ = [
     "contact_runs",
     "demanded_evasion",
     "displacement",
+    "driven_aside",
     "durations",
     "encounter",
     "evasion",

@@ -26,5 +26,7 @@ class Cause(StrEnum):
     WALL = "touched_wall", "touched a wall"
     BLOCKED = "blocked", "stood too long and ran out of time"
     SLOW = "slow", "were too slow and ran out of time"
+    ASIDE = "drove_aside", "drove a person aside"
     STRUCK = "struck", "arrived, but a person walked into the robot"
     CLOSE = "closest", "arrived without a contact"
+    ALONE = "met_no_one", "arrived and met no one"

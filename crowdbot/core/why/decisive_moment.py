@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core.runs.record_parts import EndedPart
+from crowdbot.core.trajectories.driven_aside import driven_aside
 from crowdbot.core.trajectories.encounters import encounter, robot_of, robot_velocities
 from crowdbot.core.trajectories.fault.at_fault import at_fault
 from crowdbot.core.trajectories.person_contacts import PersonContacts, person_contacts
@@ -17,6 +18,8 @@ from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.core.types.ending import Ending
 from crowdbot.core.why.causes import Cause
 
+#: Defaults of the metric ``safe_efficiency``; J/kg, s, m.
+ASIDE = {"push": 0.25, "headway": 0.5, "reach": 2.0}
 #: A robot below this speed stands, m/s.
 STANDING = 0.05
 #: Share of the run that a robot stands, from which standing is why time ran out.
@@ -60,7 +63,8 @@ def decisive_moment(run: Trajectories, ended: EndedPart) -> DecisiveMoment:
     return (
         _first(contacts, at_fault(run, contacts, RULE, JUMP_SPEED), Cause.RAN_INTO)
         or _wall(run)
-        or (_late(run) if ended.status == Ending.TIMEOUT else None)
+        or (late_moment(run) if ended.status == Ending.TIMEOUT else None)
+        or _aside(run)
         or _first(contacts, np.ones(len(contacts), dtype=bool), Cause.STRUCK)
         or _closest(run)
     )
@@ -83,7 +87,15 @@ def _wall(run: Trajectories) -> DecisiveMoment | None:
     return DecisiveMoment(cause=Cause.WALL, t=float(found.t0[walls].min()))
 
 
-def _late(run: Trajectories) -> DecisiveMoment:
+def _aside(run: Trajectories) -> DecisiveMoment | None:
+    times = driven_aside(run, jump_speed=JUMP_SPEED, **ASIDE)
+    if not np.isfinite(times).any():
+        return None
+    who = int(np.argmin(times))
+    return DecisiveMoment(cause=Cause.ASIDE, t=float(times[who]), agent=who)
+
+
+def late_moment(run: Trajectories) -> DecisiveMoment:
     """Return the start of the longest stand if the robot stood long, else the slowest moment."""
     robot, t = robot_of(run), run.t
     speed = np.hypot(*robot_velocities(run, JUMP_SPEED))
@@ -105,7 +117,7 @@ def _late(run: Trajectories) -> DecisiveMoment:
 def _closest(run: Trajectories) -> DecisiveMoment:
     gaps = _gaps(run)
     if not np.isfinite(gaps).any():
-        return DecisiveMoment(cause=Cause.CLOSE, t=float(run.t[-1]))
+        return DecisiveMoment(cause=Cause.ALONE, t=float(run.t[-1]))
     sample, who = divmod(int(np.nanargmin(gaps)), gaps.shape[1])
     return DecisiveMoment(cause=Cause.CLOSE, t=float(run.t[sample]), agent=who)
 

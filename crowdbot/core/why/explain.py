@@ -12,9 +12,10 @@ from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.record_parts import EndedPart
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.ending import Ending
 from crowdbot.core.why.causes import Cause
 from crowdbot.core.why.decisive_moment import DecisiveMoment, decisive_moment
-from crowdbot.core.why.sentences import what_happened, what_was_seen
+from crowdbot.core.why.sentences import what_happened, what_was_seen, why_late
 from crowdbot.errors import InputError, UnknownNameError
 
 
@@ -92,6 +93,8 @@ def explain(directory: Path, robot: str | None = None, *, sensors: bool = True) 
             raise InputError(f"{directory}: there is no robot in this run")
         moment = decisive_moment(run, ended)
         said = what_happened(run, moment, ended.reason)
+        if ended.status == Ending.TIMEOUT and moment.cause not in (Cause.BLOCKED, Cause.SLOW):
+            said.append(why_late(run))
         if sensors:
             said += what_was_seen(run, moment, recording.scans(robot=robot))
     return Explanation(

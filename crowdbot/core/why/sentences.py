@@ -15,7 +15,7 @@ from crowdbot.core.trajectories.encounters import encounter, people, robot_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.worst_moment import JUMP_SPEED
 from crowdbot.core.why.causes import Cause
-from crowdbot.core.why.decisive_moment import DecisiveMoment
+from crowdbot.core.why.decisive_moment import DecisiveMoment, late_moment
 
 _SIDES = {"front": "ahead", "left": "on the left", "right": "on the right", "rear": "behind"}
 _SIDES_OF_ROBOT = {
@@ -28,8 +28,10 @@ _HAPPENED = {
     Cause.WALL: "the robot touched a wall",
     Cause.BLOCKED: "the robot stood for {stood:.1f} s",
     Cause.SLOW: "the robot moved until time was up",
+    Cause.ASIDE: "the robot drove a person aside, which halves its safe efficiency",
     Cause.STRUCK: "a person walked into the robot",
     Cause.CLOSE: "the robot was closest to a person",
+    Cause.ALONE: "the robot met no one",
 }
 #: The beginning of a reason that names the planner, and its file.
 _PLANNER = re.compile(r"^planner '[^']*'( \([^)]*\))?:? ")
@@ -48,6 +50,14 @@ def what_happened(run: Trajectories, moment: DecisiveMoment, reason: str = "") -
     if moment.cause == Cause.PLANNER and reason:
         happened += f": {_PLANNER.sub('', reason)}"
     return [f"{moment.t:.1f} s: {happened}", *_person(run, moment, sample), _robot(run, sample)]
+
+
+def why_late(run: Trajectories) -> str:
+    """Return what a robot did whose time was up."""
+    moment = late_moment(run)
+    if moment.cause == Cause.BLOCKED:
+        return f"it stood for {moment.stood:.1f} s from {moment.t:.1f} s on"
+    return "it moved until time was up"
 
 
 def what_was_seen(

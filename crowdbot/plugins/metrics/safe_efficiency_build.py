@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from crowdbot.plugin import (
     References,
     Score,
@@ -15,11 +17,9 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import (
     at_fault,
-    evasion,
-    own_legs,
+    driven_aside,
     person_contacts,
     robot_of,
-    share_below,
 )
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.fault_build import fault_rule
@@ -47,7 +47,10 @@ class SafeEfficiency:
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
         faults = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
         taken = travel_time(run, robot_of(run))
-        aside = self._driven_aside(run)
+        aside = np.isfinite(driven_aside(
+            run, push=spec.forced_push, headway=spec.forced_headway, reach=spec.evasion_reach,
+            jump_speed=spec.jump_speed,
+        )).sum()  # fmt: skip
         walls = wall_contacts(run, spec.contact_tol, spec.release_gap, spec.jump_speed)
         extras = {
             "contacts_at_fault": float(faults), "driven_aside": float(aside),
@@ -57,13 +60,5 @@ class SafeEfficiency:
             return factory.all_undefined("zero_denominator")
         if faults or robot_of(run).goal_time is None:
             return [factory.ok("corrected", 0.0, extras)]
-        share = spec.forced_factor**aside * spec.wall_factor**walls
+        share = spec.forced_factor ** int(aside) * spec.wall_factor**walls
         return [factory.ok("corrected", share * shortest / max(taken, shortest), extras)]
-
-    def _driven_aside(self, run: Trajectories) -> int:
-        """Count people whom the robot pushed hard and would have touched at once."""
-        spec = self.spec
-        found = evasion(run, spec.evasion_reach, spec.jump_speed)
-        own = own_legs(run, spec.evasion_reach, spec.jump_speed)
-        share = share_below(run, spec.forced_headway, spec.jump_speed)
-        return int((found.push(share * own) > spec.forced_push).sum())

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from crowdbot.core.runs.record_parts import EndedPart
+from crowdbot.core.scoring.metric import References
+from crowdbot.core.trajectories.driven_aside import driven_aside
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.why.causes import Cause
-from crowdbot.core.why.decisive_moment import DecisiveMoment, decisive_moment
-from crowdbot.core.why.sentences import what_happened
+from crowdbot.core.why.decisive_moment import ASIDE, DecisiveMoment, decisive_moment
+from crowdbot.core.why.sentences import what_happened, why_late
 from crowdbot.core.why.strip import BEFORE, strip
-from tests.plugins.metrics.scenes import Body, grid, line, scene
+from crowdbot.plugins.metrics.safe_efficiency import SafeEfficiencySpec
+from crowdbot.plugins.metrics.safe_efficiency_build import SafeEfficiency
+from tests.plugins.metrics.scenes import Body, grid, line, polyline, scene
 
 T = grid(10, 1 / 16)
 FAR = (10.0, 0.0)
@@ -40,6 +45,13 @@ def contact(t: float, agent: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def jump_aside() -> Body:
+    """Stand in the way, and flee ahead and to the left at the last moment, at 3 m/s² each."""
+    since = np.clip(T - 4.3, 0.0, 1.0)
+    way = 1.5 * since**2 + 3.0 * np.clip(T - 5.3, 0.0, None)
+    return Body(5.0 + way, way, 3.0 * since, 3.0 * since)
+
+
 AHEAD = line(T, (3, 0), (0, 0))
 CASES = {
     Cause.RAN_INTO: (drive(0.5, AHEAD), ended(), 0),
@@ -48,6 +60,8 @@ CASES = {
     Cause.SLOW: (drive(0.4, line(T, (3, 3), (0, 0))), ended(), 0),
     Cause.STRUCK: (drive(1.0, line(T, (-3, 0), (1.5, 0))), ended("arrived", goal_time=10.0), 0),
     Cause.CLOSE: (drive(1.0, line(T, (5, 2), (0, 0))), ended("arrived", goal_time=10.0), 0),
+    Cause.ASIDE: (drive(1.0, jump_aside()), ended("arrived", goal_time=10.0), 0),
+    Cause.ALONE: (drive(1.0), ended("arrived", goal_time=10.0), None),
     Cause.TOPPLED: (drive(0.5, AHEAD), ended("toppled", toppled_time=5.5), 0),
     Cause.PLANNER: (drive(0.5, line(T, (3, 3), (0, 0))), ended("planner_failed"), None),
 }
@@ -73,10 +87,20 @@ def test_the_moment_is_when_it_began() -> None:
     assert moment(Cause.CLOSE).t == pytest.approx(5.0, abs=0.07)
 
 
-def test_a_run_without_people_has_a_moment() -> None:
-    found = decisive_moment(drive(1.0), ended("arrived", goal_time=10.0))
-    assert (found.cause, found.agent) == (Cause.CLOSE, None)
-    assert strip(drive(1.0), found)
+def test_who_is_driven_aside_halves_the_score() -> None:
+    run, found = replace(CASES[Cause.ASIDE][0], robot_speed_limit=1.0), moment(Cause.ASIDE)
+    assert 4.3 < found.t < 5.0
+    (halved,) = SafeEfficiency(SafeEfficiencySpec()).score(run, References())
+    assert halved.extras["driven_aside"] == 1.0
+    times = driven_aside(run, jump_speed=10.0, **ASIDE)
+    assert times.tolist() == [found.t]
+
+
+def test_why_time_was_up_is_told_after_a_contact() -> None:
+    stands = scene(T, polyline(T, [(0, 0, 0), (3, 3, 0), (10, 3, 0)]), (AHEAD,), robot_goal=FAR)
+    assert decisive_moment(stands, ended()).cause == Cause.RAN_INTO
+    assert re.fullmatch(r"it stood for [67]\.\d s from [23]\.\d s on", why_late(stands))
+    assert why_late(CASES[Cause.SLOW][0]) == "it moved until time was up"
 
 
 @pytest.mark.parametrize("cause", Cause)
