@@ -400,10 +400,11 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def _stamp_if_run(folder: str) -> str:
-    """Return the stamp of a run; empty if the folder is not a run, or its record cannot be read."""
+    """Return the stamp of a run; empty for a bag or another folder, or if it cannot be read."""
     try:
         about = os.stat(f"{folder}/{files.RECORD}")  # noqa: PTH116  many files: a Path takes longer
-        return "" if stat.S_ISDIR(about.st_mode) else _stamp_of_run(folder, about)
+        run = not stat.S_ISDIR(about.st_mode) and not files.is_bag(folder)
+        return _stamp_of_run(folder, about) if run else ""
     except OSError:
         return ""
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.runs.run_directory import RECORD, RECORDING, changed, checked_record
+from crowdbot.core.runs.run_directory import RECORD, RECORDING, changed, checked_record, is_bag
 from crowdbot.errors import InputError
 
 
@@ -75,6 +75,8 @@ def find_source(
 
 def _is_run(record: Path, root: Path) -> bool:
     parts = record.relative_to(root).parts[:-1]
+    if is_bag(record.parent):
+        return False
     return "references" not in parts and not any(".partial" in p or ".old-" in p for p in parts)
 
 

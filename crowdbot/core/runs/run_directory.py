@@ -28,6 +28,8 @@ RECORD, RECORDING, SCENARIO, SCORES, REPLAY = (
 _LOCK = ".lock"
 #: Folder of calibration runs; no scenario or planner has this name.
 _REFERENCES = "references"
+#: Endings of a bag's own recordings.
+_BAGS = (".bag", ".mcap", ".db3")
 _NEEDED = (RECORDING, SCENARIO, SCORES)
 #: Keys of the record that describe the other files.
 OF_FILES = ("files", "digests")
@@ -49,6 +51,16 @@ def checked_record(directory: Path) -> dict[str, Any]:
     if not isinstance(record, dict):
         raise InputError(f"{file}: cut, or not a record of a run: not a mapping")
     return record
+
+
+def is_bag(folder: str | Path) -> bool:
+    """Return True for a run that was exported as a bag: its record, but another recording."""
+    if os.path.lexists(f"{folder}/{RECORDING}"):
+        return False
+    try:
+        return any(file.suffix in _BAGS for file in Path(folder).iterdir())
+    except OSError:
+        return False
 
 
 def runs_under(folder: Path) -> list[Path]:

@@ -14,6 +14,7 @@ from crowdbot import cli
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.store import INDEX, index
 from crowdbot.core.runs import run_directory as files
+from crowdbot.core.runs.recordings import expand_paths
 from tests.core.bundle.made_up_runs import make_runs, record_runs, write_suite
 
 pytestmark = pytest.mark.slow
@@ -142,3 +143,19 @@ def test_a_campaign_that_writes_is_read_beside(root: Path) -> None:
         store.synchronise()
         (next(root.glob("tiny/*/dwa/seed-0")) / "run.json").unlink()
         assert len(Results.open(root).runs) == 5
+
+
+def test_a_run_that_was_exported_beside_it_is_not_damaged(
+    root: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    runs = sorted(file.parent for file in root.rglob(files.RECORDING))
+    before = Results.open(root)
+    assert cli.main(["export", str(runs[0]), "--to", "rosbag2"]) == 0
+    bag = runs[0].with_name(f"{runs[0].name}-rosbag2")
+    assert (bag / files.RECORD).is_file()
+    assert not (bag / files.RECORDING).exists()
+    caplog.clear()
+    after = Results.open(root)
+    assert (after.runs, after.damaged) == (before.runs, ())
+    assert "left out" not in caplog.text
+    assert expand_paths([root]) == runs
