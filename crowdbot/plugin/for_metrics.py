@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from crowdbot.core.trajectories.demanded_evasion import MOST, demanded_evasion, robot_approach
 from crowdbot.core.trajectories.disc_around_robot import as_disc
-from crowdbot.core.trajectories.driven_aside import driven_aside
 from crowdbot.core.trajectories.dynamic_time_warping import least_warping, spaced
 from crowdbot.core.trajectories.encounters import (
     approach,
@@ -22,6 +21,7 @@ from crowdbot.core.trajectories.encounters import (
 from crowdbot.core.trajectories.evasion import Evasion, evasion, ghost_run, own_legs
 from crowdbot.core.trajectories.fault.at_fault import at_fault
 from crowdbot.core.trajectories.fault.braking import FaultRule
+from crowdbot.core.trajectories.fault.driven_aside import driven_aside
 from crowdbot.core.trajectories.footprint_of_run import footprint_of
 from crowdbot.core.trajectories.headway import share_below
 from crowdbot.core.trajectories.paired_people import (

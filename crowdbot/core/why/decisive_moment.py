@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core.runs.record_parts import EndedPart
-from crowdbot.core.trajectories.driven_aside import driven_aside
 from crowdbot.core.trajectories.encounters import encounter, robot_of, robot_velocities
 from crowdbot.core.trajectories.fault.at_fault import at_fault
+from crowdbot.core.trajectories.fault.driven_aside import driven_aside
 from crowdbot.core.trajectories.person_contacts import PersonContacts, person_contacts
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival
 from crowdbot.core.trajectories.trajectories import Trajectories

@@ -10,16 +10,13 @@ import numpy as np
 import pytest
 
 from crowdbot.core.runs.record_parts import EndedPart
-from crowdbot.core.scoring.metric import References
-from crowdbot.core.trajectories.driven_aside import driven_aside
+from crowdbot.core.trajectories.fault.driven_aside import driven_aside
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.why.causes import Cause
 from crowdbot.core.why.decisive_moment import ASIDE, DecisiveMoment, decisive_moment
 from crowdbot.core.why.sentences import what_happened, why_late
 from crowdbot.core.why.strip import BEFORE, strip
-from crowdbot.plugins.metrics.safe_efficiency import SafeEfficiencySpec
-from crowdbot.plugins.metrics.safe_efficiency_build import SafeEfficiency
-from tests.plugins.metrics.scenes import Body, grid, line, polyline, scene
+from tests.plugins.metrics.scenes import Body, grid, line, polyline, scene, scores_of
 
 T = grid(10, 1 / 16)
 FAR = (10.0, 0.0)
@@ -90,7 +87,7 @@ def test_the_moment_is_when_it_began() -> None:
 def test_who_is_driven_aside_halves_the_score() -> None:
     run, found = replace(CASES[Cause.ASIDE][0], robot_speed_limit=1.0), moment(Cause.ASIDE)
     assert 4.3 < found.t < 5.0
-    (halved,) = SafeEfficiency(SafeEfficiencySpec()).score(run, References())
+    halved = scores_of("safe_efficiency", run)["corrected"]
     assert halved.extras["driven_aside"] == 1.0
     times = driven_aside(run, jump_speed=10.0, **ASIDE)
     assert times.tolist() == [found.t]
