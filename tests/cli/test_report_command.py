@@ -120,8 +120,14 @@ def test_reference_scores_are_planners_of_their_own(
     assert main(["report", "--planner", "dwa", "--reference", "theirs"]) == 0
     page = Page(Path("report.html").read_text(encoding="utf-8"))
     labels = [p["label"] for p in page.meta["planners"]]
-    assert labels == ["dwa", "dwa (reference)", "lidar_only (reference)"]
-    assert page.words.count("reference scores") == 4  # heads and methods
+    assert labels == ["dwa", "dwa (reference)"]
+    assert page.words.count("reference scores") == 2  # head and methods
+    runs["theirs"] = small(planners={"rvo": 0.3, "lidar_only": 0.2}, failures=0)
+    assert main(["report", "--planner", "d*", "--reference", "theirs"]) == 0
+    page = Page(Path("report.html").read_text(encoding="utf-8"))
+    labels = [p["label"] for p in page.meta["planners"]]
+    assert labels == ["dwa", "lidar_only (reference)", "rvo (reference)"]
+    runs["theirs"] = small(planners={"dwa": 0.3, "lidar_only": 0.2}, failures=0)
     runs["theirs"] = with_changes(runs["theirs"], "dwa", versions={"crowdbot": "0.0.1"})
     assert main(["report", "--reference", "theirs"]) == 1
     runs["theirs"] = small(suite="office")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -9,12 +10,15 @@ from statistics import fmean
 
 from crowdbot.core.results.reference_file import open_references
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.score_columns import ScoreColumns
+from crowdbot.core.results.score_columns import ScoreColumns, of_runs
 from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError
 
 _REFERENCE = " (reference)"
+#: Most scenarios that a warning names.
+_SHOWN = 3
+_LOG = logging.getLogger("crowdbot")
 
 
 def without_mark(label: str) -> str:
@@ -36,7 +40,10 @@ def reference_results(text: str) -> Results:
 
 
 def with_reference(results: Results, given: Results | None) -> tuple[Results, tuple[str, ...]]:
-    """Return results with reference results for the same scenarios, under separate names.
+    """Return results with reference results, under separate names, in the scenarios of both.
+
+    Scenarios without a reference run are left out, with a warning: means over different scenarios
+    would stand side by side.
 
     Returns:
         both; names of the reference planners.
@@ -54,11 +61,32 @@ def with_reference(results: Results, given: Results | None) -> tuple[Results, tu
     ]
     if not runs:
         there = ", ".join(sorted({s for s, _ in scenarios})) or "no suite"
-        raise InputError(f"--reference: no run of a scenario of {there} that is reported here")
+        known = ", ".join(sorted({r.suite for r in given.runs})) or "nothing"
+        raise InputError(
+            f"--reference: no run of a scenario of {there} that is reported here; "
+            f"the references hold {known}"
+        )
+    results = _in_scenarios(results, {(r.suite, r.scenario) for r in runs})
     ids = {r.record.run_id: r.run_id for r in runs}
     scores = [replace(s, run_id=ids[s.run_id]) for s in given.scores if s.run_id in ids]
     both = replace(results, runs=(*results.runs, *runs), scores=(*results.scores, *scores))
     return both, tuple(sorted({r.planner for r in runs}))
+
+
+def _in_scenarios(results: Results, wanted: set[tuple[str, str]]) -> Results:
+    """Return results in some scenarios; a warning says how many others there are."""
+    others = sorted({r.scenario for r in results.runs if (r.suite, r.scenario) not in wanted})
+    if not others:
+        return results
+    some = ", ".join(others[:_SHOWN]) + ", …" * (len(others) > _SHOWN)
+    _LOG.warning(
+        "warning: %s without a reference run left out: %s; without --reference all are shown",
+        plural(len(others), "scenario"), some,
+    )  # fmt: skip
+    runs = tuple(r for r in results.runs if (r.suite, r.scenario) in wanted)
+    failures = tuple(f for f in results.failures if (f.suite, f.scenario) in wanted)
+    scores = of_runs(results.scores, {r.run_id for r in runs})
+    return replace(results, runs=runs, scores=scores, failures=failures)
 
 
 def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
@@ -90,7 +118,8 @@ def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
             continue
         means = {n: fmean(fmean(values[n][s]) for s in shared) for n in (planner, *others)}
         order = sorted(means, key=lambda n: -means[n])
-        said = ", ".join(f"{without_mark(n)} {means[n]:.2f}" for n in order)
+        plain = {n: n if without_mark(n) == planner else without_mark(n) for n in order}
+        said = ", ".join(f"{plain[n]} {means[n]:.2f}" for n in order)
         yield (
             f"{planner}: number {order.index(planner) + 1} of {len(order)} by {PRIMARY.role} in "
             f"{plural(len(shared), 'scenario')}: {said}"

@@ -16,6 +16,7 @@ from crowdbot.core.campaign.plan import make_plan
 from crowdbot.core.campaign.remake import RemakeSetup, remake, sample_of
 from crowdbot.core.campaign.request import CampaignRequest
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.results.chosen_planners import of_planners
 from crowdbot.core.results.reference_file import (
     LARGEST,
     METRICS,
@@ -26,7 +27,7 @@ from crowdbot.core.results.reference_file import (
 )
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.with_reference import among_references, with_reference
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, UnknownNameError
 
 SUITE, SCENARIO = "social-guidelines", "frontal_approach"
 
@@ -147,6 +148,25 @@ def test_own_planners_stand_among_the_references(root: Path, file: Path) -> None
     (line,) = among_references(both, known)
     assert line.startswith("goal_seek: number 1 of 3 by safe efficiency in 1 scenario: goal_seek ")
     assert line.endswith("stand_still 0.00")
+
+
+def test_scenarios_without_a_reference_are_left_out(
+    file: Path, root: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    own = Results.open(root)
+    (run, *_) = own.runs
+    ids = {"scenario": "other", "hashes": run.record.hashes}
+    other = replace(run, record=run.record.model_copy(update=ids), entry="other")
+    both, known = with_reference(
+        replace(own, runs=(*own.runs, other)), read_references(file).results
+    )
+    assert {r.scenario for r in both.runs} == {run.scenario}
+    assert "1 scenario without a reference run left out: other" in caplog.text
+    for pattern, left in (("goal*", 2), ("stand_still", 2), ("*", 4)):
+        assert len(of_planners(both, [pattern]).runs) == left
+    assert len(of_planners(both, ["*(reference)"]).runs) == len(known)
+    with pytest.raises(UnknownNameError, match="unknown planner 'wall'"):
+        of_planners(both, ["wall"])
 
 
 def test_results_show_them_in_one_word(

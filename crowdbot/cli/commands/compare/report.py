@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from datetime import UTC, datetime
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 from urllib.parse import quote
@@ -84,16 +83,21 @@ def report(
     Example: crowdbot report runs --suite challenge-2020 --planner 'dwa*' --out report.html
     """
     from crowdbot.core.report import Heading, gather, write_paper, write_report
+    from crowdbot.core.results.chosen_planners import of_planners
     from crowdbot.core.results.confounds import check_comparable, confounds
     from crowdbot.core.results.with_reference import reference_results, with_reference
 
     check_ending(out, ".html")
     registry = installed(plugin, no_plugins)
     wanted = None if suite is None else suite_id(suite, registry)
-    results = _chosen(open_results(root, altered), wanted, planner or [], root)
-    links = {} if no_replay_links else _replays(results, root, out)
+    own = _of_suite(open_results(root, altered), wanted, root)
     given = None if reference is None else reference_results(reference)
-    results, known = with_reference(results, given)
+    results, known = with_reference(own, given)
+    results = of_planners(results, planner or ())
+    if not results.runs:
+        raise InputError(f"{root}: no complete run of {', '.join(planner or ())}")
+    known = tuple(k for k in known if k in {r.planner for r in results.runs})
+    links = {} if no_replay_links else _replays(own, root, out)
     findings = confounds(results, accept or ())
     check_comparable(findings)
     heading = Heading(
@@ -119,12 +123,12 @@ def _left_out(results: Results) -> list[str]:
     return [f"damaged: {plural(len(lost), 'run')} left out: {some}"] if lost else []
 
 
-def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: Path) -> Results:
-    """Return the runs of one suite and some planners.
+def _of_suite(results: Results, suite: str | None, root: Path) -> Results:
+    """Return the runs of one suite.
 
     Raises:
         InputError: there are no runs, or several suites.
-        UnknownNameError: no run has such a suite or planner.
+        UnknownNameError: no run has such a suite.
     """
     suites = results.suites
     if not results.runs:
@@ -136,28 +140,14 @@ def _chosen(results: Results, suite: str | None, planners: Sequence[str], root: 
     wanted = suite if suite is not None else suites[0]
     if wanted not in suites:
         raise UnknownNameError("suite", wanted, suites)
-    labels = {r.planner for r in results.runs if r.suite == wanted}
-    labels |= {f.planner for f in results.failures if f.suite == wanted}
-    for pattern in planners:
-        if not any(fnmatchcase(label, pattern) for label in labels):
-            raise UnknownNameError("planner", pattern, labels)
-    kept = {p for p in labels if not planners or any(fnmatchcase(p, x) for x in planners)}
-    found = _only(results, wanted, kept)
-    if not found.runs:
-        raise InputError(f"{root}: no complete run of {', '.join(sorted(kept))} in {wanted}")
-    return found
-
-
-def _only(results: Results, suite: str, planners: set[str]) -> Results:
     from crowdbot.core.results.score_columns import of_runs
 
-    runs = tuple(r for r in results.runs if r.suite == suite and r.planner in planners)
-    ids = {r.run_id for r in runs}
+    runs = tuple(r for r in results.runs if r.suite == wanted)
     return replace(
         results,
         runs=runs,
-        scores=of_runs(results.scores, ids),
-        failures=tuple(f for f in results.failures if f.suite == suite and f.planner in planners),
+        scores=of_runs(results.scores, {r.run_id for r in runs}),
+        failures=tuple(f for f in results.failures if f.suite == wanted),
     )
 
 

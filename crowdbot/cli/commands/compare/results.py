@@ -48,6 +48,10 @@ results = typer.Typer(
 _Out = Annotated[
     Path, typer.Option("--runs", "--out", metavar="DIR", help="Root of the run directories.")
 ]
+_Planners = Annotated[
+    list[str] | None,
+    typer.Option(metavar="GLOB", help="Only planners with such labels; repeatable."),
+]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
 #: Scores shown for every planner by default.
@@ -78,9 +82,7 @@ def show(
             metavar="AXIS,AXIS", help="Group by these: planner, seed, status, axes of the suite."
         ),
     ] = "planner",
-    planner: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Only this planner; repeatable.")
-    ] = None,
+    planner: _Planners = None,
     status: Annotated[
         str | None, typer.Option(metavar="STATUS", help="Only runs that ended so, such as timeout.")
     ] = None,
@@ -101,6 +103,7 @@ def show(
     """
     if context.invoked_subcommand is not None:
         return
+    from crowdbot.core.results.chosen_planners import of_planners
     from crowdbot.core.results.rows import named_metrics
     from crowdbot.core.results.score_columns import metrics_of
     from crowdbot.core.results.with_reference import (
@@ -113,7 +116,7 @@ def show(
 
     given = reference_results(reference) if reference else None
     found, references = with_reference(open_results(out, altered, metric or ()), given)
-    found = with_scales(_only(found, planner, status))
+    found = with_scales(_ended(of_planners(found, planner or ()), status))
     if worst:
         if metric is None or len(metric) != 1:
             raise UsageError("--worst needs one --metric NAME")
@@ -203,9 +206,7 @@ def tracking(
         list[float] | None,
         typer.Option(min=0.6, metavar="M", help="Distance from the robot; default: 3 and 6."),
     ] = None,
-    planner: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Only this planner; repeatable.")
-    ] = None,
+    planner: _Planners = None,
     altered: Altered = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
     as_json: _Json = False,
@@ -214,9 +215,10 @@ def tracking(
 
     Example: crowdbot results tracking --runs runs --within 3
     """
+    from crowdbot.core.results.chosen_planners import of_planners
     from crowdbot.core.results.tracking import tracking_lines
 
-    found = _only(open_results(out, altered), planner, None)
+    found = of_planners(open_results(out, altered), planner or ())
     lines = list(tracking_lines(found, out, within or [3.0, 6.0]))
     print_lines(lines, as_csv=as_csv, as_json=as_json)
     if not (lines or as_csv or as_json):
@@ -265,9 +267,7 @@ def power(
     tests: Annotated[
         int, typer.Option(min=1, metavar="N", help="Tests that share the chance of 5 %.")
     ] = 1,
-    planner: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Only these planners; repeatable.")
-    ] = None,
+    planner: _Planners = None,
     by: Annotated[
         str, typer.Option(metavar="AXIS", help="A line for each label of this, not condition.")
     ] = "",
@@ -284,12 +284,13 @@ def power(
     Example: crowdbot results power --runs runs --size 0.05 --planner dwa --planner stop_and_go
     """
     from crowdbot.cli.output.power_lines import lines_of
+    from crowdbot.core.results.chosen_planners import of_planners
     from crowdbot.core.results.with_reference import reference_results
     from crowdbot.core.statistics.power import SIZES
 
     sizes = tuple(size or SIZES)
     opened = open_results(out, altered) if reference is None else reference_results(reference)
-    found = with_scales(_only(opened, planner, None))
+    found = with_scales(of_planners(opened, planner or ()))
     name = (metric, variant)
     parts = of_each_suite(found, lambda part: lines_of(part, name, sizes, tests, by))
     print_lines(named_by_suite(parts), as_csv=as_csv, as_json=as_json)
@@ -318,35 +319,26 @@ def ladder(
     print_lines(named_by_suite(parts), as_csv=as_csv, as_json=as_json)
 
 
-def _only(found: Results, planners: list[str] | None, status: str | None) -> Results:
-    """Return runs of some planners with some statuses, with their scores and failures.
-
-    The name of a planner stands for its reference runs as well.
+def _ended(found: Results, status: str | None) -> Results:
+    """Return the runs that ended in a way, with their scores; None: all, and failures.
 
     Raises:
-        UnknownNameError: no run has such a planner or status.
+        UnknownNameError: no run ends so.
     """
     from crowdbot.core.results.score_columns import of_runs
-    from crowdbot.core.results.with_reference import without_mark
     from crowdbot.core.types.ending import ATTEMPTED, Ending
     from crowdbot.errors import UnknownNameError
 
-    labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
-    wanted = {label for label in labels if {label, without_mark(label)} & set(planners or labels)}
-    for name in planners or ():
-        if name not in labels | set(map(without_mark, labels)):
-            raise UnknownNameError("planner", name, labels)
-    if status is not None and status not in ATTEMPTED:
+    if status is None:
+        return found
+    if status not in ATTEMPTED:
         raise UnknownNameError("status", status, ATTEMPTED)
-    runs = tuple(r for r in found.runs if r.planner in wanted and status in (None, r.status))
-    ids = {r.run_id for r in runs}
+    runs = tuple(r for r in found.runs if r.status == status)
     return replace(
         found,
         runs=runs,
-        scores=of_runs(found.scores, ids),
-        failures=tuple(
-            f for f in found.failures if f.planner in wanted and status in (None, Ending.NO_RUN)
-        ),
+        scores=of_runs(found.scores, {r.run_id for r in runs}),
+        failures=found.failures if status == Ending.NO_RUN else (),
     )
 
 

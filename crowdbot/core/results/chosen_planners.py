@@ -1,0 +1,47 @@
+"""Results of chosen planners, which patterns name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fnmatch import fnmatchcase
+
+from crowdbot.core.results.results import Results
+from crowdbot.core.results.score_columns import of_runs
+from crowdbot.core.results.with_reference import without_mark
+from crowdbot.errors import UnknownNameError
+
+
+def of_planners(found: Results, patterns: Sequence[str]) -> Results:
+    """Return the runs, scores and failures of planners.
+
+    A pattern stands for references, too; all of them stay where no pattern fits any.
+
+    Args:
+        found: any results.
+        patterns: of labels, such as ``dwa*``; none: all planners.
+
+    Raises:
+        UnknownNameError: a pattern fits no planner.
+    """
+    if not patterns:
+        return found
+    labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
+    fits = {p: {label for label in labels if _fits(label, p)} for p in patterns}
+    for pattern, fitting in fits.items():
+        if not fitting:
+            raise UnknownNameError("planner", pattern, sorted(set(map(without_mark, labels))))
+    wanted = set[str]().union(*fits.values())
+    references = {label for label in labels if without_mark(label) != label}
+    wanted |= set() if wanted & references else references
+    runs = tuple(r for r in found.runs if r.planner in wanted)
+    return replace(
+        found,
+        runs=runs,
+        scores=of_runs(found.scores, {r.run_id for r in runs}),
+        failures=tuple(f for f in found.failures if f.planner in wanted),
+    )
+
+
+def _fits(label: str, pattern: str) -> bool:
+    return fnmatchcase(label, pattern) or fnmatchcase(without_mark(label), pattern)
