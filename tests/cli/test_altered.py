@@ -141,7 +141,8 @@ def test_bundle_guesses_neither_suite_nor_planner(
     row = RunRow(record=made_up_record(planner="mine"), directory="d")
     monkeypatch.setattr(Results, "open", lambda _: Results(runs=(row, row)))
     assert cli.main(["bundle", str(root)]) == 2
-    assert "--suite suite --planner mine   (2 runs)" in capsys.readouterr().err
+    offer = "--suite FILE --planner mine   (2 runs, FILE: that of suite)"
+    assert offer in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 

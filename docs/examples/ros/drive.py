@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import BinaryIO, NamedTuple
 
+from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 #: Seconds between two commands.
@@ -78,8 +79,11 @@ def main() -> None:
     with connect(given.url) as server:
         kind = "geometry_msgs/Twist"
         server.send(json.dumps({"op": "advertise", "topic": "/cmd_vel", "type": kind}))
-        for stick in sticks:
-            server.send(twist(stick, given.v, given.w))
+        try:
+            for stick in sticks:
+                server.send(twist(stick, given.v, given.w))
+        except ConnectionClosed:
+            print("the run is over")
 
 
 def _keyboard() -> Iterator[Stick]:

@@ -17,6 +17,7 @@ from crowdbot.dsl.suite.suite_entry import NO_SUITE
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
+    from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.suite.expand import Expansion
 
 
@@ -87,14 +88,15 @@ def bundle(
             f"{root} is a file; ROOT is a folder of runs. To check a bundle that is there: "
             f"crowdbot verify {root}"
         )
-    if suite is None:
-        raise UsageError(f"which runs? Give --suite SPEC and --planner LABEL; {_offer(root)}")
     registry = installed(plugin, no_plugins)
+    if suite is None:
+        offers = _offer(root, registry)
+        raise UsageError(f"which runs? Give --suite SPEC and --planner LABEL; {offers}")
     expansion, lock = open_suite(suite, registry)
     for scenario in expansion.scenarios:
         check_revealed(scenario)
     if planner is None:
-        raise UsageError(f"which planner? Give --planner LABEL; {_offer(root)}")
+        raise UsageError(f"which planner? Give --planner LABEL; {_offer(root, registry)}")
     submission = Submission(
         root=root, planner=planner, team=team, contact=contact, partial=partial,
         recordings=recordings,
@@ -136,17 +138,23 @@ def _round_lines(expansion: Expansion) -> list[str]:
     return [line for line in lines if line]
 
 
-def _offer(root: Path) -> str:
+def _offer(root: Path, registry: Registry) -> str:
     """Return the suites and planners of the runs below a folder, in words.
 
     Raises:
         InputError: there is no such folder.
     """
     from crowdbot.core.results.results import Results
+    from crowdbot.core.scenarios.library import suite_names
 
+    packaged = suite_names(registry)
     runs = Results.open(root).without_altered().runs
     counts = Counter((run.suite, run.planner) for run in runs if run.suite != NO_SUITE)
     if not counts:
         return f"no run of a suite is below {root}"
-    offers = [f"  --suite {s} --planner {p}   ({plural(n, 'run')})" for (s, p), n in counts.items()]
+    offers = [
+        f"  --suite {s if s in packaged else 'FILE'} --planner {p}   "
+        f"({plural(n, 'run')}{'' if s in packaged else f', FILE: that of {s}'})"
+        for (s, p), n in counts.items()
+    ]
     return "\n".join([f"below {root} there are:", *offers])

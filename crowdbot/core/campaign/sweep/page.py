@@ -84,9 +84,11 @@ def _fit(sweep: Sweep, best: Tried) -> Iterator[str]:
     if not best.met_others:
         yield "Every seed gives these scenarios the same people: nothing is known about others."
         return
-    yield f"On people that the search did not see: {joined_text(best.elsewhere)}."
+    there = f"On people that the search did not see: {joined_text(best.elsewhere)}"
     if usual is None or usual.elsewhere is None or usual.elsewhere.value is None:
+        yield f"{there}."
         return
+    yield f"{there}; the defaults {joined_text(usual.elsewhere)}."
     if usual.score.value is None:
         return
     sign = 1.0 if sweep.request.better == "higher" else -1.0
