@@ -67,6 +67,7 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
         "findings": [(f.severity, str(f), f.accepted) for f in table.findings],
         "tests": table.summary.tests,
         "suspicion": table.suspicion,
+        "too_small": table.too_small,
         "crowds": table.crowds,
         "by_crowd": table.by_crowd,
         "pareto": pareto(table.summary),

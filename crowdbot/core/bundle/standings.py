@@ -12,7 +12,7 @@ from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.results.confounds import Finding, check_comparable, confounds
 from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.scoring.score_scale import Scales
-from crowdbot.core.statistics import PlannerScore, Summary, Table, summarise
+from crowdbot.core.statistics import PlannerScore, Summary, Table, sample_size, summarise
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.core.statistics.ranking import SCORES
@@ -51,6 +51,12 @@ class Standings:
     suspicion: str = ""
     crowds: tuple[str, ...] = ()
     by_crowd: CrowdRanks | None = None
+
+    @property
+    def too_small(self) -> str:
+        """Return why no rank can differ: too few crowds; empty where they are enough."""
+        size = sample_size(self.summary)
+        return size.text if size else ""
 
     def ranks(self, by: str) -> Mapping[str, int]:
         """Return entry -> rank in a metric or by `RULE`; empty if there is nothing to order by."""

@@ -55,6 +55,11 @@ class Site:
         return self.expansion.title or self.expansion.suite_id
 
     @property
+    def suite_name(self) -> str:
+        """Return the suite's name for a team, without the organiser's folders."""
+        return Path(self.suite).name
+
+    @property
     def hidden(self) -> bool:
         """Return True if the suite's draws are not revealed yet."""
         return any(scenario.hidden for scenario in self.expansion.scenarios)
@@ -92,7 +97,7 @@ def _index(
         __package__,
         allowed=Allowed(images="'self'"),
         title=site.title,
-        suite=site.suite,
+        suite=site.suite_name,
         site=site,
         commands=take_part(site),
         pictures=pictures,
@@ -108,8 +113,9 @@ def _index(
 def take_part(site: Site) -> list[tuple[str, str]]:
     """Return the commands with which a team takes part: what each does, and the command."""
     install = ("Install crowdbot.", "pip install crowdbot")
-    campaign = f"crowdbot campaign {site.suite} --planner"
-    if site.round.planners == "sealed":
+    campaign = f"crowdbot campaign {site.suite_name} --planner"
+    to = f" to {site.round.contact}" if site.round.contact else ""
+    if site.round.planners == "sealed" or site.hidden:  # no one can run hidden draws
         practise = f"{campaign} mine.py:Mine{' --set crowd.seed.root=1' if site.hidden else ''}"
         return [
             install,
@@ -118,16 +124,19 @@ def take_part(site: Site) -> list[tuple[str, str]]:
                 "crowdbot docs tutorial/first_planner",
             ),
             ("Try it.", practise),
-            ("Seal it, and send the file.", "crowdbot seal mine.py:Mine --team 'Us' --out us.cbs"),
+            (
+                f"Seal it, and send the file{to}.",
+                "crowdbot seal mine.py:Mine --team 'Us' --out us.cbs",
+            ),
         ]
     write = "crowdbot plugins new mine --planner && pip install -e crowdbot-mine"
-    bundle = f"crowdbot bundle runs --suite {site.suite} --planner mine.give_way"
+    bundle = f"crowdbot bundle runs --suite {site.suite_name} --planner mine.give_way"
     return [
         install,
         ("Have a planner written to start from, and change it.", write),
         ("Run your planner in all scenarios.", f"{campaign} mine.give_way"),
         (
-            "Pack and check your runs, and send the file.",
+            f"Pack and check your runs, and send the file{to}.",
             f"{bundle} --team 'Us' --out us.cbz --check",
         ),
     ]

@@ -49,7 +49,7 @@ class SampleSize:
         if not self.too_small:
             return ""
         return (
-            f"The sample is too small for any verdict between planners: you have "
+            f"The sample is too small for any verdict between planners: "
             f"{plural(self.draws, 'different crowd')}; a verdict needs at least {self.least}"
         )
 

@@ -129,3 +129,17 @@ def test_a_bundle_after_the_round_is_told(tmp_path: Path) -> None:
         os.utime(bundle, (moment.timestamp(), moment.timestamp()))
         assert late(bundle, "2027-03-31").endswith(told)
         assert bool(late(bundle, "2027-03-31")) is bool(told)
+
+
+def test_the_page_of_hidden_draws_asks_for_sealed_planners(tmp_path: Path) -> None:
+    suite = write_suite(tmp_path)
+    suite.write_text(suite.read_text() + "round: {contact: us@example.org}\n")
+    assert cli.main(["draws", "commit", str(suite)]) == 0
+    out = tmp_path / "site"
+    assert cli.main(["challenge-page", str(suite), "--out", str(out)]) == 0
+    page = (out / "index.html").read_text()
+    assert str(tmp_path) not in page
+    assert "campaign tiny.yaml --planner mine.py:Mine --set crowd.seed.root=1</pre>" in page
+    assert "send the file to us@example.org" in page
+    assert "crowdbot bundle" not in page
+    assert re.search(r"<dt>commitment</dt><dd><code>[^<]+</code>", page)
