@@ -204,8 +204,9 @@ def begin(env: StableVecEnv, given: argparse.Namespace) -> PPO:
 
 def go_on(env: StableVecEnv, given: argparse.Namespace) -> PPO:
     """Return a policy that knows what another one does, and may see in more directions."""
-    model, before = begin(env, given), PPO.load(given.start, device="cpu")
-    fan = before.crowdbot["observation"]  # type: ignore[attr-defined]
+    model = begin(env, given)
+    before: Any = PPO.load(given.start, device="cpu")
+    fan = before.crowdbot["observation"]
     known = before.policy.state_dict()
     for name, weight in known.items():
         if name.startswith("mlp_extractor") and name.endswith("net.0.weight"):
