@@ -10,9 +10,17 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.dsl.spec.component import Component
-from crowdbot.testing import checks_for
+from crowdbot.testing import checks_for, metric
+from tests.examples import THOROUGH
 
 BUILT_IN = [c for p in discover(allow=(), entry_points=False).plugins for c in p.components]
+
+
+@pytest.fixture(autouse=True)
+def _fewer_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Metrics are tried on four random runs instead of ten, except in `make test-all`."""
+    if not THOROUGH:
+        monkeypatch.setattr(metric, "_SEEDS", range(4))
 
 
 # One test per component: with one per check, as authors have it, pytest took as long as the checks.
