@@ -16,9 +16,10 @@ from crowdbot.cli.commands.challenge import verify
 from crowdbot.core.registry.registry import discover
 from crowdbot.dsl.suite.commitment import commitment_of
 from crowdbot.errors import SpecError
-from tests.paths import DATA
+from tests.paths import DATA, ROOT
 
 Captured = pytest.CaptureFixture[str]
+EXAMPLES = ROOT / "scenario_specs" / "examples"
 PARTS = DATA / "diagnostics" / "parts"
 SUITE = """\
 crowdbot: 1
@@ -277,3 +278,27 @@ def test_check_compares_with_what_was_published(suite: Path, capsys: Captured) -
     assert json.loads(capsys.readouterr().out)["draws"] == "hidden"
     assert main(["draws", "check", str(suite), "--commitment", f"sha256:{'0' * 64}"]) == 1
     assert "not sha256:000" in capsys.readouterr().err
+
+
+def test_the_building_is_committed_to_as_well(suite: Path, capsys: Captured) -> None:
+    plans = suite.parent / "plans"
+    shutil.copytree(EXAMPLES / "plans", plans)
+    text = (EXAMPLES / "world_floor_plan.yaml").read_text().replace("scenario:\n", "base:\n")
+    text = text.replace("  id: world-floor-plan\n", "").replace(
+        "  title: An office", "  # An office"
+    )
+    suite.write_text(text.replace("crowdbot: 1\n", "crowdbot: 1\nsuite: {id: s}\n"))
+    assert main(["draws", "commit", str(suite)]) == 0
+    assert '[{"path": "plans/office.geojson", "sha256": "' in capsys.readouterr().out
+    assert main(["draws", "check", str(suite)]) == 0
+    plan = plans / "office.geojson"
+    before = plan.read_text()
+    plan.write_text(before + "\n")
+    for argv in (["draws", "check"], ["draws", "reveal"], ["validate"]):
+        capsys.readouterr()
+        assert main([*argv, str(suite)]) == 1
+        shown = capsys.readouterr().err
+        assert "'plans/office.geojson' was changed after the commitment" in shown
+    plan.write_text(before)
+    assert main(["draws", "reveal", str(suite)]) == 0
+    assert main(["lock", str(suite)]) == 0

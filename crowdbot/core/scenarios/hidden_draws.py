@@ -7,6 +7,7 @@ correct. Seed and salt are in a separate file that only its owner can read.
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import re
 import secrets
@@ -23,6 +24,7 @@ from crowdbot.core.scenarios.library import OpenDocument, check_writable, open_d
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.dsl.scenario.field_hashes import changes, flatten
 from crowdbot.dsl.scenario.lock import LockFiles
+from crowdbot.dsl.suite.asset_files import asset_hashes
 from crowdbot.dsl.suite.commitment import (
     COMMITMENT,
     SALT,
@@ -30,7 +32,7 @@ from crowdbot.dsl.suite.commitment import (
     committed_content,
     is_random,
 )
-from crowdbot.dsl.suite.expand import expand_document
+from crowdbot.dsl.suite.expand import Expansion, expand_document
 from crowdbot.dsl.suite.suite import ParsedSuite
 from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.dsl.text.diagnostics import Diagnostic
@@ -93,6 +95,11 @@ def commit(spec: str, registry: Registry, seed: int | None = None) -> tuple[Secr
     document = open_document(spec, registry)
     _check_open(document)
     content = committed_content(document.suite.tree)
+    files = asset_hashes(expanded(document, registry).scenarios)
+    rows = [{"path": path, "sha256": digest} for path, digest in files.items()]
+    if rows:
+        content["suite"] = {**content["suite"], "files": rows}
+    lines = [f"suite.files: {json.dumps(rows)}"] if rows and document.suite.files != files else []
     seed = secrets.randbelow(_SEEDS) if seed is None else seed
     salt = _new_salt()
     secret = Secret(
@@ -102,7 +109,17 @@ def commit(spec: str, registry: Registry, seed: int | None = None) -> tuple[Secr
         salt=salt,
         document=content,
     )
-    return secret, _change(document, [f"suite.commitment: {secret.commitment}"], registry)
+    lines.append(f"suite.commitment: {secret.commitment}")
+    return secret, _change(document, lines, registry)
+
+
+def expanded(document: OpenDocument, registry: Registry) -> Expansion:
+    """Return the scenarios of a document, whose files are those that were committed to.
+
+    Raises:
+        SpecError: a scenario is invalid, or a file is missing or was changed.
+    """
+    return expand_document(document.suite, registry.scenario_model)
 
 
 def reveal(spec: str, registry: Registry, secret_file: Path) -> tuple[Secret, Change]:
@@ -120,6 +137,7 @@ def reveal(spec: str, registry: Registry, secret_file: Path) -> tuple[Secret, Ch
         raise InputError(f"{document.name}: its seed has been revealed already")
     if secret.suite != suite.id:
         raise InputError(f"{secret_file} is the secret of '{secret.suite}', not of '{suite.id}'")
+    expanded(document, registry)
     content = committed_content(suite.tree)
     found = commitment_of(content, secret.seed, secret.salt)
     if found != suite.commitment:

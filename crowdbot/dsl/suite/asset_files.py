@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -20,8 +20,10 @@ from crowdbot.dsl.text.nodes import Node
 class AssetFiles:
     """The assets of one document; each file is hashed once."""
 
-    def __init__(self, finder: Finder) -> None:
+    def __init__(self, finder: Finder, committed: Mapping[str, str] | None = None) -> None:
+        """Create it; ``committed``: path -> sha256 of files that have to be as they were."""
         self._finder = finder
+        self._committed = committed or {}
         self._known: dict[Path, str] = {}
         self._complete: dict[int, ComponentSpec] = {}
 
@@ -99,7 +101,26 @@ class AssetFiles:
             text = f"'{asset.path}' does not have the sha256 written here"
             problems.append(Diagnostic("E213", text, mark, f"its sha256 is {digest}"))
             return None
-        return Asset.at(file, self._finder.name_of(file), digest)
+        name = self._finder.name_of(file)
+        if self._committed.get(name) not in (None, digest):
+            text = f"'{name}' was changed after the commitment"
+            problems.append(
+                Diagnostic("E213", text, mark, "restore it; suite.files has its sha256")
+            )
+            return None
+        return Asset.at(file, name, digest)
+
+
+def asset_hashes(scenarios: Iterable[Scenario]) -> dict[str, str]:
+    """Return path -> sha256 of all files that scenarios and their references name, by path."""
+    found = dict[str, str]()
+    for scenario in scenarios:
+        for one in (scenario, *scenario.references.values()):
+            figures = {} if one.crowd is None else one.crowd.body.figures
+            fields = [v for _, spec in components(one) for v in vars(spec).values()]
+            assets = [v for v in (*figures.values(), *fields) if isinstance(v, Asset)]
+            found |= {a.path: a.sha256 for a in assets if a.sha256}
+    return dict(sorted(found.items()))
 
 
 def _mark(tree: Node, path: tuple[str, ...]) -> Mark:

@@ -200,7 +200,7 @@ class _Expander:
         self._seeds: dict[str, Node] = {}
         self._folders: dict[str, str] = {}
         self._parts, self._checks = ValidParts(), Checks()
-        self._assets = AssetFiles(suite.finder) if suite.finder else None
+        self._assets = AssetFiles(suite.finder, suite.files) if suite.finder else None
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
         self._bare: list[_Bare] | None = None
         self._total = self._noted = 0

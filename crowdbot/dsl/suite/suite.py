@@ -18,7 +18,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from importlib import metadata
 from typing import Annotated, Any, Literal, cast, get_args
 
@@ -70,6 +71,13 @@ _Versions = Annotated[
 ]
 
 
+class CommittedFile(Spec):
+    """A file of a suite whose draws are hidden: its content is covered by the commitment."""
+
+    path: str = Field(min_length=1, description="Path from the suite's file.")
+    sha256: str = Field(pattern=r"^[0-9a-f]{64}$", description="Of the content.")
+
+
 class SuiteHead(Spec):
     """Name, title and seed of a suite."""
 
@@ -89,6 +97,12 @@ class SuiteHead(Spec):
         default=None,
         pattern=SALT,
         description="Hexadecimal digits that reveal the seed of a commitment, together with it.",
+    )
+    files: tuple[CommittedFile, ...] = Field(
+        default=(),
+        strict=False,
+        description="Files that the document names, such as a floor plan, and that have to stay as "
+        "they are; written by `crowdbot draws commit`.",
     )
 
 
@@ -172,6 +186,7 @@ class ParsedSuite:
         run_seeds: seeds of the runs that a bundle consists of.
         record: what to record by default; None: not said.
         round: round of a challenge; None: not said.
+        files: path -> sha256 of files that a commitment covers.
         problems: errors found so far.
         tree: the whole document, including ``extends``.
         finder: finds the document's files; None: assets are not searched.
@@ -195,6 +210,7 @@ class ParsedSuite:
     run_seeds: tuple[int, ...] = (0,)
     record: Recorded | None = None
     round: Round | None = None
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_suite(
@@ -229,8 +245,11 @@ def read_suite(
         return None
     if single:
         return _scenario(root, body, problems)
-    held = read.round if isinstance(read, SuiteDocument) else None
-    return replace(_suite(root, body, problems), round=held)
+    suite = _suite(root, body, problems)
+    if not isinstance(read, SuiteDocument):
+        return suite
+    files = {one.path: one.sha256 for one in read.suite.files}
+    return replace(suite, round=read.round, files=files)
 
 
 def _scenario(root: Node, body: Node, problems: list[Diagnostic]) -> ParsedSuite:

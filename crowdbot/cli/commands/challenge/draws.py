@@ -125,10 +125,13 @@ def check(
 
     Example: crowdbot draws check my_suite.yaml --commitment sha256:0123…
     """
+    from crowdbot.core.scenarios.hidden_draws import expanded
     from crowdbot.core.scenarios.library import open_document
     from crowdbot.errors import InputError
 
-    document = open_document(suite, installed(plugin, no_plugins))
+    registry = installed(plugin, no_plugins)
+    document = open_document(suite, registry)
+    expanded(document, registry)  # its files, too, are those of the commitment
     found = document.suite
     if commitment is not None and found.commitment != commitment:
         there = found.commitment or "none"
