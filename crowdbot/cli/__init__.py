@@ -105,8 +105,8 @@ _LOADING = _READING | {"campaign", "simulate"}
 
 #: Commands whose output only reports their actions; with ``-q`` they print errors only.
 _TELLING = frozenset(
-    ("bundle", "campaign", "evaluate", "export-urdf", "lock", "report", "simulate", "validate",
-     "verify", "view")
+    ("bundle", "campaign", "challenge-page", "evaluate", "export-urdf", "judge", "leaderboard",
+     "lock", "report", "seal", "simulate", "validate", "verify", "view")
 )  # fmt: skip
 
 

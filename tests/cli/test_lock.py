@@ -43,6 +43,14 @@ def test_lock_and_check(suite: Path, capsys: Captured) -> None:
     assert main(["lock", str(suite), "--check", "--redraw"]) == 2
 
 
+def test_a_seed_that_nobody_wrote_is_told(suite: Path, capsys: Captured) -> None:
+    assert main(["lock", str(suite)]) == 0
+    assert "the suite gives no seed, so 0 holds" in capsys.readouterr().err
+    suite.write_text(SUITE.replace("id: s", "id: s, seed: 0"))
+    assert main(["lock", str(suite)]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_check_lists_every_difference(suite: Path, capsys: Captured) -> None:
     main(["lock", str(suite)])
     suite.write_text(SUITE.replace("fast:", "quick:").replace("mean: 1", "mean: 1.1"))

@@ -21,6 +21,7 @@ from crowdbot.core.runs.planner_files_kept import digests_of_files
 from crowdbot.core.runs.run_record import RunRecord, record_problems
 from crowdbot.core.scenarios.lock_check import spec_of
 from crowdbot.core.scoring.scores_csv import parse_scores
+from crowdbot.core.support.text import plural
 from crowdbot.dsl.identity.canonical import dump_scenario_yaml
 from crowdbot.dsl.identity.crowd_likeness import fingerprint
 from crowdbot.dsl.scenario.scenario import Scenario
@@ -133,9 +134,9 @@ def _list_problems(manifest: Manifest) -> Iterator[str]:
         yield "a run is listed twice"
     wanted = manifest.edition.scenarios * len(manifest.seeds)
     if len(manifest.runs) + len(manifest.missing) != wanted:
-        yield f"{len(manifest.runs)} runs are there and {len(manifest.missing)} said to be " \
-              f"missing; {manifest.edition.scenarios} scenarios with {len(manifest.seeds)} seeds " \
-              f"are {wanted}"  # fmt: skip
+        lists = f"it lists {plural(len(manifest.runs), 'run')}"
+        lists += f", and {len(manifest.missing)} as missing" if manifest.missing else ""
+        yield f"{lists}; the edition has {wanted}"
     for run in manifest.runs:
         if run.seed not in manifest.seeds:
             yield f"{run.scenario[:200]} seed-{run.seed} is not a run of the manifest's seeds"

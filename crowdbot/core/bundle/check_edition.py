@@ -8,10 +8,13 @@ from pathlib import Path
 
 from crowdbot.core.bundle.manifest import LOCK, RULES, Manifest
 from crowdbot.core.bundle.verification import content_hash
+from crowdbot.core.support.text import plural
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.dsl.suite.round import Round
 
 _SHOWN = 3
+#: Names of a suite's fields where the manifest has another one.
+_FIELDS = {"handed_in": "round.planners"}
 
 
 def missing_runs(expansion: Expansion, there: set[tuple[str, int]]) -> list[str]:
@@ -65,7 +68,8 @@ def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
     for key, value in wanted.items():
         said = getattr(edition, key)
         if said != value:
-            yield f"the edition's {key} is {_shown(said)}, that of {name} here is {_shown(value)}"
+            field = _FIELDS.get(key, key)
+            yield f"it was packed with {field} {_shown(said)}; {name} here has {_shown(value)}"
     member = manifest.members.get(LOCK)
     if edition.lock != (member.sha256 if member else ""):
         yield f"the edition is not that of {LOCK}"
@@ -84,8 +88,8 @@ def _missing(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
     lacking, said = missing_runs(expansion, there), set(manifest.missing)
     hidden = [n for n in lacking if n not in said]
     if hidden:
-        yield f"{len(hidden)} runs are missing that the manifest says are there: " \
-              f"{', '.join(hidden[:_SHOWN])}"  # fmt: skip
+        some = ", ".join(hidden[:_SHOWN])
+        yield f"left out without being listed as missing: {plural(len(hidden), 'run')}, {some}"
     invented = sorted(said - set(lacking))
     if invented or len(said) < len(manifest.missing):
         some = ", ".join(n[:100] for n in invented[:_SHOWN]) or "one run twice"

@@ -55,6 +55,11 @@ def own_public_key() -> str:
     return "" if key is None else _public(key)
 
 
+def signer_of(document: Mapping[str, Any]) -> str:
+    """Return the public key that a signed document names."""
+    return str(document[FIELD]["key"])
+
+
 def signature_problem(document: Mapping[str, Any], trusted: Collection[str]) -> str:
     """Return why a document is not believed; empty if a trusted key signed exactly this content.
 

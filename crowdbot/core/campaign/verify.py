@@ -80,16 +80,16 @@ def choose_planner(
         raise NotRunnable(problems[0])
     if given is None and digest is not None:
         raise NotRunnable(
-            f"the planner is the class {kind} of a file that is not installed; get the file from "
-            "the team and name it: --source FILE.py:CLASS"
+            f"the planner is the class {kind} of a file that is not installed; name it, or "
+            "what the team sealed: --source FILE.py:CLASS or FILE.cbs"
         )
     try:
         text, settings = _named(record)
         choice = resolve_planner(given or text, registry, settings, place)
     except InputError as error:
         raise NotRunnable(
-            f"{error}; install the planner, load it with --plugin DIR, or name its class with "
-            "--source FILE.py:CLASS"
+            f"{error}; install the planner, load it with --plugin DIR, or name it with "
+            "--source FILE.py:CLASS or FILE.cbs"
         ) from None
     if digest is not None and choice.spec_dump.get("sha256") != digest:
         raise NotRunnable(

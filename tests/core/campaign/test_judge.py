@@ -20,6 +20,7 @@ from crowdbot.core.bundle.submission import (
     unpack_submission,
     write_submission,
 )
+from crowdbot.core.bundle.verification import content_hash
 from crowdbot.core.campaign.judge import Judge, judge
 from crowdbot.core.campaign.plan import Plan
 from crowdbot.core.campaign.run import State
@@ -197,7 +198,17 @@ def test_judged_from_hand_in_to_the_leaderboard(
     page = tmp_path / "page.html"
     assert cli.main(["leaderboard", str(tmp_path / "out"), "--out", str(page)]) == 0
     assert "judged: the organisers made all 1 runs" in page.read_text()
+    capsys.readouterr()
     assert cli.main(["judge-log", str(tmp_path / "out")]) == 0
+    shown = capsys.readouterr().out
+    assert saved["submission"] in shown  # whole, to compare with one's own
+    assert f"signed with the public key {own_public_key()}" in shown
+    sealed = {content_hash(file): file for file in (tmp_path / "in").glob("*.cbs")}
+    words = ["verify", str(bundles[0]), "--suite", str(tmp_path / "suite.yaml"), "--source"]
+    assert cli.main([*words, str(sealed.pop(saved["submission"]))]) == 0
+    assert "the same" in capsys.readouterr().out
+    assert cli.main([*words, str(sealed.popitem()[1])]) == 1  # another team's
+    assert "cannot be re-run" in capsys.readouterr().out
     (tmp_path / "suite.yaml").write_text(SUITE.replace("id: judged", "id: other"))
     assert _judge(tmp_path) == 1
     assert "log of another suite" in capsys.readouterr().err

@@ -29,7 +29,7 @@ def judge_log(
     Example: crowdbot judge-log judged --key 3d40...c7 --known 9f86...08
     """
     from crowdbot.core.bundle.judge_log import LOG, read_log
-    from crowdbot.core.bundle.signature import check_public_key, own_public_key
+    from crowdbot.core.bundle.signature import check_public_key, own_public_key, signer_of
     from crowdbot.errors import InputError
 
     path = log / LOG if log.is_dir() else log
@@ -43,7 +43,9 @@ def judge_log(
         say(json.dumps([{**x.document, "sha256": x.sha256} for x in lines], indent=2))
         return
     for line in lines:
-        about = " ".join(str(line.document.get(k, ""))[:60] for k in ("submission", "team"))
+        about = " ".join(str(line.document.get(k, ""))[:80] for k in ("submission", "team"))
         say(f"{line.document['time']} {line.event} {about}".rstrip())
     last = lines[-1].sha256 if lines else "none"
     say(f"{plural(len(lines), 'line')}, all signed and in order; the last has {last}")
+    for signer in dict.fromkeys(signer_of(line.document) for line in lines):
+        say(f"signed with the public key {signer}")

@@ -47,6 +47,17 @@ def lock(
         _check(expansion, files, registry, as_json=as_json)
     else:
         _write(expansion, files, registry, redraw=redraw, as_json=as_json)
+        if not expansion.commitment and _without_seed(spec, registry):
+            say("warning: the suite gives no seed, so 0 holds; suite.seed says another", err=True)
+
+
+def _without_seed(spec: str, registry: Registry) -> bool:
+    """Return True for a suite that draws people without naming a seed."""
+    from crowdbot.core.scenarios.library import open_document
+
+    document = open_document(spec, registry).suite
+    head = document.tree.child("suite")
+    return document.seed is not None and (head is None or head.child("seed") is None)
 
 
 def _check(expansion: Expansion, files: LockFiles, registry: Registry, *, as_json: bool) -> None:

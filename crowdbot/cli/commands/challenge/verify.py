@@ -40,7 +40,7 @@ _SAYS = {
     "not comparable": "scores are of other versions of metrics than those that are installed here",
     "suspicious": "ask the team before anything else; see above what does not fit",
     "cannot be re-run": "nothing was simulated",
-    "invalid": "the archive is damaged, or its parts contradict each other",
+    "invalid": "it is damaged, incomplete, or of another suite or state of it; see above",
     "not re-run": "the archive is whole and fits the suite; nothing was simulated",
 }
 
@@ -63,7 +63,8 @@ def verify(
     source: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE.py:CLASS|FILE.yaml", help="The planner, where it is not installed."
+            metavar="FILE.py:CLASS|FILE.yaml|FILE.cbs",
+            help="The planner, where it is not installed.",
         ),
     ] = None,
     planner: Annotated[str | None, typer.Option(hidden=True, help="The same, as before.")] = None,
@@ -103,8 +104,8 @@ def verify(
 
     Example: crowdbot verify team.cbz --sample 10 --seed 7
     """
-    from crowdbot.core.bundle.signature import sign
-    from crowdbot.core.bundle.verification import save_verification
+    from crowdbot.core.bundle.signature import own_public_key, sign
+    from crowdbot.core.bundle.verification import record_path, save_verification
 
     if save:
         sign({})  # fails at once where the key or the library is missing, not after all runs
@@ -125,6 +126,8 @@ def verify(
         say(json.dumps({"bundle": str(bundle), **document}, indent=2))
     else:
         print_verdict(document)
+        if save:
+            say(f"wrote {record_path(bundle)}, signed with the public key {own_public_key()}")
     raise typer.Exit(0 if document["ok"] else 1)
 
 
@@ -254,6 +257,7 @@ def _make_reruns(
     from crowdbot.core.bundle.fresh_verdict import with_fresh
     from crowdbot.core.bundle.planner_files import planner_files_of
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict, verdict_of
+    from crowdbot.core.campaign.unsealed import unsealed
 
     text, place = planner
     import_simulate()  # reports what is missing if Drake cannot be imported
@@ -266,9 +270,14 @@ def _make_reruns(
         make_reruns,
     )
 
-    with planner_files_of(archive) as kept, interruptible() as stop, show_progress() as progress:
+    with (
+        planner_files_of(archive) as kept,
+        unsealed(text, replace(place, kept=kept)) as (text, place),
+        interruptible() as stop,
+        show_progress() as progress,
+    ):
         try:
-            choice = choose_planner(archive.manifest, registry, text, replace(place, kept=kept))
+            choice = choose_planner(archive.manifest, registry, text, place)
         except NotRunnable as error:
             return RerunVerdict(outcome="cannot be re-run", findings=(str(error),))
         setup = RerunSetup(
