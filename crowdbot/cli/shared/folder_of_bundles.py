@@ -37,6 +37,17 @@ class FolderOfBundles:
     left_out: Mapping[str, str]
 
 
+def trusted_keys(keys: Sequence[str]) -> set[str]:
+    """Return the public keys that are believed: the given ones, and the user's own.
+
+    Raises:
+        InputError: one is not a public key.
+    """
+    from crowdbot.core.bundle.signature import check_public_key, own_public_key
+
+    return {check_public_key(text) for text in keys} | {own_public_key()} - {""}
+
+
 def read_bundles(
     folder: Path,
     registry: Registry,
@@ -63,12 +74,11 @@ def read_bundles(
         InputError: there is no bundle, or none of these suites.
     """
     from crowdbot.core.bundle.entries import load_entries
-    from crowdbot.core.bundle.signature import check_public_key, own_public_key
     from crowdbot.core.bundle.standings import set_apart, standings
     from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, read_audit
 
-    trusted = {check_public_key(text) for text in keys} | {own_public_key()} - {""}
+    trusted = trusted_keys(keys)
     entries, left_out = load_entries(folder, registry, trusted)
     for entry in entries:
         if entry.doubt:

@@ -22,6 +22,8 @@ from crowdbot.errors import InputError
 
 #: Name of the log in a judge's folder; the hash before the first line.
 LOG, BEGIN = "judge.log.jsonl", "0" * 64
+#: Event of a submission that came in time.
+RECEIVED = "received"
 _TOLD = ("line", "time", "previous", "event")
 
 

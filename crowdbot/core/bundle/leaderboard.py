@@ -15,13 +15,14 @@ from crowdbot.core.bundle.standings import Standings
 from crowdbot.core.bundle.verification import JUDGED
 from crowdbot.core.results.rows import place_of, processes
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main
+from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main, name_of
 from crowdbot.core.statistics import OUTCOMES
 from crowdbot.core.statistics.estimate_text import NOTHING, estimate_text, range_text
-from crowdbot.core.statistics.pareto import pareto
+from crowdbot.core.statistics.pareto import label_heights, pareto
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import render_page
 
+_NO_AUDIT = "no audit tells if this suite separates careful planners from blind ones"
 _ARROWS = {"higher": "↑", "lower": "↓", "reference": "=", "none": ""}
 
 
@@ -49,7 +50,8 @@ def write_leaderboard(
 def _table(table: Standings, here: Path) -> dict[str, Any]:
     groups = _groups(table)
     main = groups.get(FOUR_SCORES, [])
-    names = [f"{row['metric']} {row['arrow']}".strip() for row in main]
+    points = pareto(table.summary)
+    names = [f"{row['name']} {row['arrow']}".strip() for row in main]
     return {
         "heads": ["Rank", "Team", "Planner", *names, "Runs", "Verification", "Code", "Bundle"],
         "edition": table.edition,
@@ -70,8 +72,9 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
         "too_small": table.too_small,
         "crowds": table.crowds,
         "by_crowd": table.by_crowd,
-        "pareto": pareto(table.summary),
-        "audit": table.audit.text if table.audit else "this suite has not been audited",
+        "pareto": points,
+        "heights": label_heights(points),
+        "audit": table.audit.text if table.audit else _NO_AUDIT,
         "level": f"{table.summary.level:.0%}",
     }
 
@@ -162,8 +165,8 @@ def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
     for metric in dict.fromkeys(s.metric for s in table.summary.scores):
         label = next(s for s in table.summary.scores if s.metric == metric)
         row = {
-            "metric": metric,
-            "variant": label.variant,
+            "name": name_of(metric, label.variant),
+            "variant": _variant(metric, label.variant),
             "unit": "" if label.unit == "1" else label.unit,
             "arrow": _ARROWS[label.better],
             "better": label.better,
@@ -174,6 +177,11 @@ def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
     return dict(sorted(found.items(), key=lambda item: (item[0] != FOUR_SCORES, item[0])))
 
 
+def _variant(metric: str, variant: str) -> str:
+    """Return the variant, with the metric where the score goes by another name."""
+    return variant if name_of(metric, variant) == metric else f"{metric}.{variant}"
+
+
 def _cell(table: Standings, metric: str, entry: LeaderboardEntry) -> dict[str, Any]:
     score, rank = table.score(metric, entry), table.rank(metric, entry)
     if score is None or metric in entry.outdated:
@@ -181,6 +189,8 @@ def _cell(table: Standings, metric: str, entry: LeaderboardEntry) -> dict[str, A
             "rank": "", "value": NOTHING, "interval": "", "sort": "",
             "note": "an older version of the metric",
         }  # fmt: skip
+    if score.mean.value is None:
+        rank = None  # nothing to rank by
     others = {k: getattr(score.counts, k) for k in OUTCOMES if k != "ok"}
     notes = [f"{n} {k}" for k, n in others.items() if n]
     if score.counts.censored and any(end is not None for end in score.bounds):

@@ -54,9 +54,9 @@ class Standings:
 
     @property
     def too_small(self) -> str:
-        """Return why no rank can differ: too few crowds; empty where they are enough."""
+        """Return why no rank can differ: too few crowds; empty if they are enough, or no ranks."""
         size = sample_size(self.summary)
-        return size.text if size else ""
+        return size.text if size and self.ranks(self.by) else ""
 
     def ranks(self, by: str) -> Mapping[str, int]:
         """Return entry -> rank in a metric or by `RULE`; empty if there is nothing to order by."""

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.bundle.judge_log import LOG, LogLine, append, read_log
+from crowdbot.core.bundle.judge_log import LOG, RECEIVED, LogLine, append, read_log
 from crowdbot.core.bundle.pack import Submission, pack
 from crowdbot.core.bundle.signature import own_public_key
 from crowdbot.core.bundle.submission import SUFFIX, Sealed, read_submission, unpack_submission
@@ -35,7 +35,7 @@ from crowdbot.errors import (
     UnknownNameError,
 )
 
-_RECEIVED, _OPENED, _REFUSED, _INCOMPLETE = "received", "opened", "refused", "incomplete"
+_OPENED, _REFUSED, _INCOMPLETE = "opened", "refused", "incomplete"
 _SHORT, _REASON = 16, 500
 
 
@@ -122,7 +122,7 @@ def _received(
     files = sorted(setup.submissions.glob(f"*{SUFFIX}"))
     if not files:
         raise InputError(f"{setup.submissions}: no submissions (*{SUFFIX}) there")
-    known = {str(x.document["submission"]) for x in lines if x.event == _RECEIVED}
+    known = {str(x.document["submission"]) for x in lines if x.event == RECEIVED}
     opened = any(x.event == _OPENED for x in lines)
     for file in files:
         try:
@@ -136,7 +136,7 @@ def _received(
                 continue
             about = one.about
             append(
-                path, lines, _RECEIVED, submission=one.sha256, team=about.team,
+                path, lines, RECEIVED, submission=one.sha256, team=about.team,
                 planner=about.planner, settings=about.settings, digest=about.digest,
             )  # fmt: skip
             known.add(one.sha256)

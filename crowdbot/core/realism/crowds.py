@@ -8,6 +8,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
+from crowdbot.core.support.text import plural
 from crowdbot.dsl.identity.crowd_likeness import fingerprint
 from crowdbot.dsl.scenario.scenario import Crowd, Scenario
 
@@ -56,8 +57,8 @@ def lines_of(crowds: Iterable[tuple[str, str]]) -> list[str]:
     missing = [name for name, row in rows.items() if row is None]
     if missing:
         found.append(
-            f"{len(missing)} crowd{'s' * (len(missing) != 1)} whose realism was not measured; "
-            "measure it with crowdbot realism SUITE"
+            f"{plural(len(missing), 'crowd')}; how real these people are was not measured "
+            "(crowdbot realism SUITE)"
         )
     return found
 

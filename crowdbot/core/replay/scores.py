@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from crowdbot.core.scoring.four_scores import main_first
+from crowdbot.core.scoring.four_scores import main_first, name_of
 from crowdbot.core.scoring.scores_csv import headlines, section_of
 from crowdbot.core.types.score import Score
 
@@ -66,7 +66,7 @@ def compared(runs: Sequence[Sequence[Score]]) -> dict[str, list[ScoreLine]]:
 def _row(score: Score, cells: list[Cell], *, headline: bool) -> ScoreLine:
     arrow, meaning = _ARROWS[score.better]
     return ScoreLine(
-        metric=_words(score.metric),
+        metric=_name(score),
         variant=_words(score.variant),
         unit="" if score.unit == "1" else score.unit,
         arrow=arrow,
@@ -74,6 +74,12 @@ def _row(score: Score, cells: list[Cell], *, headline: bool) -> ScoreLine:
         headline=headline,
         cells=cells,
     )
+
+
+def _name(score: Score) -> str:
+    """Return the metric in words; of the four scores what they are called everywhere, first."""
+    name, metric = name_of(score.metric, score.variant), _words(score.metric)
+    return metric if name in (score.metric, metric) else f"{name} ({metric})"
 
 
 def _cell(score: Score | None) -> Cell:

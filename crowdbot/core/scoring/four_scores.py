@@ -33,8 +33,8 @@ MAIN_SCORES = (
 )
 #: Shown beside the primary score, but not tested: what people would say.
 BESIDE_PRIMARY = MainScore("acceptance", "acceptance")
-_SHOWN = (PRIMARY, BESIDE_PRIMARY, *MAIN_SCORES[1:])
-_PLACES = {(s.metric, s.variant): place for place, s in enumerate(_SHOWN)}
+SHOWN = (PRIMARY, BESIDE_PRIMARY, *MAIN_SCORES[1:])
+_PLACES = {(s.metric, s.variant): place for place, s in enumerate(SHOWN)}
 _MAIN = frozenset((s.metric, s.variant) for s in MAIN_SCORES)
 
 
@@ -46,6 +46,11 @@ def is_main(metric: str, variant: str) -> bool:
 def beside_main(metric: str, variant: str) -> bool:
     """Return True if a score is shown with the four: one of them, or acceptance."""
     return (metric, variant) in _PLACES
+
+
+def name_of(metric: str, variant: str) -> str:
+    """Return the name of a score for readers: its role if it is shown with the four."""
+    return next((s.role for s in SHOWN if (s.metric, s.variant) == (metric, variant)), metric)
 
 
 def main_first(items: Iterable[_Item], name: Callable[[_Item], tuple[str, str]]) -> list[_Item]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.lock import population
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.view.build import build_map_content
 from crowdbot.core.view.facts import scenario_facts
+from crowdbot.core.view.map_content import MapContent
 from crowdbot.core.view.render import render
 from crowdbot.core.view.svg import to_svg
 from crowdbot.dsl.identity.canonical import content_hash
@@ -28,13 +30,15 @@ class Picture:
         scenario: id of the scenario that is drawn, the first draw of the condition.
         words: the condition in words: quantity and value of each axis.
         draws: number of its scenarios.
-        file: picture, relative to the site; empty while the draws are hidden.
+        file: picture, relative to the site; without people while the draws are hidden.
+        small: the same without its legend, for an overview.
     """
 
     scenario: str
     words: tuple[str, ...]
     draws: int
-    file: str = ""
+    file: str
+    small: str
 
 
 def draw_conditions(expansion: Expansion, registry: Registry, folder: Path) -> list[Picture]:
@@ -55,17 +59,23 @@ def _draw(expansion: Expansion, group: list[Scenario], registry: Registry, folde
     first = group[0]
     words = expansion.words_of(first.id)
     said = tuple(f"{one.title}: {one.value}" for axis, one in words.items() if axis != DRAW)
-    file = "" if first.hidden else f"{FOLDER}/{first.id.replace('/', '_')}.svg"
-    if file:
-        (folder / FOLDER).mkdir(exist_ok=True)
-        atomic_write(folder / file, _svg(first, registry))
-    return Picture(scenario=first.id, words=said, draws=len(group), file=file)
+    place = f"{FOLDER}/{first.id.replace('/', '_')}"
+    picture = Picture(
+        scenario=first.id, words=said, draws=len(group), file=f"{place}.svg",
+        small=f"{place}-small.svg",
+    )  # fmt: skip
+    (folder / FOLDER).mkdir(exist_ok=True)
+    content, facts = _content(first, registry)
+    for file, legend in ((picture.file, True), (picture.small, False)):
+        drawing = render(content, first.id, facts, heading=False, legend=legend)
+        atomic_write(folder / file, to_svg(drawing))
+    return picture
 
 
-def _svg(scenario: Scenario, registry: Registry) -> str:
+def _content(scenario: Scenario, registry: Registry) -> tuple[MapContent, dict[str, str]]:
+    """Return what is on the map, and facts; of hidden people neither shows anything."""
+    if scenario.hidden:
+        return build_map_content(scenario, Realisation.nobody(), registry), {}
     people = population(scenario, registry).agents
-    facts = scenario_facts(
-        scenario, people, content_hash(scenario, registry.spec_versions(scenario))
-    )
-    content = build_map_content(scenario, people, registry)
-    return to_svg(render(content, scenario.id, facts, heading=False))
+    spec = content_hash(scenario, registry.spec_versions(scenario))
+    return build_map_content(scenario, people, registry), scenario_facts(scenario, people, spec)

@@ -40,15 +40,19 @@ def write_replays(
         InputError: a recording cannot be read, or a page cannot be written.
     """
     made: list[SiteReplay] = []
-    for number, entry in enumerate([e for e in entries if e.ranked][:_PLANNERS], start=1):
+    shown = 0
+    for entry in (e for e in entries if e.ranked):
         scored = sorted((v, run.name, run) for run in entry.runs if (v := _value(run)) is not None)
         if not scored or not _has_recording(entry, scored[0][2]):
             continue
+        shown += 1
+        if shown > _PLANNERS:
+            break
         chosen = {"best": scored[-1], "typical": scored[(len(scored) - 1) // 2]}
         for which, (value, name, run) in chosen.items():
             if which == "typical" and run is scored[-1][2]:
                 continue  # the only run
-            file = f"{FOLDER}/{number}-{which}.html"
+            file = f"{FOLDER}/{shown}-{which}.html"
             _write(entry, run, registry, folder / file)
             made.append(SiteReplay(entry=entry.name, which=which, run=name, value=value, file=file))
     return made

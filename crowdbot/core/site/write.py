@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from datetime import datetime
 from importlib import metadata
 from pathlib import Path
 
@@ -12,15 +14,22 @@ from crowdbot.core.bundle.leaderboard import write_leaderboard
 from crowdbot.core.bundle.manifest import RULES, RULES_TEXT
 from crowdbot.core.bundle.standings import Standings
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.scoring.four_scores import BESIDE_PRIMARY, MAIN_SCORES
+from crowdbot.core.scoring.four_scores import MAIN_SCORES, SHOWN
+from crowdbot.core.site.copies import copy_suite, with_copies
 from crowdbot.core.site.pictures import Picture, draw_conditions
 from crowdbot.core.site.replays import SiteReplay, write_replays
+from crowdbot.core.statistics.sample_size import least_draws
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.html_page import Allowed, render_page
+from crowdbot.core.support.text import plural
+from crowdbot.dsl.identity.population_inputs import population_inputs
+from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.suite.expand import Expansion
 from crowdbot.dsl.suite.round import Round
 
 INDEX, LEADERBOARD = "index.html", "leaderboard.html"
+#: Probability of a false verdict that leaderboards allow.
+ALPHA = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,12 +41,17 @@ class Site:
         expansion: the suite.
         tables: tables of the leaderboard.
         left_out: name of a bundle -> why it is left out.
+        received: number of sealed planners in the log of the judge.
+        log_hash: hash of the last line of that log; empty without a log.
     """
 
     suite: str
     expansion: Expansion
     tables: Sequence[Standings]
     left_out: Mapping[str, str] = field(default_factory=dict)
+    lock: LockFiles
+    received: int = 0
+    log_hash: str = ""
 
     @property
     def entries(self) -> list[LeaderboardEntry]:
@@ -60,6 +74,19 @@ class Site:
         return Path(self.suite).name
 
     @property
+    def few_crowds(self) -> str:
+        """Return that even two planners would share a rank, whatever they do; mostly empty."""
+        scenarios = self.expansion.scenarios
+        draws = len({s.id if s.crowd is None else population_inputs(s) for s in scenarios})
+        least = least_draws(len(MAIN_SCORES), ALPHA)
+        if draws >= least:
+            return ""
+        return (
+            f"all planners will share one rank: {plural(draws, 'different crowd')}, and two "
+            f"planners are told apart by {least} or more, three or four by a few more"
+        )
+
+    @property
     def hidden(self) -> bool:
         """Return True if the suite's draws are not revealed yet."""
         return any(scenario.hidden for scenario in self.expansion.scenarios)
@@ -77,22 +104,28 @@ def write_site(folder: Path, site: Site, registry: Registry) -> list[Path]:
         InputError: a file cannot be written, or a recording of a bundle cannot be read.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    site = replace(site, tables=with_copies(site.tables, folder))
+    copies = copy_suite(site.suite, site.expansion, site.lock, registry, folder)
     pictures = draw_conditions(site.expansion, registry, folder)
     replays = write_replays(site.entries, registry, folder)
     if site.entries:
         write_leaderboard(
             folder / LEADERBOARD, site.tables, site.left_out, f"{site.title}: leaderboard"
         )
-    atomic_write(folder / INDEX, _index(site, pictures, replays, registry))
-    made = [folder / INDEX, *(folder / p.file for p in pictures if p.file)]
-    return made + [folder / r.file for r in replays] + [folder / LEADERBOARD] * bool(site.entries)
+    atomic_write(folder / INDEX, _index(site, copies, pictures, replays, registry))
+    made = [INDEX, *copies, *(f for p in pictures for f in (p.file, p.small))]
+    made += [r.file for r in replays] + [LEADERBOARD] * bool(site.entries)
+    return [folder / name for name in made] + [entry.path for entry in site.entries]
 
 
 def _index(
-    site: Site, pictures: Sequence[Picture], replays: Sequence[SiteReplay], registry: Registry
+    site: Site,
+    copies: Sequence[str],
+    pictures: Sequence[Picture],
+    replays: Sequence[SiteReplay],
+    registry: Registry,
 ) -> str:
     metrics = registry.components("metric")
-    mains = [*MAIN_SCORES, BESIDE_PRIMARY]
     return render_page(
         __package__,
         allowed=Allowed(images="'self'"),
@@ -102,7 +135,14 @@ def _index(
         commands=take_part(site),
         pictures=pictures,
         replays=replays,
-        scores=[(m.metric, metrics[m.metric].summary) for m in mains if m.metric in metrics],
+        opens=moment_text(site.round.opens or ""),
+        closes=moment_text(site.round.closes or ""),
+        copies=copies,
+        scores=[
+            (m.role, m.metric, without_symbol(metrics[m.metric].summary))
+            for m in SHOWN
+            if m.metric in metrics
+        ],
         rules=RULES_TEXT,
         rules_number=RULES,
         leaderboard=LEADERBOARD if site.entries else "",
@@ -110,9 +150,31 @@ def _index(
     )
 
 
+def moment_text(text: str) -> str:
+    """Return a day or a moment of a round as people write it."""
+    if not text:
+        return ""
+    found = datetime.fromisoformat(text)
+    day = f"{found.day} {found:%B %Y}"
+    if found.tzinfo is None:
+        return f"{day}, in UTC"
+    zone = f"UTC{found:%z}"
+    return f"{day}, {found:%H:%M} {'UTC' if not found.utcoffset() else f'{zone[:-2]}:{zone[-2:]}'}"
+
+
+def without_symbol(summary: str) -> str:
+    """Return the summary of a metric without the symbol before it, for readers of no formula."""
+    text = re.sub(r"^[A-Z]+(_\w+)?: ", "", summary)
+    return text[:1].upper() + text[1:]
+
+
 def take_part(site: Site) -> list[tuple[str, str]]:
     """Return the commands with which a team takes part: what each does, and the command."""
-    install = ("Install crowdbot.", "pip install crowdbot")
+    version = metadata.version("crowdbot")
+    install = (
+        "Install the crowdbot of this page; where pip does not find it, from its wheel.",
+        f"pip install crowdbot=={version}",
+    )
     campaign = f"crowdbot campaign {site.suite_name} --planner"
     to = f" to {site.round.contact}" if site.round.contact else ""
     if site.round.planners == "sealed" or site.hidden:  # no one can run hidden draws

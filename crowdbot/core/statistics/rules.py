@@ -117,7 +117,8 @@ def _by_first(*aspects: Aspect) -> Callable[[Ranked], Standing]:
 #: Name -> sentence, decision about a pair; the first is the ranking rule.
 _RULES: Mapping[str, tuple[str, Callable[[Ranked], Standing]]] = {
     "the ranking rule": (
-        "Worse in none of safety, efficiency and acceptance, and better in one of the last two.",
+        "Ahead is who is worse in none of safety, efficiency and acceptance, and better in "
+        "efficiency or acceptance.",
         _by_rule,
     ),
     "efficiency alone": ("Better in safe efficiency.", _by_first("efficiency")),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 
@@ -40,3 +41,8 @@ def wrap_name(name: str, width: int) -> str:
             else:
                 lines[-1] += blank + part
     return "\n".join(lines)
+
+
+def size_text(size: int) -> str:
+    """Return a size in bytes as text, in kB below a megabyte."""
+    return f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{math.ceil(size / 1e3)} kB"

@@ -21,7 +21,14 @@ _SWATCH = 13.0
 _LEAST_WIDTH = 720.0
 
 
-def render(content: MapContent, title: str, facts: Mapping[str, str], *, heading: bool) -> Drawing:
+def render(
+    content: MapContent,
+    title: str,
+    facts: Mapping[str, str],
+    *,
+    heading: bool,
+    legend: bool = True,
+) -> Drawing:
     """Return the drawing of a map.
 
     Args:
@@ -29,12 +36,15 @@ def render(content: MapContent, title: str, facts: Mapping[str, str], *, heading
         title: the scenario's name.
         facts: name -> text, written below the title.
         heading: True to draw title and facts, for a standalone picture.
+        legend: True to draw the legend below the map.
     """
     top = _HEAD + _LINE * (len(_lines(facts)) - 1) if heading else TOP
     world = Map.around(extent(content), top)
     x, y, width, height = world.box
     paper = max(x + width + _RIGHT, _LEAST_WIDTH)
-    legend, bottom = _legend(content, world, x, y + height + 46.0, paper - _RIGHT)
+    entries, bottom = _legend(content, world, x, y + height + 46.0, paper - _RIGHT)
+    if not legend:
+        paper, entries, bottom = x + width + _RIGHT, [], y + height + _RIGHT
     head = _heading(title, facts) if heading else iter(())
     ground = ((0.0, 0.0), (paper, 0.0), (paper, bottom), (0.0, bottom))
     return Drawing(
@@ -47,7 +57,7 @@ def render(content: MapContent, title: str, facts: Mapping[str, str], *, heading
             Path(points=ground, role="page", closed=True, inside=False),
             *head,
             *shapes(content, world),
-            *legend,
+            *entries,
         ),
     )
 

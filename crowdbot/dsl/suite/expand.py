@@ -124,7 +124,8 @@ def load_document(
     if all(d.code in _GO_ON for d in problems):
         suite = read_suite(root, problems, installed)
         if suite is not None and all(d.code in _GO_ON for d in problems):
-            return replace(suite, finder=Finder(path, roots or {}))
+            finder = Finder(path, roots or {})
+            return replace(suite, finder=finder, included=tuple(loader.files))
     raise SpecError(_sorted(problems))
 
 

@@ -39,6 +39,7 @@ class Loader:
     top: Path
     roots: Roots
     problems: list[Diagnostic] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)
     _count: int = 0
 
     def load(self, name: str) -> Node:
@@ -163,6 +164,7 @@ class Loader:
         if self._count > MAX_INCLUDES:
             self._add("E206", f"more than {MAX_INCLUDES} files are included", item.mark)
             return None
+        self.files.append(found.path)
         return found
 
     def _find(self, text: str, mark: Mark, file: _File) -> _File | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from datetime import UTC, datetime, time
 from typing import Annotated, Literal
 
@@ -11,7 +12,7 @@ from crowdbot.dsl.spec.spec import Spec
 
 #: The form in which planners are handed in.
 HandedIn = Literal["any", "sealed"]
-_TEXT = 500
+_TEXT, _LONG_TEXT = 500, 10_000
 
 
 def _moment(text: str) -> str:
@@ -50,6 +51,18 @@ class Round(Spec):
         "ran, are ranked.",
     )
     contact: str = Field(default="", max_length=_TEXT, description="Whom to ask.")
+    organisers: str = Field(default="", max_length=_TEXT, description="Who decides.")
+    venue: str = Field(
+        default="",
+        max_length=_TEXT,
+        description="Where results are presented, such as a conference.",
+    )
+    prize: str = Field(default="", max_length=_TEXT, description="What the best get.")
+    about: str = Field(
+        default="",
+        max_length=_LONG_TEXT,
+        description="Text for the challenge's site; an empty line begins a paragraph.",
+    )
     rules: str = Field(
         default="", max_length=_TEXT, description="Address of the rules, or the rules in a line."
     )
@@ -77,6 +90,16 @@ class Round(Spec):
         return f"the round closed on {self.closes}" if moment > self.end else ""
 
     @property
+    def mail(self) -> bool:
+        """Return True if the contact is an address of mail."""
+        return re.fullmatch(r"[\w.+-]+@[\w-]+(\.[\w-]+)+", self.contact) is not None
+
+    @property
+    def paragraphs(self) -> list[str]:
+        """Return the paragraphs of the text for the site."""
+        return [" ".join(part.split()) for part in re.split(r"\n\s*\n", self.about.strip()) if part]
+
+    @property
     def text(self) -> str:
         """Return the round in a line."""
         parts = [
@@ -85,6 +108,9 @@ class Round(Spec):
             "sealed planners only" if self.planners == "sealed" else "",
             f"rules: {self.rules}" if self.rules else "",
             f"contact: {self.contact}" if self.contact else "",
+            f"organisers: {self.organisers}" if self.organisers else "",
+            f"venue: {self.venue}" if self.venue else "",
+            f"prize: {self.prize}" if self.prize else "",
         ]
         return ", ".join(part for part in parts if part) or "no dates"
 

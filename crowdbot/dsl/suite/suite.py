@@ -21,6 +21,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from importlib import metadata
+from pathlib import Path
 from typing import Annotated, Any, Literal, cast, get_args
 
 from annotated_types import Ge, Le
@@ -187,6 +188,7 @@ class ParsedSuite:
         record: what to record by default; None: not said.
         round: round of a challenge; None: not said.
         files: path -> sha256 of files that a commitment covers.
+        included: files that the document extends, and tables of agents.
         problems: errors found so far.
         tree: the whole document, including ``extends``.
         finder: finds the document's files; None: assets are not searched.
@@ -211,6 +213,7 @@ class ParsedSuite:
     record: Recorded | None = None
     round: Round | None = None
     files: Mapping[str, str] = field(default_factory=dict)
+    included: tuple[Path, ...] = ()
 
 
 def read_suite(

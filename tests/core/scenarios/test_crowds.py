@@ -90,7 +90,7 @@ def test_lines_of_a_report() -> None:
     assert line.startswith("calibrated, realism 0.8")
     assert "no avoidance 0.5" in line
     assert lines_of([("", "0" * 16), ("", "1" * 16)]) == [
-        "2 crowds whose realism was not measured; measure it with crowdbot realism SUITE"
+        "2 crowds; how real these people are was not measured (crowdbot realism SUITE)"
     ]
 
 

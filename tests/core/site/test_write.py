@@ -12,12 +12,16 @@ import pytest
 
 from crowdbot import cli
 from crowdbot.core.bundle.check_edition import late
+from crowdbot.core.bundle.judge_log import LOG, RECEIVED, LogLine, append
 from crowdbot.core.bundle.verification import content_hash, save_verification
 from tests.core.bundle.made_up_runs import make_bundle, write_suite
 from tests.paths import ROOT
 
 TEMPLATE = ROOT / "crowdbot" / "templates" / "planner" / "package"
-ROUND = "round: {closes: 2027-03-31, planners: sealed, contact: us@example.org}\n"
+ROUND = (
+    "round: {closes: 2027-03-31, planners: sealed, contact: us@example.org, prize: A <b>cup</b>,\n"
+    '  organisers: Lab A and Lab B, venue: Hall W, about: "First.\\n\\nSecond."}\n'
+)
 
 
 @pytest.fixture(scope="module")
@@ -35,11 +39,16 @@ def test_without_bundles(folder: Path, tmp_path: Path) -> None:
     assert cli.main(["challenge-page", str(folder / "tiny.yaml"), "--out", str(out)]) == 0
     page = (out / "index.html").read_text()
     assert "Nothing was handed in yet" in page
-    assert "us@example.org" in page
+    assert '<a href="mailto:us@example.org">' in page
+    assert "31 March 2027, in UTC at the end of the day" in page
+    for told in ("Lab A and Lab B", "Hall W", "A &lt;b&gt;cup&lt;/b&gt;", "<p>Second.</p>"):
+        assert told in page
     assert "crowdbot seal mine.py:Mine" in page
     pictures = re.findall(r'<img src="([^"]+)"', page)
     assert pictures
     assert all((out / name).read_text().startswith("<?xml") for name in pictures)
+    assert all(name.endswith("-small.svg") for name in pictures)  # without a legend
+    assert all((out / name.replace("-small", "")).is_file() for name in pictures)
     assert "http" not in re.sub(r"<[^>]*Security-Policy[^>]*>", "", page)
 
 
@@ -47,6 +56,10 @@ def test_with_bundles(folder: Path, tmp_path: Path) -> None:
     arguments = ["challenge-page", str(folder / "tiny.yaml"), str(folder)]
     assert cli.main([*arguments, "--out", str(tmp_path)]) == 0
     board = (tmp_path / "leaderboard.html").read_text()
+    links = re.findall(r'href="([^"#]+)"', board + (tmp_path / "index.html").read_text())
+    assert {"./bundles/dwa.cbz", "suite/tiny.yaml", "suite/tiny.lock.json"} <= set(links)
+    assert all((tmp_path / link).is_file() for link in links if ":" not in link)
+    assert (tmp_path / "bundles/dwa.cbz").read_bytes() == (folder / "dwa.cbz").read_bytes()
     assert "A &lt;b&gt;team&lt;/b&gt;" in board
     assert board.count("not ranked: this round ranks sealed planners only") == 2
     page = (tmp_path / "index.html").read_text()
@@ -90,7 +103,8 @@ def test_what_the_organisers_refused_has_no_rank(tmp_path: Path, outcome: str) -
     out = tmp_path / "site"
     assert cli.main(["challenge-page", str(suite), str(tmp_path), "--out", str(out)]) == 0
     page = (out / "index.html").read_text()
-    assert re.findall(r"<li value[^>]*>([^<]+)", page) == ["Dwa · dwa"]
+    listed = page.partition('id="board"')[2].partition("</section>")[0]
+    assert re.findall(r"<li[^>]*>([^<]+)", listed) == ["Dwa · dwa"]
     assert f"is not ranked: the organisers found it {outcome}</p>" in page
     board = (out / "leaderboard.html").read_text()
     assert f'class="{outcome}"' in board
@@ -143,3 +157,34 @@ def test_the_page_of_hidden_draws_asks_for_sealed_planners(tmp_path: Path) -> No
     assert "send the file to us@example.org" in page
     assert "crowdbot bundle" not in page
     assert re.search(r"<dt>commitment</dt><dd><code>[^<]+</code>", page)
+    drawing = (out / re.findall(r'<img src="([^"]+)"', page)[0]).read_text()
+    assert "<path" in drawing
+    assert '<circle class="person' not in drawing
+
+    judged = tmp_path / "judged"
+    judged.mkdir()
+    arguments = ["challenge-page", str(suite), str(judged), "--out", str(out)]
+    assert cli.main(arguments) == 1  # neither bundles nor a log
+    lines = list[LogLine]()
+    for number in range(2):
+        append(judged / LOG, lines, RECEIVED, submission=str(number))
+    assert cli.main(arguments) == 0
+    page = (out / "index.html").read_text()
+    assert "2 sealed planners received" in page
+    assert f"<code>{lines[-1].sha256}</code>" in page
+    assert "Nothing was run yet" in page
+
+
+def test_too_few_crowds_are_told_before_the_round(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    suite = write_suite(tmp_path)
+    suite.with_suffix(".lock.json").unlink()
+    before, out = suite.read_text(), tmp_path / "site"
+    for draws, told in ((1, True), (3, False)):
+        suite.write_text(f"{before}draws: {draws}\n")
+        capsys.readouterr()
+        assert cli.main(["challenge-page", str(suite), "--out", str(out)]) == 0
+        said = "all planners will share one rank: "
+        assert (said in capsys.readouterr().err) is told
+        assert (said[1:] in (out / "index.html").read_text()) is told

@@ -12,7 +12,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
-from crowdbot.core.support.text import plural
+from crowdbot.core.support.text import plural, size_text
 from crowdbot.dsl.suite.suite_entry import NO_SUITE
 from crowdbot.errors import UsageError
 
@@ -120,7 +120,7 @@ def bundle(
     lacking = f", {len(manifest.missing)} missing" if manifest.missing else ""
     say(
         f"{manifest.edition_name}: {manifest.label}, {plural(len(manifest.runs), 'run')}{lacking}, "
-        f"{plural(len(manifest.members), 'file')}, {target.stat().st_size / 1e6:.1f} MB"
+        f"{plural(len(manifest.members), 'file')}, {size_text(target.stat().st_size)}"
     )
     say(f"wrote {target}")
     if verdict is not None:

@@ -14,6 +14,7 @@ from crowdbot.cli.shared.folder_of_bundles import (
     FolderOfBundles,
     Keys,
     read_bundles,
+    trusted_keys,
 )
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
@@ -34,24 +35,33 @@ def challenge_page(
 ) -> None:
     """Write the site of a challenge: dates, rules, how to take part, scenarios, leaderboard.
 
-    Dates and rules are the suite's round. Pictures show the first draw of each condition, once
-    the draws are revealed. Replays show the best and a typical run of the first three planners
-    whose bundles have recordings. All pages work offline.
+    Dates and rules are the suite's round. Pictures show the first draw of each condition, without
+    people while the draws are hidden. Replays show the best and a typical run of the three best
+    planners that have recordings. The suite's files and the bundles are copied into the folder.
+    While a judge only receives planners, give its folder: the page tells how many there are.
 
     Example: crowdbot challenge-page challenge.yaml bundles --out site
     """
+    from crowdbot.core.bundle.judge_log import LOG, RECEIVED, read_log
     from crowdbot.core.scenarios.library import open_suite
     from crowdbot.core.site.write import Site, write_site
     from crowdbot.core.statistics.rules import RULE
 
     registry = installed(plugin, no_plugins)
-    expansion, _ = open_suite(suite, registry)
+    expansion, lock = open_suite(suite, registry)
     found = FolderOfBundles(tables=(), left_out={})
-    if bundles is not None:
+    lines = [] if bundles is None else read_log(bundles / LOG, trusted_keys(key or ()))
+    if bundles is not None and (not lines or any(bundles.glob("*.cbz"))):
         found = read_bundles(
             bundles, registry, RULE, accept=accept or (), keys=key or (), suites=[expansion]
         )
-    site = Site(suite=suite, expansion=expansion, tables=found.tables, left_out=found.left_out)
+    site = Site(
+        suite=suite, expansion=expansion, lock=lock, tables=found.tables, left_out=found.left_out,
+        received=sum(line.event == RECEIVED for line in lines),
+        log_hash=lines[-1].sha256 if lines else "",
+    )  # fmt: skip
+    if site.few_crowds and not site.entries:
+        say(f"warning: {site.few_crowds}", err=True)
     files = write_site(out, site, registry)
     if as_json:
         document = {"files": [str(file) for file in files], "left_out": dict(site.left_out)}

@@ -323,8 +323,8 @@ def print_verdict(document: dict[str, Any]) -> None:
     if document["not_compared"]:
         say(f"not compared, since no tolerance is known: {', '.join(document['not_compared'])}")
     if document["runs"]:
-        chances = (f"{k}: {100.0 * p:.0f} %" for k, p in document["odds"].items())
-        say(f"odds of finding edited runs with this sample, {', '.join(chances)}")
+        chances = (f"{100.0 * p:.0f} % if {k}" for k, p in document["odds"].items())
+        say(f"chance that this sample shows edited runs: {', '.join(chances)} were edited")
     if document["late"]:
         say(f"warning: {document['late']}", err=True)
     head, outcome = f"{document['edition']}: {document['planner']}", document["outcome"]
