@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import time
 import traceback
 from collections.abc import Callable
@@ -24,7 +25,7 @@ from crowdbot.core.sim.references import make_reference
 from crowdbot.core.support.json_digest import digest
 from crowdbot.core.types.ending import has_failed
 from crowdbot.dsl.suite.expand import Expansion
-from crowdbot.errors import CrowdbotError, InputError, PlannerError, SimulationError
+from crowdbot.errors import CrowdbotError, InputError, PlannerError, PluginError, SimulationError
 
 
 def execute(
@@ -54,8 +55,18 @@ def failed_job(job: Job, error: Exception, wall_time: float = 0.0) -> Done:
         error=f"{type(error).__name__}: {error}",
         exit_code=error.exit_code if known else SimulationError.exit_code,  # type: ignore[attr-defined]
         traceback="".join(traceback.format_exception(error)),
+        disk_full=not isinstance(error, PluginError) and _is_full_disk(error),
         wall_time=wall_time,
     )
+
+
+def _is_full_disk(error: BaseException | None) -> bool:
+    """Return True if an error, or what caused it, is a full disk or quota."""
+    while error is not None:
+        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def _execute(

@@ -84,6 +84,7 @@ class Done:
         status: status of the run; empty without a run, and then ``error`` explains it.
         exit_code: the equivalent exit code of `crowdbot simulate`.
         traceback: the Python traceback, or the last stderr output of a dead process.
+        disk_full: True if the error is a full disk: a fault of the machine, not of the run.
         wall_time: wall time of the whole job, s.
         stages: name -> wall time of its parts, s.
     """
@@ -93,5 +94,6 @@ class Done:
     error: str = ""
     exit_code: int = 0
     traceback: str = ""
+    disk_full: bool = False
     wall_time: float = 0.0
     stages: Mapping[str, float] = field(default_factory=dict)

@@ -16,7 +16,7 @@ from crowdbot.core.results.failure import Failure, forget_failure, write_failure
 from crowdbot.core.results.store import Store, index
 from crowdbot.core.types.ending import Ending, has_failed
 from crowdbot.dsl.suite.suite_entry import altered_suffix
-from crowdbot.errors import PluginError, SimulationError
+from crowdbot.errors import InputError, PluginError, SimulationError
 
 _LOOK = 0.25
 
@@ -83,7 +83,7 @@ def run_campaign(plan: Plan, pool: WorkerPool, size: int, listener: Listener) ->
             one.
 
     Raises:
-        InputError: the folder cannot be written.
+        InputError: the folder cannot be written, or a job found the disk full.
     """
     with ExitStack() as stack:
         stack.callback(pool.close)
@@ -139,6 +139,9 @@ class _Campaign:
         return ended
 
     def _end(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
+        if done.disk_full:  # every further job would fail, and none of them is the planner's fault
+            said = done.error.removeprefix(f"{InputError.__name__}: ")
+            raise InputError(f"{said}; free some, and the same command goes on where it was")
         del self.state.left[job.key]
         self._ended.add(job.key)
         if done.error:
