@@ -26,6 +26,10 @@ _UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robot
 _CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anyone walks or drives; usual frames per second
 _AGREED, _NEARLY_ALL = 0.8, 0.95  # shares of samples in which headings agree with the motion
 _HEADINGS = 0.7  # rad; largest deviation of an agreeing heading
+_LEAP = 0.5  # m; from exactly (0, 0) to the next place: nobody was there
+#: A recorded speed is wrong outside these multiples of the way of a second; units that explain it.
+_TOO_SLOW, _TOO_FAST = 0.5, 3.0
+_SPEEDS = {"km/h": 3.6, "cm/s": 100.0, "mm/s": 1000.0}
 _INEXACT = 0.1  # rad; usual deviation of a measured heading from the motion
 
 
@@ -41,7 +45,8 @@ def implausible(run: Trajectories) -> list[str]:
         found += _speeds(who, run.t, x, y, limit)
     found += _frames(run.t, tracks)
     found += _headings(run)
-    found += _recorded_velocities(run)
+    found += _placeholders(run)
+    found += list(_recorded_velocities(run)) or list(_recorded_speeds(run))
     return found or list(_apart(run))
 
 
@@ -109,6 +114,24 @@ def _frames(t: Array, tracks: list[tuple[str, Array, Array, float]]) -> Iterator
     )
 
 
+def _placeholders(run: Trajectories) -> Iterator[str]:
+    """Check for people at exactly (0, 0) who then are suddenly elsewhere."""
+    if run.agents is None:
+        return
+    x, y = run.agents.x, run.agents.y
+    zero = (x == 0.0) & (y == 0.0)
+    steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+    with np.errstate(invalid="ignore"):
+        leaps = (zero[1:] != zero[:-1]) & (steps > PERSON_SPEED * np.diff(run.t)[:, None])
+    whose = np.flatnonzero((leaps & (steps > _LEAP)).any(axis=0))
+    if len(whose):
+        ids = ", ".join(str(i) for i in run.agents.id[whose[:5]])
+        yield (
+            f"people: in {np.count_nonzero(zero[:, whose])} samples {len(whose)} of them ({ids}) "
+            "stand at exactly (0, 0), and suddenly elsewhere: leave cells without a place empty"
+        )
+
+
 def _headings(run: Trajectories) -> Iterator[str]:
     """Check that the heading agrees with the motion, forwards or backwards."""
     robot = run.robot
@@ -166,29 +189,73 @@ def _agreement(motion: Array, theta: Array) -> float:
 def _recorded_velocities(run: Trajectories) -> Iterator[str]:
     """Check that velocities agree with the change of positions."""
     for who, track in (("the robot", run.robot), ("people", run.agents)):
-        if track is None or track.vx is None or track.vy is None or len(run.t) < _FEW:
+        velocity = None if track is None else _velocity(track)
+        if velocity is None or len(run.t) < _FEW:
             continue
         with np.errstate(invalid="ignore"):
             x, y = (np.gradient(p, run.t, axis=0) for p in (track.x, track.y))
-            known = np.isfinite(x + y + track.vx + track.vy) & (np.hypot(x, y) > _MOVING)
+            known = np.isfinite(x + y + velocity[0] + velocity[1]) & (np.hypot(x, y) > _MOVING)
         if np.count_nonzero(known) < _FEW:
             continue
-        x, y, vx, vy = x[known], y[known], track.vx[known], track.vy[known]
+        x, y, vx, vy = x[known], y[known], velocity[0][known], velocity[1][known]
         speed, off = float(np.median(np.hypot(x, y))), _off(x, y, vx, vy)
         if off <= 0.5 * speed:
             continue
         seen = f"{who}: velocities differ from the change of positions by {off:.3g} m/s (median)"
-        if (swapped := _off(x, y, vy, vx)) < 0.25 * off:
+        if track.vx is not None and (swapped := _off(x, y, vy, vx)) < 0.25 * off:
             yield f"{seen}; with x and y exchanged by {swapped:.3g} m/s"
         elif who == "the robot" and run.robot is not None:
             c, s = np.cos(run.robot.theta[known]), np.sin(run.robot.theta[known])
-            turned = _off(x, y, c * vx - s * vy, s * vx + c * vy)
-            if turned < 0.25 * off:
-                yield f"{seen}; taken in the robot's own frame by {turned:.3g} m/s"
+            turned = {
+                "the robot's own frame": _off(x, y, c * vx - s * vy, s * vx + c * vy),
+                "the world's frame": _off(x, y, c * vx + s * vy, c * vy - s * vx),
+            }
+            frame = min(list(turned)[track.vx is None :], key=lambda name: turned[name])
+            if turned[frame] < 0.25 * off:
+                yield f"{seen}; taken in {frame} by {turned[frame]:.3g} m/s"
+
+
+def _velocity(track: Any) -> tuple[Array, Array] | None:
+    """Return recorded velocities in the world's frame, m/s; None: there are none."""
+    if track.vx is not None and track.vy is not None:
+        return track.vx, track.vy
+    v = getattr(track, "v", None)
+    return None if v is None else (v * np.cos(track.theta), v * np.sin(track.theta))
 
 
 def _off(x: Array, y: Array, vx: Array, vy: Array) -> float:
     return float(np.median(np.hypot(x - vx, y - vy)))
+
+
+def _recorded_speeds(run: Trajectories) -> Iterator[str]:
+    """Check that speeds agree with the way of a second: missing velocities, km/h, mm/s."""
+    if len(run.t) < _FEW:
+        return
+    for who, track in (("the robot", run.robot), ("people", run.agents)):
+        velocity = None if track is None else _velocity(track)
+        if velocity is None:
+            continue
+        ways, recorded = _of_a_second(run.t, track.x, track.y, np.hypot(*velocity))
+        known = np.isfinite(ways + recorded) & (ways > 2.0 * _MOVING)
+        if np.count_nonzero(known) < _FEW:
+            continue
+        way, said = float(np.median(ways[known])), float(np.median(recorded[known]))
+        if not _TOO_SLOW * way <= said <= _TOO_FAST * way:
+            unit = next((u for u, f in _SPEEDS.items() if abs(said / way / f - 1.0) < 0.1), "")
+            yield (
+                f"{who}: the recorded speed is {said:.3g} m/s (median), the way of a second "
+                f"{way:.3g} m{f': {unit}?' if unit else ''}; velocities that are left out are "
+                "derived from positions"
+            )
+
+
+def _of_a_second(t: Array, x: Array, y: Array, speed: Array) -> tuple[Array, Array]:
+    """Return net ways of a second, per second, and the mean speed meanwhile, m/s."""
+    steps = min(max(1, round(1.0 / float(np.median(np.diff(t))))), len(t) - 1)
+    dt = (t[steps:] - t[:-steps]).reshape(-1, *([1] * (x.ndim - 1)))
+    ways = np.hypot(x[steps:] - x[:-steps], y[steps:] - y[:-steps]) / dt
+    total = np.cumsum(speed, axis=0)
+    return ways, (total[steps:] - total[:-steps]) / steps
 
 
 def _apart(run: Trajectories) -> Iterator[str]:

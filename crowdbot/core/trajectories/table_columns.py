@@ -73,7 +73,7 @@ def chosen(
         spelled: names there, with units.
 
     Raises:
-        InputError: a given name is not one of ours, or not there.
+        InputError: a given name is not one of ours, or not there; or two columns have one name.
     """
     known = list(known)
     for ours, theirs in names.items():
@@ -99,7 +99,14 @@ def chosen(
             if theirs in where and header[where.index(theirs)] not in taken:
                 found[ours] = where.index(theirs)
                 break
+    _refuse_twins(name, header, found.values())
     return found
+
+
+def _refuse_twins(name: str, header: Sequence[str], wanted: Iterable[int]) -> None:
+    for i in wanted:
+        if list(header).count(header[i]) > 1:
+            raise InputError(f"{name}:1: two columns are called '{header[i]}'; rename one")
 
 
 def without_unit(column: str) -> str:
@@ -189,6 +196,9 @@ def from_wide(
         header: names of its columns, without units.
         cells: all columns by name.
         unit: metres in the unit of lengths.
+
+    Raises:
+        InputError: a person has two columns of one name, or a number has x without y.
     """
     if any(name in table for name in ("id", "x", "y")) or "t" not in table:
         return table
@@ -197,6 +207,7 @@ def from_wide(
         match = next((m for pattern in _WIDE if (m := pattern.match(column))), None)
         if match is not None:
             people.setdefault(match["who"], {})[match["axis"].lower()] = column
+    _refuse_halves(table.name, header, people)
     people = {who: axes for who, axes in people.items() if len(axes) == 2}
     if not people:
         return table
@@ -217,6 +228,19 @@ def from_wide(
     if unit != 1.0:
         long = replace(long, columns={**long.columns, **{n: long.numbers(n) * unit for n in "xy"}})
     return replace(table, columns=long.columns, lines=lines)
+
+
+def _refuse_halves(
+    name: str, header: Sequence[str], people: Mapping[str, Mapping[str, str]]
+) -> None:
+    columns = [(who, axes, axis) for who, axes in people.items() for axis in axes]
+    _refuse_twins(name, header, [header.index(axes[axis]) for _, axes, axis in columns])
+    if not any(len(axes) == 2 for axes in people.values()):
+        return
+    for who, axes, axis in columns:
+        if len(axes) == 1 and _number(who).isdigit():
+            other = "y" if axis == "x" else "x"
+            raise InputError(f"{name}:1: column '{axes[axis]}' has none for {other} beside it")
 
 
 def _number(who: str) -> str:

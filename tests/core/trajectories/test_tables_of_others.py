@@ -198,3 +198,29 @@ def test_words_for_unknown_values(tmp_path: Path, word: str) -> None:
 def test_files_that_are_no_text_of_a_table(tmp_path: Path, content: bytes, told: str) -> None:
     with pytest.raises(InputError, match=told):
         _people(tmp_path / "a.csv", content)
+
+
+# ---------------------------------------------------------------- columns that say too little
+@pytest.mark.parametrize(
+    ("head", "told"),
+    [
+        ("t,x1,y1,x2", "column 'x2' has none for y beside it"),
+        ("t,x1,y1,ped2.y", "column 'ped2.y' has none for x beside it"),
+        ("t,x1,y1,x1", "two columns are called 'x1'"),
+        ("t,id,x,y,x", "two columns are called 'x'"),
+    ],
+)
+def test_columns_that_are_half_or_twice_there(tmp_path: Path, head: str, told: str) -> None:
+    rows = "\n".join(",".join([f"{k}", *"1234"[: head.count(",")]]) for k in range(3))
+    file = tmp_path / "people.csv"
+    file.write_text(f"{head}\n{rows}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=f"people.csv:1: {told}"):
+        crowdbot.Trajectories.from_csv(agents=file)
+
+
+def test_zeros_for_people_who_are_not_there_are_told(tmp_path: Path) -> None:
+    rows = [f"{k / 10},{k / 10},0,{0 if k < 15 else 5 - k / 10},0" for k in range(40)]
+    file = tmp_path / "people.csv"
+    file.write_text("t,x1,y1,x2,y2\n" + "\n".join(rows), encoding="utf-8")
+    with pytest.warns(RecordingWarning, match=r"in 15 samples 1 of them \(2\) stand at exactly"):
+        crowdbot.Trajectories.from_csv(agents=file)

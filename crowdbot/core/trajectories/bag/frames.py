@@ -97,13 +97,32 @@ class FrameTree:
 
     def times(self, frame: str, target: str) -> NDArray[np.int64]:
         """Return times, ns, of the transform that was sent most often between two frames."""
-        chain = self.above(frame)
-        links = [self._links[name] for name in chain[: chain.index(target)]]
-        moving = [link for link in links if not link.is_static] or links
+        moving = list(self._moving(frame, target).values())
         longest = max(moving, key=lambda link: len(link.t))
         begin, end = max(link.t[0] for link in moving), min(link.t[-1] for link in moving)
         during: NDArray[np.int64] = longest.t[(longest.t >= begin) & (longest.t <= end)]
         return during
+
+    def cut_short(self, frame: str, target: str) -> list[str]:
+        """Return sentences on transforms that begin later or end earlier than others, by seconds.
+
+        Poses between two frames (see `times`) are known only while all are sent.
+        """
+        moving = self._moving(frame, target)
+        first, last = min(k.t[0] for k in moving.values()), max(k.t[-1] for k in moving.values())
+        return [
+            f"the transform from '{name}' to '{link.parent}' is sent from {begin:.3g} to "
+            f"{end:.3g} s of {(last - first) / 1e9:.3g} s: other poses are left out"
+            for name, link in moving.items()
+            for begin, end in [((link.t[0] - first) / 1e9, (link.t[-1] - first) / 1e9)]
+            if begin > _HOLDS or (last - link.t[-1]) / 1e9 > _HOLDS
+        ]
+
+    def _moving(self, frame: str, target: str) -> dict[str, _Link]:
+        """Return the transforms between two frames that are sent again, else all, by child."""
+        chain = self.above(frame)
+        links = {name: self._links[name] for name in chain[: chain.index(target)]}
+        return {name: link for name, link in links.items() if not link.is_static} or links
 
     def between(
         self, target: str, source: str, t: NDArray[np.int64]

@@ -32,7 +32,7 @@ _CLASSES = {
     5: "bike", 6: "car", 7: "truck", 8: "motorcycle", 9: "other vehicle", 10: "barrier",
     11: "sign",
 }  # fmt: skip
-_ROBOT = re.compile(r"(?<![a-z])robot", re.IGNORECASE)
+_ROBOT = re.compile(r"(?<![a-z])robot(?!ic)", re.IGNORECASE)  # robot_1, no robotics student
 
 
 def people_in(path: Path, topic: str, message: Any, log: int, number: int) -> list[Seen]:

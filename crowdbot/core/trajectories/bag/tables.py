@@ -214,7 +214,9 @@ class _Reading:
         world = world_frame(tree, base, of_people)
         if not world:
             raise InputError(f"{self._path}: {TF} has no transform to frame '{base}'")
-        return from_tree(tree, base, world)
+        robot = from_tree(tree, base, world)
+        self._notes += tree.cut_short(base, world)
+        return robot
 
     # -------------------------------------------------------------------------- tables
     def _finite(self, robot: Columns) -> Columns:
@@ -261,14 +263,13 @@ class _Reading:
         return RawTable(f"{self._path}: {topic}", cells)
 
     def _values(self, columns: Columns) -> dict[str, Any]:
-        if "v" in columns.values or "theta" in columns.values:
-            return velocities(columns)
         values = dict(columns.values)
-        if (
-            "vx" in values
-            and not np.nan_to_num(values["vx"]).any() | np.nan_to_num(values["vy"]).any()
-        ):
-            del values["vx"], values["vy"]  # not filled in, or no one moves
+        velocity = [name for name in ("v", "vx", "vy", "w") if name in values]
+        if not any(np.nan_to_num(values[name]).any() for name in velocity):
+            for name in velocity:  # not filled in, or no one moves
+                del values[name]
+        if "v" in values or "theta" in values:
+            return velocities(replace(columns, values=values))
         return values
 
 
