@@ -81,8 +81,8 @@ class FloorPlanFields(EnvironmentSpec):
     )
     level: str | int | float | None = Field(
         default=None,
-        description="Storey to read, if the features of GeoJSON name several as `level`, `storey` "
-        "or `story`, or lie at different heights.",
+        description="Storey to read, if the features of GeoJSON name several as `level`, `storey`, "
+        "`floor` and the like, or lie at different heights.",
     )
     tolerance: NonNegativeLength | None = Field(
         default=None,

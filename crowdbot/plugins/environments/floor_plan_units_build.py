@@ -20,6 +20,9 @@ _EARTH = 6_371_008.8
 #: Names of reference systems whose numbers are longitude and latitude: OGC CRS84, EPSG 4326 and
 #: 4979, all WGS 84.
 _IN_DEGREES = re.compile(r"CRS:?84|EPSG:+[\d.]*:?(4326|4979)\b|WGS[ _]?(19)?84$", re.IGNORECASE)
+#: Web Mercator, whose metres are those of the equator; the radius of its sphere, m.
+_MERCATOR = re.compile(r"EPSG:+[\d.]*:?(3857|900913|3785)\b|ESRI:+(102100|102113)\b", re.IGNORECASE)
+_MERCATOR_RADIUS, _STRETCHED = 6_378_137.0, 1.01
 #: Smallest plan, m, and largest plan in degrees, which is 100 km.
 _LEAST, _MOST_DEGREES = 1.0, 1.0
 #: Largest distance of a plan from the world's origin, m; a plan farther away was not moved there.
@@ -49,7 +52,7 @@ def check_numbers(
         told: True if the document gives the unit.
 
     Raises:
-        InputError: degrees are read as lengths, or lengths as degrees.
+        InputError: degrees are read as lengths, or lengths as degrees; or metres are stretched.
     """
     numbers = shapely.get_coordinates(shapes)
     if not (len(numbers) and np.isfinite(numbers).all()):
@@ -65,6 +68,7 @@ def check_numbers(
                 f"{where}: see 'unit'"
             )
         return
+    _check_mercator(crs, 0.5 * (low[1] + high[1]), name)
     on_earth = _on_earth(low, high)
     small = 0.0 < wide <= _MOST_DEGREES and wide * UNITS[spec.unit] < _LEAST
     if small and on_earth:
@@ -81,6 +85,21 @@ def check_numbers(
             "%s: the file says that its numbers are degrees (%s), but %s, which would be %.0f km: "
             "they count as %s; write 'unit' to say so",
             *(name, crs, where, 111.2 * wide, spec.unit),
+        )
+
+
+def _check_mercator(crs: str, north: float, name: str) -> None:
+    """Refuse numbers of Web Mercator far from the equator, which are no metres.
+
+    Raises:
+        InputError: they are stretched by more than a hundredth.
+    """
+    stretched = math.cosh(north / _MERCATOR_RADIUS) if _MERCATOR.search(crs) else 1.0
+    if stretched > _STRETCHED:
+        raise InputError(
+            f"{name}: the file names {crs} (Web Mercator), in which a metre is {stretched:.2f} "
+            "long there: export it as longitude and latitude, with 'unit: deg', or in a national "
+            "grid"
         )
 
 

@@ -16,6 +16,13 @@ from shapely.geometry import shape as shape_of  # type: ignore[import-untyped,un
 from crowdbot.plugin import InputError, did_you_mean, nearest
 from crowdbot.plugin.for_environments import parse_foreign_json, valid_shape
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
+from crowdbot.plugins.environments.floor_plan_properties_build import (
+    in_small_letters,
+    kind_of,
+    label_of,
+    levels_of,
+    solid_by_another_name,
+)
 from crowdbot.plugins.environments.floor_plan_units_build import (
     UNITS,
     check_numbers,
@@ -30,8 +37,6 @@ _SOLID, _FLOOR, _NEITHER = ("obstacle", "wall"), ("walkable",), ("zone", "portal
 _KINDS = (*_FLOOR, *_SOLID, *_NEITHER)
 _WITH_SIDES = ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "GeometryCollection")
 _POINTS = ("Point", "MultiPoint")
-#: Properties that name a storey.
-_LEVELS = ("level", "storey", "story")
 #: Geometries at heights that differ by more lie on different storeys, m.
 _STOREY = 2.0
 #: Part of the floor that may be covered twice without a warning.
@@ -96,6 +101,8 @@ def sorted_plan(
         _LOG.warning("%s: left out: %s", name, listed)
     found = _on_one_storey([one for one in found if not one[0].is_empty], spec, name)
     check_numbers([shape for shape, _ in found], spec, name, crs, told_unit)
+    if spec.polygons == "walkable" and (said := solid_by_another_name(p for _, p in found)):
+        _LOG.warning("%s: taken for floor: %s; only the property 'kind' makes solids", name, said)
     plan = ImportedPlan()
     for shape, properties in found:
         _sort_in(in_metres(shape, spec, name), properties, spec, plan, name)
@@ -143,7 +150,7 @@ def _features(content: Any, name: str, aside: Counter[str]) -> Iterator[_Found]:
             aside["without geometry"] += 1
             return
         for shape, _ in _features(geometry, name, aside):
-            yield shape, dict(properties)
+            yield shape, in_small_letters(properties)
     elif kind in (*_WITH_SIDES, *_POINTS):
         yield _geometry(content, name), {}
     else:
@@ -201,6 +208,8 @@ def _is_of_place(shape: Any, properties: dict[str, Any], name: str, aside: Count
         return False
     if shape.geom_type in _POINTS:
         aside["that are points"] += 1
+    elif kind in _FLOOR and shape.geom_type in ("LineString", "MultiLineString"):
+        aside[f"of kind '{kind}' that are lines"] += 1
     elif shape.is_empty:
         aside["with an empty geometry"] += 1
     elif shape.length == 0.0:
@@ -208,12 +217,6 @@ def _is_of_place(shape: Any, properties: dict[str, Any], name: str, aside: Count
     else:
         return True
     return False
-
-
-def kind_of(properties: dict[str, Any]) -> str:
-    """Return what a feature says it is, in small letters, or ""."""
-    kind = properties.get("kind")
-    return "" if kind is None else str(kind).strip().lower()
 
 
 # --------------------------------------------------------------------------------- storeys
@@ -233,7 +236,7 @@ def _on_one_storey(found: list[_Found], spec: FloorPlanFields, name: str) -> lis
                 "read"
             )
         return found
-    level = _label(spec.level)
+    level = label_of(spec.level)
     if level not in counts:
         near = did_you_mean(nearest(level, counts))
         listed = f"one of {known}" if counts else "in it; it names no storeys"
@@ -243,26 +246,12 @@ def _on_one_storey(found: list[_Found], spec: FloorPlanFields, name: str) -> lis
 
 def _labels(found: list[_Found], spec: FloorPlanFields) -> list[tuple[str, ...]]:
     """Return the storeys of each feature: named, or else by height if heights differ much."""
-    named = [_named_levels(properties) for _, properties in found]
+    named = [levels_of(properties) for _, properties in found]
     heights = [_height_of(shape) * UNITS.get(spec.unit, 1.0) for shape, _ in found]
     finite = [z for z in heights if math.isfinite(z)]
     if any(named) or not finite or max(finite) - min(finite) <= _STOREY:
         return named
-    return [(_label(round(z, 1)),) if math.isfinite(z) else () for z in heights]
-
-
-def _named_levels(properties: dict[str, Any]) -> tuple[str, ...]:
-    values = (v for key in _LEVELS if (v := properties.get(key)) not in (None, ""))
-    first = next(values, None)
-    return () if first is None else tuple(_label(v) for v in str(first).split(";"))
-
-
-def _label(value: object) -> str:
-    text = str(value).strip()
-    try:
-        return f"{float(text) + 0.0:g}"
-    except ValueError:
-        return text
+    return [(label_of(round(z, 1)),) if math.isfinite(z) else () for z in heights]
 
 
 def _height_of(shape: Any) -> float:

@@ -369,3 +369,70 @@ def test_a_pixel_above_what_the_header_says_is_refused(tmp_path: Path) -> None:
     (tmp_path / "map.yaml").write_text(text, "utf-8")
     with pytest.raises(InputError, match="a pixel is 254, but its header says at most 100"):
         build(FloorPlanSpec.model_validate({"file": str(tmp_path / "map.yaml")}))
+
+
+# --------------------------------------------------------------- properties of other programs
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("Level", (0, 1)),
+        ("floor", ("EG", "1. OG")),
+        ("floor", (0, 1)),
+        ("level_id", ("a1", "b2")),
+        ("STOREY", ("0", "1")),
+    ],
+)
+def test_storeys_by_other_names(tmp_path: Path, name: str, values: tuple[Any, Any]) -> None:
+    upper = "POLYGON ((20 0, 30 0, 30 5, 20 5, 20 0))"
+    path = _geojson(tmp_path, (HALL, {name: values[0]}), (upper, {name: values[1]}))
+    with pytest.raises(InputError, match="there are 2 storeys in it"):
+        _plan(file=path)
+    assert _plan(file=path, level=values[1]).walls[:, 0].min() == 20.0
+
+
+def test_a_covering_of_the_floor_is_no_storey(tmp_path: Path) -> None:
+    upper = "POLYGON ((9 0, 30 0, 30 5, 9 5, 9 0))"
+    path = _geojson(tmp_path, (HALL, {"floor": "wood"}), (upper, {"floor": "concrete"}))
+    assert _plan(file=path).walls[:, 0].max() == 30.0
+
+
+def test_properties_in_capitals(tmp_path: Path) -> None:
+    block = "POLYGON ((2 1, 4 1, 4 2, 2 2, 2 1))"
+    path = _geojson(tmp_path, (HALL, {}), (block, {"KIND": "obstacle", "HEIGHT": 1.0}))
+    assert _solid(_plan(file=path)).area == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("indoor", "wall"), ("type", "Column"), ("class", "inner walls")]
+)
+def test_solids_by_another_name_are_told(
+    tmp_path: Path, caplog: Log, name: str, value: str
+) -> None:
+    block = "POLYGON ((2 1, 4 1, 4 2, 2 2, 2 1))"
+    path = _geojson(tmp_path, (HALL, {"indoor": "room"}), (block, {name: value}))
+    _plan(file=path)
+    assert f"taken for floor: 1 feature(s) with '{name}: {value}'" in caplog.text
+    caplog.clear()
+    _plan(file=path, polygons="obstacles")
+    assert "taken for floor" not in caplog.text
+
+
+def test_a_walkable_line_is_no_wall(tmp_path: Path, caplog: Log) -> None:
+    path = _geojson(tmp_path, (HALL, {}), ("LINESTRING (4 1, 4 4)", {"kind": "walkable"}))
+    assert not _plan(file=path).solids
+    assert "left out: 1 feature(s) of kind 'walkable' that are lines" in caplog.text
+
+
+@pytest.mark.parametrize("north", [0.0, 6_124_000.0])
+def test_metres_of_web_mercator(tmp_path: Path, north: float) -> None:
+    box = shapely.geometry.mapping(shapely.box(1_280_000, north, 1_280_010, north + 10))
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::3857"}}
+    file = tmp_path / "plan.geojson"
+    feature = {"type": "Feature", "properties": {}, "geometry": box}
+    file.write_text(json.dumps({"type": "FeatureCollection", "crs": crs, "features": [feature]}))
+    where = (-1_280_000.0, -north)
+    if north:
+        with pytest.raises(InputError, match=r"in which a metre is 1\.50 long there"):
+            _plan(file=str(file), origin=where)
+    else:
+        assert len(_plan(file=str(file), origin=where).walls) == 4

@@ -1,0 +1,68 @@
+"""What the properties of a GeoJSON feature say: its kind and its storeys."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any
+
+#: Properties that name a storey.
+_LEVELS = (
+    "level", "storey", "story", "level_id", "levelid", "level_index", "storey_id", "floor_id",
+    "floorid", "floor_level", "floor_number", "etage", "geschoss", "stockwerk",
+)  # fmt: skip
+#: Whether ``floor`` names a storey, and no covering, is told by its value: 1, -2, EG, 1. OG, L2.
+_FLOOR_NAME = re.compile(
+    r"[a-z]{0,2}[ .]?-?\d+(st|nd|rd|th)?[. ]*(og|ug|floor|level)?|eg|og|ug|dg|kg|gf|g"
+    r"|ground( floor)?|basement|level -?\d+|floor -?\d+|first|second|third",
+    re.IGNORECASE,
+)
+#: Properties by which other programs say what a feature is, and values that are solid.
+_OTHER_KINDS = ("type", "class", "category", "indoor", "feature_type", "layer", "usage", "role")
+_SOLID_WORDS = re.compile(
+    r"(outer|inner|interior|exterior)?[ _-]?(walls?|columns?|pillars?|obstacles?|furniture|voids?)",
+    re.IGNORECASE,
+)
+
+
+def in_small_letters(properties: dict[str, Any]) -> dict[str, Any]:
+    """Return properties by names in small letters, as shape files write them in capitals."""
+    lower = {str(name).lower(): value for name, value in properties.items()}
+    return {**lower, **{name: v for name, v in properties.items() if name in lower}}
+
+
+def kind_of(properties: dict[str, Any]) -> str:
+    """Return what a feature says it is, in small letters, or ""."""
+    kind = properties.get("kind")
+    return "" if kind is None else str(kind).strip().lower()
+
+
+def solid_by_another_name(features: Iterable[dict[str, Any]]) -> str:
+    """Return how often features without a kind say in another property that they are solid."""
+    found = Counter(
+        f"{name}: {value}"
+        for properties in features
+        if not kind_of(properties)
+        for name, value in properties.items()
+        if name in _OTHER_KINDS and _SOLID_WORDS.fullmatch(str(value).strip())
+    )
+    return ", ".join(f"{count} feature(s) with '{said}'" for said, count in sorted(found.items()))
+
+
+def levels_of(properties: dict[str, Any]) -> tuple[str, ...]:
+    """Return the storeys that a feature names."""
+    values = [v for key in _LEVELS if (v := properties.get(key)) not in (None, "")]
+    floor = properties.get("floor")
+    if not values and floor is not None and _FLOOR_NAME.fullmatch(str(floor).strip()):
+        values = [floor]
+    return tuple(label_of(v) for v in str(values[0]).split(";")) if values else ()
+
+
+def label_of(value: object) -> str:
+    """Return the name of a storey; numbers that are equal have one name."""
+    text = str(value).strip()
+    try:
+        return f"{float(text) + 0.0:g}"
+    except ValueError:
+        return text
