@@ -26,7 +26,7 @@ _UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robot
 _CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anyone walks or drives; usual frames per second
 _AGREED, _NEARLY_ALL = 0.8, 0.95  # shares of samples in which headings agree with the motion
 _HEADINGS = 0.7  # rad; largest deviation of an agreeing heading
-_LEAP = 0.5  # m; from exactly (0, 0) to the next place: nobody was there
+_LEAP = 0.5  # m; a step from exactly (0, 0) that is longer began elsewhere
 #: A recorded speed is wrong outside these multiples of the way of a second; units that explain it.
 _TOO_SLOW, _TOO_FAST = 0.5, 3.0
 _SPEEDS = {"km/h": 3.6, "cm/s": 100.0, "mm/s": 1000.0}

@@ -1,4 +1,4 @@
-"""What the properties of a GeoJSON feature say: its kind and its storeys."""
+"""Properties of GeoJSON features: their kind and their storeys, as several programs write them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LEVELS = (
     "level", "storey", "story", "level_id", "levelid", "level_index", "storey_id", "floor_id",
     "floorid", "floor_level", "floor_number", "etage", "geschoss", "stockwerk",
 )  # fmt: skip
-#: Whether ``floor`` names a storey, and no covering, is told by its value: 1, -2, EG, 1. OG, L2.
+#: Values of ``floor`` that name a storey, not a covering: 1, -2, EG, 1. OG, L2.
 _FLOOR_NAME = re.compile(
     r"[a-z]{0,2}[ .]?-?\d+(st|nd|rd|th)?[. ]*(og|ug|floor|level)?|eg|og|ug|dg|kg|gf|g"
     r"|ground( floor)?|basement|level -?\d+|floor -?\d+|first|second|third",

@@ -20,7 +20,7 @@ _EARTH = 6_371_008.8
 #: Names of reference systems whose numbers are longitude and latitude: OGC CRS84, EPSG 4326 and
 #: 4979, all WGS 84.
 _IN_DEGREES = re.compile(r"CRS:?84|EPSG:+[\d.]*:?(4326|4979)\b|WGS[ _]?(19)?84$", re.IGNORECASE)
-#: Web Mercator, whose metres are those of the equator; the radius of its sphere, m.
+#: Web Mercator, whose metres hold at the equator; the radius of its sphere, m.
 _MERCATOR = re.compile(r"EPSG:+[\d.]*:?(3857|900913|3785)\b|ESRI:+(102100|102113)\b", re.IGNORECASE)
 _MERCATOR_RADIUS, _STRETCHED = 6_378_137.0, 1.01
 #: Smallest plan, m, and largest plan in degrees, which is 100 km.
@@ -89,7 +89,7 @@ def check_numbers(
 
 
 def _check_mercator(crs: str, north: float, name: str) -> None:
-    """Refuse numbers of Web Mercator far from the equator, which are no metres.
+    """Refuse numbers of Web Mercator far from the equator, which are not metres.
 
     Raises:
         InputError: they are stretched by more than a hundredth.
