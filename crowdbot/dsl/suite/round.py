@@ -86,8 +86,8 @@ class Round(Spec):
     def problem(self, moment: datetime) -> str:
         """Return why nothing is taken at a moment; empty if it is."""
         if moment < self.begin:
-            return f"the round opens on {self.opens}"
-        return f"the round closed on {self.closes}" if moment > self.end else ""
+            return f"the round opens on {_shown(self.opens)}"
+        return f"the round closed on {_shown(self.closes)}" if moment > self.end else ""
 
     @property
     def mail(self) -> bool:
@@ -103,8 +103,8 @@ class Round(Spec):
     def text(self) -> str:
         """Return the round in a line."""
         parts = [
-            f"opens {self.opens}" if self.opens else "",
-            f"closes {self.closes}" if self.closes else "",
+            f"opens {_shown(self.opens)}" if self.opens else "",
+            f"closes {_shown(self.closes)}" if self.closes else "",
             "sealed planners only" if self.planners == "sealed" else "",
             f"rules: {self.rules}" if self.rules else "",
             f"contact: {self.contact}" if self.contact else "",
@@ -113,6 +113,11 @@ class Round(Spec):
             f"prize: {self.prize}" if self.prize else "",
         ]
         return ", ".join(part for part in parts if part) or "no dates"
+
+
+def _shown(text: str | None) -> str:
+    """Return a day or a moment with blanks between day, time and zone."""
+    return re.sub(r"(?<=\d)(?=[+-]\d\d:?\d\d$)", " UTC", (text or "").replace("T", " "))
 
 
 def _at(text: str, alone: time) -> datetime:

@@ -223,7 +223,7 @@ def test_hidden_draws_only_receive(tmp_path: Path, capsys: pytest.CaptureFixture
     (tmp_path / "in").mkdir()
     assert _seal(tmp_path / "mine", tmp_path / "in" / "us.cbs") == 0
     capsys.readouterr()
-    for received in ("1 submission", "0 submissions"):
+    for received in ("1 new submission", "0 new submissions"):
         assert _judge(tmp_path) == 0
         said = capsys.readouterr().out
         assert f"{received} received; the draws are hidden: nothing was run" in said

@@ -67,5 +67,6 @@ def challenge_page(
         document = {"files": [str(file) for file in files], "left_out": dict(site.left_out)}
         say(json.dumps(document, indent=2))
     else:
-        counts = f"{plural(len(site.entries), 'bundle')}, {plural(len(files), 'file')}"
+        received = f"{site.received} received, " if site.received else ""
+        counts = f"{received}{plural(len(site.entries), 'bundle')}, {plural(len(files), 'file')}"
         say(f"{counts}; wrote {files[0]}")

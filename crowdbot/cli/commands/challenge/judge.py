@@ -86,6 +86,6 @@ def judge(
         what = "the draws are hidden: nothing was run" if found.waits else (
             f"{plural(len(found.judged), 'planner')} judged"
         )  # fmt: skip
-        say(f"{plural(len(found.received), 'submission')} received; {what}")
+        say(f"{plural(len(found.received), 'new submission')} received; {what}")
     if found.left_out:
         raise typer.Exit(1)

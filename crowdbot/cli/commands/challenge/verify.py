@@ -323,8 +323,11 @@ def print_verdict(document: dict[str, Any]) -> None:
     if document["not_compared"]:
         say(f"not compared, since no tolerance is known: {', '.join(document['not_compared'])}")
     if document["runs"]:
-        chances = (f"{100.0 * p:.0f} % if {k}" for k, p in document["odds"].items())
-        say(f"chance that this sample shows edited runs: {', '.join(chances)} were edited")
+        chances = (
+            f"{100.0 * p:.0f} % if {k} {'is' if k == '1' else 'are'}"
+            for k, p in document["odds"].items()
+        )
+        say(f"chance that this sample shows that runs were edited: {', '.join(chances)}")
     if document["late"]:
         say(f"warning: {document['late']}", err=True)
     head, outcome = f"{document['edition']}: {document['planner']}", document["outcome"]
