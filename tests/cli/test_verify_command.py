@@ -232,7 +232,7 @@ def test_a_tampered_member_is_invalid_and_nothing_is_simulated(world: Path, veri
 def test_a_planner_that_is_not_here_cannot_be_re_run(world: Path, verify: Verify) -> None:
     code, found = verify(world / "team.cbz", planner=False)
     assert (code, found["outcome"]) == (1, "cannot be re-run")
-    assert "get the file from the team" in found["findings"][0]
+    assert "or what the team sealed: --source" in found["findings"][0]
     (world / "other").mkdir(exist_ok=True)
     (world / "other" / "mine.py").write_text(PLANNER.replace("0.1", "0.2"), encoding="utf-8")
     other = f"{world / 'other' / 'mine.py'}:Steady"

@@ -13,6 +13,7 @@ from crowdbot.core.statistics.crowds import CrowdRanks
 from crowdbot.core.statistics.estimate_text import joined_text, range_text
 from crowdbot.core.statistics.ladder import Ladder
 from crowdbot.core.statistics.rules import Orders
+from crowdbot.core.support.text import plural
 
 
 def markdown(contents: Contents) -> str:
@@ -148,8 +149,15 @@ def _family(summary: Summary) -> str:
     return (
         f"Pairs of the same scenario and seed. {summary.tests} tests of {family(summary)} share "
         f"the chance {summary.alpha:g} of any false verdict (Holm); all other scores are detail, "
-        "and share it among themselves."
-    )
+        f"and share it among themselves. {_left_out(summary)}"
+    ).rstrip()
+
+
+def _left_out(summary: Summary) -> str:
+    """Return how many comparisons are in the page only."""
+    count = len(summary.comparisons) - len(_shown(summary))
+    told = f"{plural(count, 'comparison')} of detail without a difference: on the page."
+    return told if count else ""
 
 
 def family(summary: Summary) -> str:
@@ -203,7 +211,16 @@ def _whole(score: PlannerScore) -> list[str]:
 
 def _comparisons(summary: Summary) -> tuple[Sequence[str], list[Sequence[str]]]:
     head = ("score", "a", "b", "a − b", "probability that a is better", "p (Holm)", "verdict")
-    return head, [_comparison(c) for c in summary.comparisons]
+    return head, [_comparison(c) for c in _shown(summary)]
+
+
+def _shown(summary: Summary) -> list[Comparison]:
+    """Return comparisons of the deciding scores, and of others those with a difference."""
+    found = summary.comparisons
+    if not any(is_main(c.metric, c.variant) for c in found):
+        return list(found)
+    differs = ("better", "worse")
+    return [c for c in found if is_main(c.metric, c.variant) or c.verdict in differs]
 
 
 def _comparison(found: Comparison) -> Sequence[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import logging
 import os
 import tempfile
@@ -75,12 +74,12 @@ def kernel_folder(package: Path = _PACKAGE) -> Path:
     return _user_cache() / name
 
 
-def lock_of(folder: str) -> Path:
-    """Return the file that processes lock while they compile functions of a folder.
+def lock_file() -> Path:
+    """Return the file of which processes lock bytes while they compile functions of any folder.
 
-    It lies elsewhere: a planner's process may read that folder, and could keep the lock.
+    It lies elsewhere: a planner's process may read these folders, and could keep the lock.
     """
-    return _user_cache() / f"compiling-{hashlib.sha256(folder.encode()).hexdigest()[:16]}.lock"
+    return _user_cache() / "compiling.lock"
 
 
 def is_readable_only(py_file: str) -> bool:

@@ -36,7 +36,7 @@ from numba.core.sigutils import normalize_signature
 from numba.core.types import Omitted
 from numba.np import linalg
 
-from crowdbot.core.support.compile_cache import lock_of
+from crowdbot.core.support.compile_cache import lock_file
 from crowdbot.core.support.compiling.compile_cache_file import CheckedCacheFile
 from crowdbot.core.support.compiling.compile_files import PART, CacheFiles, PartLibrary, is_part
 from crowdbot.core.support.gc_throttle import seldom_collected
@@ -79,10 +79,11 @@ class _Cache(FunctionCache):
         A process that holds one lock waits for callees only, so there is no deadlock. Without file
         locks, both compile.
         """
-        place = int.from_bytes(hashlib.sha256(self._cache_file._index_path.encode()).digest()[:5])
+        name = os.path.realpath(self._cache_file._index_path)
+        place = int.from_bytes(hashlib.sha256(name.encode()).digest()[:6])
         try:
             self._impl.locator.ensure_cache_path()
-            file = _lock_file(lock_of(self.cache_path))
+            file = _lock_file(lock_file())
             fcntl.lockf(file, fcntl.LOCK_EX, 1, place)
         except OSError:
             yield
