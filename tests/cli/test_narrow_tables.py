@@ -14,7 +14,7 @@ from crowdbot.core.recording.reading.contents import RecordingContents, TopicCon
 LINE: dict[str, Any] = {
     "planner": "dwa", "metric": "contacts_per_km", "variant": "at_fault", "unit": "1/km",
     "mean": 12.345678, "low": 1.5, "high": 98.5, "least": None, "most": None, "median": 7.0,
-    "n": 12, "undefined": 0, "censored": 3, "failed": 1,
+    "n": 12, "undefined": 0, "not_kept": 0, "censored": 3, "failed": 1,
 }  # fmt: skip
 
 

@@ -48,7 +48,7 @@ def test_planners_that_do_not_fit_get_a_table_of_their_own(
 ) -> None:
     line = {"metric": "m", "variant": "corrected", "unit": "1", "mean": 0.5, "low": 0.25,
             "high": 0.75, "least": 0.5, "most": 0.5, "median": 0.5, "n": 3, "undefined": 0,
-            "censored": 0, "failed": 0}  # fmt: skip
+            "not_kept": 0, "censored": 0, "failed": 0}  # fmt: skip
     monkeypatch.setenv("COLUMNS", "60")
     print_by_planner([{"planner": f"planner_{i}", **line} for i in range(6)])
     out = capsys.readouterr().out
@@ -56,6 +56,9 @@ def test_planners_that_do_not_fit_get_a_table_of_their_own(
     assert max(map(len, out.splitlines())) <= 60
     assert out.count("0.500 [0.250, 0.750]") == 6
     assert "+" not in out
+    gone = {"mean": None, "low": None, "high": None, "n": 0, "not_kept": 3}
+    print_by_planner([{"planner": "a", **line}, {"planner": "old", **line, **gone}])
+    assert "not kept" in capsys.readouterr().out
     print_by_planner([{"planner": "a", **line, "undefined": 1, "censored": 1}])
     assert "0.500 [0.250, 0.750] +2" in capsys.readouterr().out
 

@@ -77,6 +77,8 @@ def _cell(line: dict[str, Any]) -> str:
     """Return mean and interval, and the number of runs without a value."""
     mean = str(with_interval(line)["mean [95 %]"])
     missing = _without(line)
+    if missing and missing == line["not_kept"] and not line["n"]:
+        return "not kept"
     return f"{mean} +{missing}" if missing else mean
 
 

@@ -19,7 +19,7 @@ _WIDTH = 240
 #: Width of name columns in terminals narrower than the second number.
 _NAME_WIDTH, _WHOLE_NAMES = 10, 80
 #: Counts of runs without a value.
-WITHOUT = ("undefined", "censored", "failed")
+WITHOUT = ("undefined", "not_kept", "censored", "failed")
 
 
 def line_of(summary: GroupSummary) -> dict[str, Any]:
@@ -36,7 +36,8 @@ def line_of(summary: GroupSummary) -> dict[str, Any]:
         "most": summary.bounds[1],
         "median": summary.median,
         "n": summary.counts.ok,
-        "undefined": summary.counts.undefined,
+        "undefined": summary.counts.undefined - summary.unscored,
+        "not_kept": summary.unscored,
         "censored": summary.counts.censored,
         "failed": summary.failed,
     }

@@ -194,7 +194,8 @@ def _score_cell(score: PlannerScore) -> str:
         f"{count} {name}"
         for name, count in (
             ("censored", counts.censored),
-            ("undefined", counts.undefined),
+            ("undefined", counts.undefined - score.reasons.get("not_scored", 0)),
+            ("not kept", score.reasons.get("not_scored", 0)),
             ("failed", counts.failed),
         )
         if count

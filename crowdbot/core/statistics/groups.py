@@ -35,6 +35,7 @@ class GroupSummary:
     Attributes:
         group: axis -> label.
         counts: outcomes of the group's runs for this score.
+        unscored: undefined ones among them that were not scored, or whose score was not kept.
         failed: runs whose planner failed, which may have values, and attempts that left no run.
         mean: mean of the existing values, or the rate of all these runs together, with its
             interval, as in report and leaderboard.
@@ -49,6 +50,7 @@ class GroupSummary:
     unit: str
     better: str
     counts: Counts
+    unscored: int
     failed: int
     mean: Estimate
     bounds: tuple[float | None, float | None]
@@ -153,6 +155,7 @@ def _summary(
     return GroupSummary(
         group=group, metric=name[0], variant=name[1], unit=label.unit, better=label.better,
         counts=counts_of(outcome),
+        unscored=sum(int(table.column(name, p).unscored[r].sum()) for p, r in rows.items()),
         failed=failed, mean=mean, bounds=bounds,
         median=float(np.median(values)) if len(values) else None,
     )  # fmt: skip

@@ -40,6 +40,8 @@ class Column:
         outcome: (n,) index into `OUTCOMES`.
         low, high: (n,) bounds of the value: equal if known, infinite if nothing is known.
         failed: (n,) True if the planner failed or no run could be made; there may be a value.
+        unscored: (n,) True if a run was not scored in this, or its score was not kept: it is
+            undefined for that reason.
         reasons: why values are missing -> how often.
     """
 
@@ -47,6 +49,7 @@ class Column:
     low: Floats
     high: Floats
     failed: NDArray[np.bool_]
+    unscored: NDArray[np.bool_]
     reasons: Mapping[str, int]
 
     @property
@@ -212,7 +215,8 @@ class Table:
             outcome[tried.lost] = kind
             reasons[reason] += int(tried.lost.sum())
         counted = {why: n for why, n in sorted(reasons.items()) if why and n}
-        return Column(outcome, low, high, tried.failed.copy(), counted)
+        unscored = (outcome == UNDEFINED) & ~scored
+        return Column(outcome, low, high, tried.failed.copy(), unscored, counted)
 
     def _places(self, name: Name, tried: _Attempts) -> NDArray[np.intp]:
         """Return the place of a score in each row among all scores, (n,); -1 without it."""
