@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.robots.check_links import below_floor, check_masses, impossible_moments
 from crowdbot.core.robots.description import Description, read_description
 from crowdbot.core.robots.wheel_gain import reached_speed
 from crowdbot.core.types.arrays import Array
@@ -38,15 +39,17 @@ def check_model(model: object) -> RobotModel:
     except ValueError as error:
         raise PluginError(str(error)) from error
     described = read_description(model.description)
+    check_masses(described)
     _check_base(model, described)
     if abs(described.mass - model.mass) > _SHARE * model.mass:
         raise PluginError(f"mass is {model.mass:g} kg; the links weigh {described.mass:g} kg")
     drive = model.drive
-    notes = list(described.notes)
+    notes = [*described.notes, *impossible_moments(described)]
     if isinstance(drive, DifferentialDrive):
         _check_wheels(model, drive, described)
         notes += [*_beside_axle(model, drive, described), *_damped(model, drive, described)]
         notes += _one_sided(model, drive, described)
+        notes += below_floor(described, model.base, model.base_height)
     notes = [note for note in notes if note not in model.notes]
     return replace(model, notes=(*model.notes, *notes)) if notes else model
 
@@ -60,6 +63,14 @@ def _beside_axle(
         yield (
             f"the axle is {1e3 * abs(x):.3g} mm {'ahead of' if x > 0.0 else 'behind'} "
             f"'{model.base}', about which the robot is taken to turn"
+        )
+    sides = (described.joint(name).child for name in (drive.left_joint, drive.right_joint))
+    middle = float(np.mean([described.pose(wheel, model.base)[1, 3] for wheel in sides]))
+    if abs(middle) > _AXLE:
+        yield (
+            f"the middle between its wheels is {1e3 * abs(middle):.3g} mm to the "
+            f"{'left' if middle > 0.0 else 'right'} of '{model.base}', about which the robot is "
+            "taken to turn"
         )
 
 

@@ -118,6 +118,14 @@ class Description:
         pose: Array = np.linalg.inv(of(seen_from, ())) @ of(link, ())
         return pose
 
+    def mass_of(self, link: str) -> float:
+        """Return the mass of a link, kg.
+
+        Raises:
+            PluginError: there is no such link, or its mass is not a number.
+        """
+        return _mass(self.link(link), self.format)
+
     def centre_of_mass(self, seen_from: str) -> Array:
         """Return the centre of mass (3,) in the frame of a link, with all joints at zero, m.
 

@@ -361,3 +361,67 @@ def test_shapes_that_would_be_lost_are_refused(shape: str) -> None:
         read_description(cart.replace(body, f"<{shape}/>"))
     kept = '<drake:capsule xmlns:drake="drake.mit.edu" radius="0.2"/>'
     assert read_description(cart.replace(body, kept)).links
+
+
+# ----------------------------------------------------------------------------- links
+LINKS = CARTS["links at the axle"]
+CAMERA = (
+    '<link name="cam"><pose>0.1 0 0.3 0 0 0</pose>{}</link><joint name="cj" type="fixed">'
+    "<parent>base_link</parent><child>cam</child></joint></model>"
+)
+
+
+@pytest.mark.parametrize("mass", [0, -1])
+def test_links_that_drake_would_weigh_otherwise_are_refused(mass: float) -> None:
+    text = LINKS.replace("</model>", CAMERA.format(_inertial(mass, 0.01)))
+    with pytest.raises(PluginError, match=r"link 'cam' has (mass 0, which SDF|a mass of -1 kg)"):
+        check_model(_model(read_description(text), text))
+
+
+def test_moments_without_a_mass_are_refused() -> None:
+    text = _published(_base(0.0, TWO)).text
+    link = '<link name="cam"><inertial><mass value="0"/><inertia {}/></inertial></link>'
+    link += '<joint name="cj" type="fixed"><parent link="base_link"/><child link="cam"/></joint>'
+    for moments, refused in (('ixx="0" iyy="0" izz="0"', False), ('ixx="1" iyy="1" izz="1"', True)):
+        with_link = text.replace("</robot>", f"{link.format(moments)}</robot>")
+        model = replace(_model(read_description(text), text), description=with_link)
+        if refused:
+            with pytest.raises(PluginError, match="'cam' has mass 0 and moments"):
+                check_model(model)
+        else:
+            check_model(model)
+
+
+def test_moments_that_no_body_has_are_told() -> None:
+    text = LINKS.replace("<ixx>0.1<", "<ixx>1.0<")
+    assert text != LINKS
+    found = check_model(_model(read_description(text), text))
+    assert any("the moments of inertia of 'base_link'" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    ("shape", "depth"),
+    [
+        ("<box><size>0.3 0.3 0.4</size></box>", 50),
+        ("<cylinder><radius>0.2</radius><length>0.4</length></cylinder>", 50),
+        ("<capsule><radius>0.1</radius><length>0.3</length></capsule>", 100),
+        ("<sphere><radius>0.2</radius></sphere>", 50),
+        ("<ellipsoid><radii>0.1 0.2 0.25</radii></ellipsoid>", 100),
+        ("<box><size>0.3 0.3 0.305</size></box>", None),
+    ],
+)
+def test_shapes_below_the_floor_are_told(shape: str, depth: int | None) -> None:
+    whole = "<cylinder><radius>0.2</radius><length>0.2</length></cylinder>"
+    assert whole in LINKS
+    text = LINKS.replace(whole, shape)
+    notes = check_model(_model(read_description(text), text)).notes
+    told = [note for note in notes if "below the floor" in note]
+    assert len(told) == (depth is not None)
+    if depth is not None:
+        assert f"of 'base_link' reaches {depth} mm below the floor" in told[0]
+
+
+def test_wheels_that_are_not_beside_the_base_alike_are_told() -> None:
+    text = LINKS.replace("<pose>0 0.15 0.05", "<pose>0 0.17 0.05")
+    notes = check_model(_model(read_description(text), text)).notes
+    assert any("middle between its wheels is 10 mm to the left of 'base_link'" in n for n in notes)
