@@ -62,8 +62,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get("CROWDBOT_DEBUG"):
             raise
-        from crowdbot.cli.app.mishaps import internal_error
+        from crowdbot.cli.app.mishaps import internal_error, link_loop, system_error
 
+        if loop := link_loop(error):
+            _say(system_error(loop))
+            return 1
         _say(internal_error(error))
         return 4
 

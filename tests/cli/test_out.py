@@ -74,3 +74,12 @@ def _commands(command: Any) -> list[Any]:
     """A command, and those below it."""
     below = getattr(command, "commands", {})
     return [command, *(c for one in below.values() for c in _commands(one))]
+
+
+def test_links_in_a_circle_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    words = ["challenge-2020", "--only", "in-d0125-slow-c01-r02", "--planner", "goal_seek"]
+    assert cli.main(["campaign", *words, "--no-floors", "--out", str(loop)]) == 1
+    told = re.sub(r"\s+", "", capsys.readouterr().err)
+    assert f"{loop}:Toomanylevelsofsymboliclinks" in told

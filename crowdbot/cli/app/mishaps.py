@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import resource
 import sys
 import threading
@@ -46,6 +47,14 @@ def system_error(error: OSError) -> str:
         limit = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
         text += f" (this process may open {limit}; raise it with 'ulimit -n')"
     return text
+
+
+def link_loop(error: Exception) -> OSError | None:
+    """Return links in a circle as an OSError, which before Python 3.13 they are not; else None."""
+    match = re.fullmatch(r"Symlink loop from (['\"])(.*)\1", str(error), re.DOTALL)
+    if not isinstance(error, RuntimeError) or match is None:
+        return None
+    return OSError(errno.ELOOP, os.strerror(errno.ELOOP), match[2])
 
 
 def _has_no_folder() -> bool:

@@ -30,6 +30,8 @@ _LOG = logging.getLogger("crowdbot")
 INDEX, LOCK = "results.sqlite", "results.lock"
 #: Version of the tables; an index of another version is rebuilt.
 VERSION = 7
+#: Longest path that SQLite opens on Unix.
+_LONGEST = 504
 
 #: Number of new or changed runs from which on a reader renews the index, if it may.
 RENEWED_FROM = 200
@@ -191,10 +193,13 @@ def _opened(file: Path, *, guarded: bool = True) -> sqlite3.Connection:
         guarded: False where the file system has no locks, which SQLite would need, too.
     """
     for _ in range(2):
-        if guarded:
-            database = sqlite3.connect(file, timeout=30.0)
-        else:
-            database = sqlite3.connect(f"{file.resolve().as_uri()}?nolock=1", uri=True)
+        try:
+            if guarded:
+                database = sqlite3.connect(file, timeout=30.0)
+            else:
+                database = sqlite3.connect(f"{file.resolve().as_uri()}?nolock=1", uri=True)
+        except sqlite3.OperationalError as error:
+            raise unwritable(file, error) from error
         try:
             database.execute(f"PRAGMA journal_mode = {'WAL' if guarded else 'DELETE'}")
             database.execute("PRAGMA synchronous = NORMAL")
@@ -214,6 +219,12 @@ def _opened(file: Path, *, guarded: bool = True) -> sqlite3.Connection:
 def unwritable(file: Path, error: sqlite3.OperationalError) -> InputError:
     """Return the error of a file of SQLite that cannot be written, such as on a full disk."""
     full = getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL
+    length = len(os.fsencode(file.absolute()))
+    if length > _LONGEST:
+        return InputError(
+            f"{file}: its path has {length} characters, and SQLite takes {_LONGEST}: choose a "
+            "shorter folder"
+        )
     return InputError(
         f"{file}: no space left on device; free some, and the same command goes on where it was"
         if full
