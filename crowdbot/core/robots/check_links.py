@@ -23,7 +23,8 @@ def check_masses(described: Description) -> None:
     """Check that Drake takes each link's mass as it stands; it makes 1 kg of what it cannot take.
 
     Raises:
-        PluginError: a mass is below 0; or 0 in SDFormat, or with moments of inertia.
+        PluginError: a mass is below 0; or 0 in SDFormat, with moments of inertia, or of a part that
+            moves; or a wheel has no moments of inertia.
     """
     for name, link in described.links.items():
         mass = described.mass_of(name)
@@ -39,6 +40,39 @@ def check_masses(described: Description) -> None:
         inertia = link.find("inertial/inertia")
         if inertia is not None and any(_moment(inertia, n) for n in _MOMENTS):
             raise PluginError(f"link '{name}' has mass 0 and moments of inertia above 0; write one")
+    wheels = {joint.child for joint in described.joints.values() if joint.free}
+    for name, part in _parts(described).items():
+        if not any(described.mass_of(link) for link in part):
+            raise PluginError(
+                f"link '{name}' weighs nothing, with all that is fixed to it; a part that moves "
+                "needs a mass"
+            )
+        if name in wheels and not any(_resists(described, link) for link in part):
+            raise PluginError(
+                f"link '{name}' has no moments of inertia; a wheel needs some: for a disc, half of "
+                "its mass times its radius squared"
+            )
+
+
+def _parts(described: Description) -> dict[str, list[str]]:
+    """Return the links that move as one, by the link from which they hang."""
+    above = {joint.child: joint for joint in described.joints.values()}
+    found = dict[str, list[str]]()
+    for name in described.links:
+        top, seen = name, {name}
+        while (joint := above.get(top)) is not None and not joint.free and joint.parent not in seen:
+            top = joint.parent
+            seen.add(top)
+        found.setdefault(top, []).append(name)
+    return found
+
+
+def _resists(described: Description, link: str) -> bool:
+    """Return True if a link has moments of inertia; SDFormat gives those that it does not state."""
+    inertia = described.links[link].find("inertial/inertia")
+    if inertia is None:
+        return described.format == "sdf"
+    return any(_moment(inertia, name) for name in _MOMENTS)
 
 
 def impossible_moments(described: Description) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from xml.etree import ElementTree as Xml
 
 import numpy as np
 import pytest
@@ -390,6 +391,24 @@ def test_moments_without_a_mass_are_refused() -> None:
                 check_model(model)
         else:
             check_model(model)
+
+
+def test_parts_that_move_need_a_mass() -> None:
+    """Drake fails amid a run otherwise."""
+    text = _published(_base(0.0, TWO)).text
+    model = _model(read_description(text), text)
+    wheel = Xml.fromstring(text).find("link[@name='left_wheel']/inertial")
+    assert wheel is not None
+    whole = Xml.tostring(wheel, encoding="unicode").strip()
+    assert whole in text
+    without = text.replace(whole, "", 1)
+    bare = replace(model, description=without, mass=read_description(without).mass)
+    with pytest.raises(PluginError, match="'left_wheel' weighs nothing"):
+        check_model(bare)
+    mass = Xml.tostring(next(wheel.iter("mass")), encoding="unicode").strip()
+    point = text.replace(whole, f"<inertial>{mass}<inertia ixx='0' iyy='0' izz='0'/></inertial>", 1)
+    with pytest.raises(PluginError, match="'left_wheel' has no moments of inertia"):
+        check_model(replace(model, description=point))
 
 
 def test_moments_that_no_body_has_are_told() -> None:
