@@ -107,7 +107,7 @@ def film(clip: Clip) -> None:
             scenario, planner=clip.planner, references=False, replay=False, record="none",
             metrics="success", out=folder, suite=clip.suite,
         )  # fmt: skip
-        filmed = Filmed(tracks=(run.trajectories,), title="", width=WIDTH)
+        filmed = Filmed(tracks=(run.trajectories,), title="", width=WIDTH, legend=False)
         images = [*filmed.images(filmed.times(clip.start, None, RATE, SPEED))]
     first, *rest = images
     first.save(

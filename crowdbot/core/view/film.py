@@ -12,15 +12,16 @@ from PIL import Image
 from crowdbot.core.recording.placed_drawings import PlacedDrawing
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.view.raster import ground_of, to_image
+from crowdbot.core.view.render import legend_of
 from crowdbot.core.view.shapes import LIGHT, Drawing, Path, Shape, Text
-from crowdbot.core.view.snapshot import ground, people_at, robot_at, sample_at
+from crowdbot.core.view.snapshot import FASTEST, ground, people_at, robot_at, sample_at
 from crowdbot.core.view.thoughts import thoughts_at
 from crowdbot.core.view.world import LEFT, Map
 from crowdbot.errors import InputError
 
 #: m: largest extent that is shown whole by default; and the window that follows a robot.
 _WHOLE, _WINDOW = 26.0, (16.0, 10.0)
-_HEAD, _FOOT = 34.0, 14.0  # px above and below the map
+_HEAD, _GAP = 34.0, 20.0  # px above the map, and between it and the legend
 _PERSON = 0.3  # m, kept around people
 
 
@@ -34,6 +35,7 @@ class Filmed:
         width: of a picture, px.
         follow: True to follow the first robot, False to show all; None: all if that is small.
         colours: `LIGHT` or `DARK`.
+        legend: True for a legend and a scale below the map.
         drawings: what the planners of all robots drew, once for each robot, in the order of time.
     """
 
@@ -43,6 +45,7 @@ class Filmed:
     follow: bool | None = None
     colours: Mapping[str, str] = field(default_factory=lambda: LIGHT)
     drawings: Sequence[Sequence[PlacedDrawing]] = ()
+    legend: bool = True
 
     @property
     def end(self) -> float:
@@ -87,10 +90,27 @@ class Filmed:
         x, y, width, height = world.box
         frame = ((x, y), (x + width, y), (x + width, y + height), (x, y + height))
         floor = Path(points=frame, role="floor", closed=True)
-        return (floor, *world.grid(), *ground(self.tracks[0], world))
+        return (floor, *world.grid(), *ground(self.tracks[0], world), *self._foot(world)[0])
+
+    def _foot(self, world: Map) -> tuple[list[Shape], float]:
+        """Return legend and scale below the map, and the bottom edge, px."""
+        x, y, width, height = world.box
+        if not self.legend:
+            return [], y + height + _GAP
+        return legend_of(self._entries(), world, x, y + height + _GAP, x + width)
+
+    def _entries(self) -> Iterator[tuple[str, str]]:
+        """Yield role and label of what the pictures show, for a legend."""
+        if any(run.robot is not None for run in self.tracks):
+            yield "robot", "robot"
+            yield "route", "its path"
+        if self.tracks[0].agents is not None:
+            yield "ramp", f"people, 0–{FASTEST:g} m/s"
+        if any(run.goal_zone is not None for run in self.tracks):
+            yield "goal", "goal"
 
     def _drawing(self, t: float, world: Map) -> Drawing:
-        x, y, width, height = world.box
+        x, y, width, _ = world.box
         first = self.tracks[0]
         shapes: list[Shape] = []
         if first.agents is not None:
@@ -104,7 +124,7 @@ class Filmed:
         clock = Text(at=(x + width, y - 11.0), text=f"{t:.1f} s", role="text-muted", size=13.0,
                      anchor="end")  # fmt: skip
         return Drawing(
-            width=width + 2 * LEFT / 3, height=height + _HEAD + _FOOT,
+            width=width + 2 * LEFT / 3, height=self._foot(world)[1],
             map_box=world.box, title=self.title, shapes=(*shapes, clock),
         )  # fmt: skip
 

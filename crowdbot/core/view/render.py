@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.view.map_content import (
@@ -79,11 +79,18 @@ def _legend(
     content: MapContent, world: Map, left: float, top: float, right: float
 ) -> tuple[list[Shape], float]:
     """Return swatch and label of everything on the map, and the bottom edge, px."""
+    return legend_of(_entries(content), world, left, top, right)
+
+
+def legend_of(
+    entries: Iterable[tuple[str, str]], world: Map, left: float, top: float, right: float
+) -> tuple[list[Shape], float]:
+    """Return swatch and label of entries, the scale at their right, and the bottom edge, px."""
     made: list[Shape] = []
     x, y = left, top
     ruler = list(world.ruler(right, top + 4.0))
     limit = min(p[0] for s in ruler if isinstance(s, Path) for p in s.points) - 20.0
-    for role, label in _entries(content):
+    for role, label in entries:
         width = _SWATCH + 8.0 + 6.6 * len(label) + 20.0
         if x + width > limit and x > left:
             x, y = left, y + _LINE

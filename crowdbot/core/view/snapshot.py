@@ -15,7 +15,7 @@ from crowdbot.core.view.map_content import arrow
 from crowdbot.core.view.shapes import SPEEDS, Disc, Shape, Text
 from crowdbot.core.view.world import Map
 
-_FASTEST = 2.0  # m/s, top of the colours
+FASTEST = 2.0  # m/s, top of the colours
 _TRAIL = 3.0  # s
 _BODY = 0.4  # m, people so far outside are seen in part
 
@@ -47,7 +47,7 @@ def people_at(
             continue  # also where they are absent, NaN
         vx, vy = float(crowd.vx[sample, i]), float(crowd.vy[sample, i])
         speed = math.hypot(vx, vy)
-        shade = min(len(SPEEDS) - 1, int(speed / _FASTEST * len(SPEEDS)))
+        shade = min(len(SPEEDS) - 1, int(speed / FASTEST * len(SPEEDS)))
         radius = float(crowd.radius[i]) * world.scale
         yield Disc(centre=world.at(x, y), radius=radius, role=f"person-{shade}")
         if i in wanted:

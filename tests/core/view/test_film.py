@@ -24,6 +24,7 @@ from crowdbot.errors import InputError, MissingLibraryError
 from tests.plugins.metrics.scenes import grid, line, scene
 
 T = grid(4, 1 / 16)
+LEGEND = 90  # px, three rows at this width
 
 
 def filmed(**more: object) -> Filmed:
@@ -31,18 +32,27 @@ def filmed(**more: object) -> Filmed:
     return Filmed(tracks=(run,), title="made up", width=320, **more)  # type: ignore[arg-type]
 
 
-def near(image: Image.Image, colour: str) -> np.ndarray:
-    """Return x and y of the pixels of a colour."""
+def near(image: Image.Image, colour: str, below: int = 0) -> np.ndarray:
+    """Return x and y of the pixels of a colour, without the lowest rows."""
     wanted = np.array(Image.new("RGB", (1, 1), colour))[0, 0].astype(int)
     found = np.abs(np.asarray(image).astype(int) - wanted).max(axis=2) < 12
-    return np.argwhere(found)[:, ::-1]
+    return np.argwhere(found[: len(found) - below])[:, ::-1]
+
+
+def test_a_legend_and_a_scale_are_below() -> None:
+    (image,) = filmed().images([0.0])
+    below = image.crop((0, image.height - LEGEND, *image.size))
+    found = np.asarray(below).reshape(-1, 3)
+    for role in ("robot", "ink"):
+        wanted = np.array(Image.new("RGB", (1, 1), LIGHT[role]))[0, 0]
+        assert (np.abs(found.astype(int) - wanted).max(axis=1) < 12).sum() > 20
 
 
 def test_the_robot_moves_to_the_right() -> None:
     first, last = filmed().images([0.0, 3.0])
     assert first.size == last.size
     assert first.size[0] % 2 == first.size[1] % 2 == 0
-    before, after = near(first, LIGHT["robot"]), near(last, LIGHT["robot"])
+    before, after = (near(i, LIGHT["robot"], LEGEND) for i in (first, last))
     assert len(before) > 20
     assert after[:, 0].mean() > before[:, 0].mean() + 50
     assert abs(after[:, 1].mean() - before[:, 1].mean()) < 2
@@ -51,7 +61,7 @@ def test_the_robot_moves_to_the_right() -> None:
 def test_a_robot_that_is_followed_stays_in_the_middle() -> None:
     film = filmed(follow=True, colours=DARK)
     for image in film.images([0.0, 3.0]):
-        x, _ = near(image, DARK["robot"]).mean(axis=0)
+        x, _ = near(image, DARK["robot"], LEGEND).mean(axis=0)
         assert x == pytest.approx(image.width / 2, abs=4)
 
 
