@@ -66,7 +66,8 @@ def _tell_of_compiling(done: threading.Event) -> None:
 
 
 def _how_far(count: int) -> str:
-    return f"{count} of about {max(count, USUAL)} functions compiled"
+    of = f" of about {USUAL}" if count < USUAL else ""
+    return f"{count}{of} functions compiled"
 
 
 @contextmanager
