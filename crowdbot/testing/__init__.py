@@ -10,7 +10,7 @@
 
 `random_view` and `costs_at` are for tests of cost functions, `installed` for those of a plugin's
 health. ``parametrize_with_checks`` needs pytest, `crowdbot.testing.strategies` hypothesis:
-``pip install crowdbot[testing]``. `checks_for` needs neither.
+``pip install 'crowdbot[testing]'``. `checks_for` needs neither.
 """
 
 from crowdbot.testing.around import components_of, installed

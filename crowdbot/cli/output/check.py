@@ -132,7 +132,8 @@ def _checks(component: Component[Any]) -> tuple[Callable[..., None], ...]:
         from crowdbot.testing import checks_of
     except ModuleNotFoundError as error:
         raise InputError(
-            f"the checks need '{error.name}', which is not installed: pip install crowdbot[testing]"
+            f"the checks need '{error.name}', which is not installed: "
+            "pip install 'crowdbot[testing]'"
         ) from None
     return checks_of(component)
 

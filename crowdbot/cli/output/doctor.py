@@ -6,20 +6,19 @@ import ctypes
 import importlib
 import os
 import platform
+import re
 import shutil
 import tempfile
 import time
 from collections.abc import Iterator
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 from crowdbot.errors import CrowdbotError
 
-#: Required packages, and those of extras.
+#: Required packages.
 _NEEDED = ("crowdbot", "drake", "numba", "numpy", "mcap", "pydantic", "rosbags", "scipy")
-_EXTRAS = {"duckdb": "analysis", "pandas": "analysis", "pyarrow": "analysis",
-           "distributed": "cluster", "jupedsim": "jupedsim"}  # fmt: skip
 #: Approximate size of a campaign of 162 scenarios and three seeds, bytes.
 _DISK = 2 * 10**9
 
@@ -52,10 +51,21 @@ def _packages() -> Iterator[Examined]:
     for name in _NEEDED:
         found = _version(name)
         yield Examined(name, "ok" if found else "missing", found or "not installed")
-    for name, extra in _EXTRAS.items():
+    for name, extra in _extras().items():
         found = _version(name)
-        hint = f"not installed; 'pip install crowdbot[{extra}]' brings it"
+        hint = f"not installed; pip install 'crowdbot[{extra}]' brings it"
         yield Examined(name, "ok" if found else "note", found or hint)
+
+
+def _extras() -> dict[str, str]:
+    """Return distribution -> extra of what crowdbot can do without."""
+    found = dict[str, str]()
+    for text in requires("crowdbot") or ():
+        extra = re.search(r"extra == ['\"]([\w-]+)", text)
+        name = re.match(r"[\w.-]+", text)
+        if extra and name:
+            found.setdefault(name[0], extra[1])
+    return found
 
 
 def _version(name: str) -> str:

@@ -246,7 +246,7 @@ def needs(extra: str, *modules: str) -> None:
     missing = [m for m in modules if find_spec(m) is None]
     if missing:
         raise MissingLibraryError(
-            f"{', '.join(missing)}: not installed; install it with 'pip install crowdbot[{extra}]'"
+            f"{', '.join(missing)}: not installed; install it with pip install 'crowdbot[{extra}]'"
         )
 
 

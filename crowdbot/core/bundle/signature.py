@@ -146,5 +146,5 @@ def _needs_library() -> None:
 
     if find_spec("cryptography") is None:
         raise MissingLibraryError(
-            "cryptography: not installed; install it with 'pip install crowdbot[signing]'"
+            "cryptography: not installed; install it with pip install 'crowdbot[signing]'"
         )

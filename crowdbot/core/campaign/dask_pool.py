@@ -95,7 +95,7 @@ class DaskWorkerPool:
         try:
             import distributed
         except ImportError as error:
-            text = "--cluster needs Dask; install it with 'pip install crowdbot[cluster]'"
+            text = "--cluster needs Dask; install it with pip install 'crowdbot[cluster]'"
             raise MissingLibraryError(text) from error
         _await_listener(address)
         try:

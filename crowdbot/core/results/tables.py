@@ -77,7 +77,7 @@ def write_parquet(path: Path, lines: Sequence[Line]) -> None:
     try:
         import duckdb
     except ImportError as error:
-        text = "Parquet needs DuckDB; install it with 'pip install crowdbot[analysis]'"
+        text = "Parquet needs DuckDB; install it with pip install 'crowdbot[analysis]'"
         raise MissingLibraryError(text) from error
     names = _names(lines)
     columns = {name: _type(name, (line[name] for line in lines)) for name in names}

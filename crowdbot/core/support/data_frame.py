@@ -56,5 +56,5 @@ def _library(name: str) -> ModuleType:
         return importlib.import_module(name)
     except ImportError as error:
         raise InputError(
-            f"{name} is not installed; 'pip install crowdbot[analysis]' brings it"
+            f"{name} is not installed; pip install 'crowdbot[analysis]' brings it"
         ) from error

@@ -98,7 +98,7 @@ def _ffmpeg() -> str:
         found = shutil.which("ffmpeg")
         if found is None:
             raise MissingLibraryError(
-                "films need ffmpeg; install it with 'pip install crowdbot[film]', or write a .gif"
+                "films need ffmpeg; install it with pip install 'crowdbot[film]', or write a .gif"
             ) from None
         return found
 

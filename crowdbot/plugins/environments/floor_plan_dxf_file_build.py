@@ -36,7 +36,7 @@ def opened(file: Path, most: int) -> Any:
         from ezdxf.filemanagement import read
     except ImportError as error:
         raise InputError(
-            f"{file.name}: reading DXF needs ezdxf; install it with 'pip install crowdbot[dxf]'"
+            f"{file.name}: reading DXF needs ezdxf; install it with pip install 'crowdbot[dxf]'"
         ) from error
     if _DWG.match(content):
         raise InputError(f"{file.name}: is a DWG drawing; save it as DXF in the CAD program")

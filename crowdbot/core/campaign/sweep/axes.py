@@ -158,7 +158,7 @@ def _by_optuna(
         import optuna
     except ImportError as error:
         raise MissingLibraryError(
-            "--how optuna needs Optuna; install it with 'pip install crowdbot[sweep]'"
+            "--how optuna needs Optuna; install it with pip install 'crowdbot[sweep]'"
         ) from error
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     sampler = optuna.samplers.TPESampler(seed=stream_seed(seed, "sweep", "sweep.optuna") % 2**32)
