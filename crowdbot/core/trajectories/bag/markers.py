@@ -13,7 +13,13 @@ from crowdbot.core.trajectories.bag.fields import header_of
 #: visualization_msgs/Marker: kinds of markers and their actions.
 _ARROW, _CUBE, _SPHERE, _CYLINDER, _MESH = 0, 1, 2, 3, 10
 _CUBES, _SPHERES, _POINTS = 6, 7, 8
-_ADD = 0
+_ADD, _DELETE, _DELETE_ALL = 0, 2, 3
+#: Role of a row that says that a marker is deleted, or all if it has no label.
+DELETED = "deleted"
+#: Label of a marker that viewers show until it is deleted, and of one that they drop by themselves.
+_STAYS = "has no lifetime"
+#: A marker that was last sent this long before the end is told, s.
+_LONG_GONE = 1.0
 #: Shapes that stand for bodies, the likeliest first. Lines and texts belong to a body beside them.
 _RANK = {k: i for i, k in enumerate(
     (_CYLINDER, _MESH, _CUBE, _SPHERE, _SPHERES, _CUBES, _ARROW, _POINTS)
@@ -31,9 +37,13 @@ def is_marker(item: Any) -> bool:
 
 
 def shapes(markers: Sequence[Any], log: int, message: int) -> Iterator[Seen]:
-    """Yield the bodies that the markers of a message show: added or moved, not deleted."""
+    """Yield the bodies that the markers of a message show, and what it deletes."""
     for marker in markers:
         kind = int(marker.type)
+        if int(marker.action) in (_DELETE, _DELETE_ALL):
+            alone = int(marker.action) == _DELETE
+            labels = {"ns and id": f"{marker.ns}/{marker.id}"} if alone else {}
+            yield Seen(log, 0, message, "", (0.0, 0.0, 0.0), {}, labels, role=DELETED)
         if int(marker.action) != _ADD or kind not in _RANK:
             continue
         if kind in (_CUBE, _SPHERE, _CYLINDER) and max(marker.scale.x, marker.scale.y) > _WIDEST:
@@ -46,7 +56,29 @@ def shapes(markers: Sequence[Any], log: int, message: int) -> Iterator[Seen]:
             continue
         at = marker.points[0] if kind == _ARROW and len(marker.points) else marker.pose.position
         labels = {"id": str(marker.id), "ns and id": number}
+        if not (marker.lifetime.sec or marker.lifetime.nanosec):
+            labels[_STAYS] = "yes"
         yield Seen(log, stamp, message, frame, (at.x, at.y, at.z), {}, labels, group)
+
+
+def without_deleted(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
+    """Return rows of bodies; a note names markers that are not sent to the end, and not deleted."""
+    last = {row.labels["ns and id"]: row for row in rows if _STAYS in row.labels}
+    end = max((row.log for row in rows), default=0)
+    gone = {row.labels.get("ns and id", ""): row.message for row in rows if row.role == DELETED}
+    kept = [
+        name
+        for name, row in last.items()
+        if end - row.log > _LONG_GONE * 1e9
+        and row.message >= max(gone.get(name, -1), gone.get("", -1))
+    ]
+    if kept:
+        few = ", ".join(f"'{name}'" for name in kept[:3])
+        notes.append(
+            f"{len(kept)} marker(s), {few}, are not sent to the end and not deleted: viewers go on "
+            "showing them; here no one is there after the last message"
+        )
+    return [row for row in rows if row.role != DELETED]
 
 
 def _points(marker: Any) -> Iterator[tuple[float, float, float]]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from crowdbot.core.trajectories.bag.columns import Seen
 from crowdbot.core.trajectories.bag.fields import header_of, linear_of, place_of
-from crowdbot.core.trajectories.bag.markers import is_marker, shapes
+from crowdbot.core.trajectories.bag.markers import DELETED, is_marker, shapes
 from crowdbot.errors import InputError
 
 #: Fields that may hold the list of people, in the order they are tried.
@@ -49,7 +49,7 @@ def people_in(path: Path, topic: str, message: Any, log: int, number: int) -> li
     """
     found = list(_rows(path, topic, message, log, number))
     for row in found:
-        if any(_ROBOT.search(label) for label in row.labels.values()):
+        if row.role != DELETED and any(_ROBOT.search(label) for label in row.labels.values()):
             row.role = "robot"
     return found
 
@@ -70,7 +70,8 @@ def lists_people(message: Any) -> bool | None:
     if items is None or not len(items):
         return None
     if all(is_marker(item) for item in items):
-        return True if any(shapes(items, 0, 0)) else None
+        bodies = (row for row in shapes(items, 0, 0) if row.role != DELETED)
+        return True if any(bodies) else None
     return all(place_of(item) is not None for item in items)
 
 

@@ -20,7 +20,7 @@ from crowdbot.core.trajectories.bag.clocks import (
 from crowdbot.core.trajectories.bag.columns import Columns, Seen, columns_of
 from crowdbot.core.trajectories.bag.frames import TF, TF_STATIC, Edge, FrameTree, edges_of
 from crowdbot.core.trajectories.bag.into_one_frame import into_one_frame
-from crowdbot.core.trajectories.bag.markers import without_parts
+from crowdbot.core.trajectories.bag.markers import without_deleted, without_parts
 from crowdbot.core.trajectories.bag.people import lists_people, may_list_people, people_in
 from crowdbot.core.trajectories.bag.reader import index_hint, messages, topic_fields
 from crowdbot.core.trajectories.bag.robot import (
@@ -137,7 +137,8 @@ class _Reading:
         return longest_part(self._path, topics, self._notes)
 
     def _persons(self, topic: str) -> list[Seen]:
-        rows = identities.persons_only(self._seen.get(topic, []), self._notes)
+        rows = without_deleted(self._seen.get(topic, []), self._notes)
+        rows = identities.persons_only(rows, self._notes)
         is_shape = bool(rows) and rows[0].group not in ("", "table")
         rows = without_parts(rows) if is_shape else rows
         if not rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -190,6 +191,28 @@ def test_deleted_markers_are_no_people(tmp_path: Path) -> None:
         gone = [marker(t, 0, (0, 0), action=3), marker(t, 7, (0, 0), action=2)]
         rows.append(("/people", t, array(gone + shown)))
     check_walkers(read(write(tmp_path / "bag", robot_rows() + rows)), [1, 2])
+
+
+@pytest.mark.parametrize("ended", ["by nothing", "alone", "with all", "before each message"])
+def test_markers_that_end_early(tmp_path: Path, ended: str) -> None:
+    """Viewers show a marker until it is deleted; some send each one once."""
+    rows: list[Row] = []
+    for t in TIMES:
+        all_gone = ended == "before each message" or (ended == "with all" and t == TIMES[20])
+        shown = [marker(t, 0, (0, 0), action=3)] * all_gone
+        shown += [marker(t, 2, (4, -2), action=2)] * (ended == "alone" and t == TIMES[20])
+        shown += [marker(t, i, (x, y)) for i, x, y in walkers(t) if i == 1 or t < TIMES[20]]
+        rows.append(("/people", t, array(shown)))
+    bag = write(tmp_path / "bag", robot_rows() + rows)
+    if ended == "by nothing":
+        with pytest.warns(RecordingWarning, match=r"1 marker\(s\), 'people/2', are not sent to"):
+            run = read(bag)
+    else:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            run = read(bag)
+    assert run.agents is not None
+    assert np.isfinite(run.agents.x).sum(axis=0).tolist() == [49, 20]
 
 
 @pytest.mark.parametrize("kind", [6, 7, 8], ids=["cubes", "spheres", "points"])
