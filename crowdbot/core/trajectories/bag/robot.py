@@ -79,16 +79,21 @@ def base_frame(path: Path, tree: FrameTree, frame: str) -> str:
 
     Raises:
         UnknownNameError: there is no such frame.
-        InputError: none is named and there is no base.
+        InputError: none is named, and there is no base, or those of several robots.
     """
     if frame:
         if frame not in tree:
             raise UnknownNameError(f"frame of {path}", frame, tree.frames)
         return frame
     for base in _BASES:
-        for name in tree.frames:
-            if name == base or name.endswith(f"/{base}"):
-                return name
+        found = [name for name in tree.frames if name == base or name.endswith(f"/{base}")]
+        if len(found) > 1:
+            raise InputError(
+                f"{path}: {TF} has the bases of {len(found)} robots; robot='{TF}:FRAME' says which "
+                f"of {', '.join(found)}"
+            )
+        if found:
+            return found[0]
     raise InputError(
         f"{path}: {TF} has no {' or '.join(_BASES)}; robot='{TF}:FRAME' says which of "
         f"{', '.join(tree.frames) or 'none'} is the robot"

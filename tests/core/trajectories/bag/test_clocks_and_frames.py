@@ -194,6 +194,19 @@ def test_poses_that_are_only_in_tf(tmp_path: Path) -> None:
         read(bag, robot="/tf:base_footprin")
 
 
+def test_transforms_of_two_robots(tmp_path: Path) -> None:
+    rows = marker_rows()
+    for t in TIMES:
+        rows.append(("/tf", t, transform(t, "map", "a/base_link", (0.5 * t, 0.0, 0.0))))
+        rows.append(("/tf", t, transform(t, "map", "b/base_link", (9.0, 9.0, 0.0))))
+    bag = write(tmp_path / "bag", rows)
+    with pytest.raises(InputError, match="bases of 2 robots; .* which of a/base_link, b/base_link"):
+        read(bag, robot="/tf")
+    run = read(bag, robot="/tf:b/base_link")
+    assert run.robot is not None
+    np.testing.assert_allclose(run.robot.x, 9.0)
+
+
 # ------------------------------------------------------------------------------- robots
 def test_turtlesim(tmp_path: Path) -> None:
     rows: list[Row] = [
