@@ -200,7 +200,7 @@ def test_transforms_of_two_robots(tmp_path: Path) -> None:
         rows.append(("/tf", t, transform(t, "map", "a/base_link", (0.5 * t, 0.0, 0.0))))
         rows.append(("/tf", t, transform(t, "map", "b/base_link", (9.0, 9.0, 0.0))))
     bag = write(tmp_path / "bag", rows)
-    with pytest.raises(InputError, match="bases of 2 robots; .* which of a/base_link, b/base_link"):
+    with pytest.raises(InputError, match=r"bases of 2 robots; .* which of a/base_link, b/"):
         read(bag, robot="/tf")
     run = read(bag, robot="/tf:b/base_link")
     assert run.robot is not None
