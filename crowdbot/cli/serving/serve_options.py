@@ -257,7 +257,7 @@ def report(record: RunRecord) -> None:
         return
     lag = "" if live.largest_lag is None else f", at most {live.largest_lag:.3g} s behind"
     _say(
-        f"live: {live.steps} steps, {live.missed_steps} without a command in time, "
+        f"live: {live.steps} steps, {live.missed_steps} without a new command in time, "
         f"{live.refused_commands} commands refused{lag}"
     )
 
