@@ -20,7 +20,7 @@ from rosbags.interfaces import (
 
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.container.records import Record, Records
-from crowdbot.core.recording.export.extras import OFTEN, Extra, extras
+from crowdbot.core.recording.export.extras import OFTEN, Extra, arrival, extras
 from crowdbot.core.recording.export.stamps import moved
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.recording import Recording
@@ -131,7 +131,8 @@ def _merged(path: Path, options: BagOptions) -> Iterator[_Message]:
     instead = dict.fromkeys(topic for topic in OFTEN if any(e.topic == topic for e in added))
     names = _names(header, options, info.topics) | instead
     recorded = _recorded(path, set(info.topics), names, options)
-    yield from heapq.merge(_sorted(recorded), _sorted(_added(added)))
+    at_goal = [e for e in arrival(header, run) if e.topic != Topic.TF or options.tree == "truth"]
+    yield from heapq.merge(_sorted(recorded), _sorted(_added([*added, *at_goal])))
 
 
 def _lacking(topics: Mapping[str, int], samples: int, options: BagOptions) -> Callable[[str], bool]:

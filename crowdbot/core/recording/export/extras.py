@@ -9,6 +9,7 @@ import numpy as np
 
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.recording.container.chunk import Piece
+from crowdbot.core.recording.export.arrival_pose import arrival_pose
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.ros_topics import ToolTopics
 from crowdbot.core.recording.topics import Topic
@@ -48,6 +49,21 @@ def extras(
         yield _extra(Topic.PATH, 0, path.path(0), latched=True)
         if markers:
             yield from _contacts(run, path)
+
+
+def arrival(header: RecordingHeader, run: Trajectories) -> Iterator[Extra]:
+    """Yield pose and frame of the robot when it arrived, if that is later than its last sample.
+
+    A run ends between two samples, so that no sample may lie in the goal.
+    """
+    robot = run.robot
+    if robot is None or robot.goal_time is None or robot.goal_time <= run.t[-1]:
+        return
+    kept, ns = _Kept(), ros.nanoseconds(robot.goal_time)
+    ToolTopics(kept, header, "").state(ns, arrival_pose(run, robot, robot.goal_time), None)
+    for extra in kept.messages:
+        if extra.ns == ns and extra.topic.endswith((Topic.POSE, Topic.TF)):
+            yield extra
 
 
 class _Kept:
