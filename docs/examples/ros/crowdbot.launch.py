@@ -1,6 +1,7 @@
 """Launch crowdbot beside nodes of ROS 2 that use zenoh: ros2 launch crowdbot.launch.py.
 
-Start the nodes with RMW_IMPLEMENTATION=rmw_zenoh_cpp. Not tried with ROS 2 itself.
+RViz shows the frame map. Start other nodes with RMW_IMPLEMENTATION=rmw_zenoh_cpp, among them
+robot_state_publisher with the URDF of /robot_description. Not tried with ROS 2 itself.
 """
 
 from launch import LaunchDescription
@@ -27,6 +28,8 @@ def generate_launch_description() -> LaunchDescription:
             Node(
                 package="rviz2",
                 executable="rviz2",
+                arguments=["-f", "map"],
+                additional_env={"RMW_IMPLEMENTATION": "rmw_zenoh_cpp"},
                 parameters=[{"use_sim_time": True}],
             ),
         ]
