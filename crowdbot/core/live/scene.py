@@ -56,7 +56,7 @@ def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessag
     walls = scene.parts.walls
     if len(walls):
         found.append((Topic.WALLS, scenery.wall_lines(walls)))
-        found.append((Topic.MAP, scenery.occupancy_grid(ns, walls)))
+        found.append((Topic.MAP, scenery.occupancy_grid(ns, walls, goal=task.goal)))
     return [told(str(topic), ns, message, latched=True) for topic, message in found]
 
 

@@ -132,12 +132,14 @@ class ToolTopics:
         walls, zone = header.walls, header.goal_zone
         if walls is not None and len(walls) and not self._namespace:
             self._file.put(Topic.WALLS, 0, scenery.wall_lines(walls), latched=True)
-            self._file.put(Topic.MAP, 0, scenery.occupancy_grid(0, walls), latched=True)
+            goal = None if header.robot is None else header.robot.goal
+            grid = scenery.occupancy_grid(0, walls, goal=goal)
+            self._file.put(Topic.MAP, 0, grid, latched=True)
         if zone is not None and len(zone):
             self._file.put(Topic.GOAL, 0, markers.polygon(0, zone), latched=True)
-        goal = scenery.goal_pose(0, header)
-        if goal is not None:
-            self._file.put(Topic.GOAL_POSE, 0, goal, latched=True)
+        pose = scenery.goal_pose(0, header)
+        if pose is not None:
+            self._file.put(Topic.GOAL_POSE, 0, pose, latched=True)
 
     def _put(self, topic: Topic, ns: int, blank: Template, *parts: bytes) -> None:
         self._file.put_bytes(topic, ns, blank.msgtype, blank.fill(*parts))

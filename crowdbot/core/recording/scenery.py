@@ -22,7 +22,7 @@ FRAMES = ("map", "odom", BASE, "base_link")
 _WALL_COLOUR = (0.3, 0.3, 0.3, 1.0)
 #: Map: size of a cell (m), margin around the walls (m), and largest number of cells per direction.
 CELL, _RIM, _MOST_CELLS = 0.05, 0.5, 4000
-_OCCUPIED = 100
+_OCCUPIED, _UNKNOWN = 100, -1
 
 
 def static_frames(header: RecordingHeader) -> list[Any]:
@@ -63,13 +63,19 @@ def goal_pose(ns: int, header: RecordingHeader) -> Any | None:
     return ros.pose_stamped(ns, "map", Pose(*header.robot.goal, 0.0))
 
 
-def occupancy_grid(ns: int, walls: Array, cell: float = CELL) -> Any:
+def occupancy_grid(
+    ns: int, walls: Array, cell: float = CELL, goal: tuple[float, float] | None = None
+) -> Any:
     """Return a map as ``nav_msgs/OccupancyGrid``: cells touched by a wall are occupied.
+
+    If walls separate the goal from the rim of the map, what is outside of them is unknown. All else
+    is free.
 
     Args:
         ns: its stamp.
         walls: (S, 4) segments, m; at least one.
         cell: side of a cell, m; larger if the map would exceed 4000 cells per side.
+        goal: the robot's goal, m, if there is one.
     """
     ends = np.asarray(walls, np.float64).reshape(-1, 2)
     low, high = ends.min(axis=0) - _RIM, ends.max(axis=0) + _RIM
@@ -80,6 +86,9 @@ def occupancy_grid(ns: int, walls: Array, cell: float = CELL) -> Any:
         columns, rows = _cells((x0, y0), (x1, y1), low, cell)
         inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
         cells[rows[inside], columns[inside]] = _OCCUPIED
+    if goal is not None:
+        column, row = np.floor((np.asarray(goal) - low) / cell).astype(np.int64).tolist()
+        _forget_outside(cells, row, column)
     origin = ros.new(
         "geometry_msgs/Pose",
         position=ros.new("geometry_msgs/Point", x=float(low[0]), y=float(low[1]), z=0.0),
@@ -91,6 +100,19 @@ def occupancy_grid(ns: int, walls: Array, cell: float = CELL) -> Any:
         height=height, origin=origin,
     )  # fmt: skip
     return ros.new("nav_msgs/OccupancyGrid", header=head, info=info, data=cells.ravel())
+
+
+def _forget_outside(cells: NDArray[np.int8], row: int, column: int) -> None:
+    """Make the free cells around the walls unknown, unless the goal's cell is one of them."""
+    from scipy import ndimage  # takes longer to import than a map to write
+
+    height, width = cells.shape
+    if not (0 <= row < height and 0 <= column < width) or cells[row, column]:
+        return
+    regions, _ = ndimage.label(cells == 0)
+    outside = regions == regions[0, 0]  # the rim is wider than a cell, and free all around
+    if cells[0, 0] == 0 and not outside[row, column]:
+        cells[outside] = _UNKNOWN
 
 
 def _cells(
