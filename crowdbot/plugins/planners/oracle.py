@@ -9,6 +9,7 @@ from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
+    NonNegativeLength,
     PlannerRole,
     PositiveDuration,
     PositiveLength,
@@ -42,8 +43,15 @@ class OracleSpec(CrowdPredictionSpec):
         description="Weight of the time in which the robot would reach a person who stood still "
         "within the headway.",
     )
-    headway: PositiveDuration = Field(
-        default=0.5, description="That time to a person who stands still, s."
+    hurry_within: PositiveDuration = Field(
+        default=10.0,
+        exclude_if=lambda value: value == 10.0,  # hashes are as without it
+        description="Only this first part of a plan counts for `hurry`, s.",
+    )
+    hurry_room: NonNegativeLength = Field(
+        default=0.0,
+        exclude_if=lambda value: value == 0.0,
+        description="A person passed closer than this counts as reached, m.",
     )
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from crowdbot.plugin import Array, Indices, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction_build import CrowdPrediction
 from crowdbot.plugins.planners.oracle import OracleSpec
-from crowdbot.plugins.planners.people_mpc import plans_build as plans
 
 
 class Oracle(CrowdPrediction):
@@ -17,22 +16,12 @@ class Oracle(CrowdPrediction):
 
     name = "oracle"
 
-    def __init__(self, spec: OracleSpec) -> None:
-        super().__init__(spec)
-        self._costs = spec.hurry, spec.headway
-
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
         """Store the limits and mounts; compile kernels that are not compiled yet."""
         super().reset(task, limits, sensors, seed)
         self._radius = None
-
-    def parameters(self, limits: RobotLimits) -> Array:
-        """Return the parameters of plans, with the cost of people who are hurried."""
-        p = super().parameters(limits)
-        p[plans.HURRY], p[plans.HEADWAY] = self._costs
-        return p
 
     def yields(self, obs: Observation, rows: Indices) -> Array:
         """Return from which time to contact people give way, (N,) s; never if it is not known."""

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from crowdbot.plugin import Component, PositiveDuration
-from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
+from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec, Weight
 
 
 class CrowdPredictionSpec(PeopleMpcSpec):
@@ -17,6 +17,11 @@ class CrowdPredictionSpec(PeopleMpcSpec):
     """
 
     kind: Literal["crowd_prediction"] = "crowd_prediction"  # type: ignore[assignment]
+    hurry: Weight = Field(
+        default=0.0,
+        description="Weight of the time in which the robot would reach a person who stood still "
+        "within the headway.",
+    )
     crowd: str = Field(
         default="calibrated", description="Crowd by whose engine people are predicted."
     )

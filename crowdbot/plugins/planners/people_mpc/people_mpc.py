@@ -54,6 +54,20 @@ class PeopleMpcSpec(RungSpec):
     heading: Weight = Field(
         default=0.8, description="Weight of the angle to the goal after the first stretch."
     )
+    hurry: Weight = Field(
+        default=4.0,
+        description="Weight of the time in which the robot would reach a person who stood still "
+        "within the headway.",
+    )
+    headway: PositiveDuration = Field(
+        default=0.5, description="That time to a person who stands still, s."
+    )
+    hurry_within: PositiveDuration = Field(
+        default=0.8, description="Only this first part of a plan counts for `hurry`, s."
+    )
+    hurry_room: NonNegativeLength = Field(
+        default=0.08, description="A person passed closer than this counts as reached, m."
+    )
     smoothness: Weight = Field(default=0.05, description="Weight of a change of command.")
 
 

@@ -143,6 +143,8 @@ class PeopleMpc:
         p[plans.GROWTH], p[plans.PROGRESS] = spec.margin_growth, spec.progress
         p[plans.CLEARANCE], p[plans.IMPACT] = spec.clearance, spec.impact
         p[plans.SMOOTHNESS], p[plans.HEADING] = spec.smoothness, spec.heading
+        p[plans.HURRY], p[plans.HEADWAY] = spec.hurry, spec.headway
+        p[plans.HURRY_WITHIN], p[plans.HURRY_ROOM] = spec.hurry_within, spec.hurry_room
         p[plans.SIDEWAYS] = 1.0 if limits.vy_max > 0.0 else 0.0
         p[plans.ASIDE_COST], p[plans.SWERVE] = 0.5 * spec.smoothness, spec.swerve
         return p

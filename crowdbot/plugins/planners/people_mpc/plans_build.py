@@ -31,8 +31,8 @@ V, W, VY = range(3)
 #: Indices into the parameter vector.
 A_MAX, ALPHA_MAX, V_MAX, W_MAX, HORIZON, TURN_TIME, MARGIN, COMFORT, GROWTH = range(9)
 PROGRESS, CLEARANCE, IMPACT, SMOOTHNESS, SIDEWAYS, ASIDE_COST, HEADING, SWERVE = range(9, 17)
-HURRY, HEADWAY = range(17, 19)
-PARAMETERS = 19
+HURRY, HEADWAY, HURRY_WITHIN, HURRY_ROOM = range(17, 21)
+PARAMETERS = 21
 
 
 class PlanOutcome(NamedTuple):
@@ -45,7 +45,7 @@ class PlanOutcome(NamedTuple):
         close: 0 (farther than comfort) to 1 (touching).
         aside: angle between heading, or motion sideways, and the goal after the first stretch, rad.
         hurried: share of the horizon in which the robot would reach a person who stood still within
-            the headway; sooner counts more; 0 if that costs nothing.
+            the headway, in the part that is watched; sooner counts more; 0 if that costs nothing.
     """
 
     mean: float
@@ -136,9 +136,10 @@ def roll(
             )  # fmt: skip
         since = 0.0 if responds else t
         person, wall = gaps(now, x, y, yaw, since)
-        if p[HURRY] > 0.0 and person < p[HEADWAY] * p[V_MAX]:
+        watched = p[HURRY] > 0.0 and t < p[HURRY_WITHIN]
+        if watched and person < p[HEADWAY] * p[V_MAX] + p[HURRY_ROOM]:
             soon, _ = gaps(now, x + p[HEADWAY] * going[0], y + p[HEADWAY] * going[1], yaw, since)
-            if soon < 0.0:
+            if soon < p[HURRY_ROOM]:
                 hurried += STEP / p[HORIZON] * (1.0 - 0.6 * t / p[HORIZON])
         gap = min(person, wall)
         gx, gy = world.goal[0] - x, world.goal[1] - y
