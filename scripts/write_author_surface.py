@@ -43,6 +43,7 @@ _SAID = {
     "Better": "Which scores are better: `higher`, `lower`, those near the `reference`, or `none`.",
     "Incidence": "Angle between a ray and a surface's normal, above 0, at most a right angle.",
     "PlannerDocument": "The planner within a planner: its document, its kind, or a file.",
+    "DescribedPart": "What a robot's description names: `link` or `joint`.",
     "PlannerRole": "What a planner is there for: `floor`, `baseline`, `ceiling` or `candidate`.",
     "MOST_RAYS": "Rays that one reading of a sensor may take.",
     "LOOP": "`Agents.at_goal`: walk back to the first point of the route.",

@@ -70,8 +70,9 @@ HOMES = {
     "crowdbot.dsl.spec.assets": "Asset",
     "crowdbot.dsl.spec.component": "Component",
     "crowdbot.dsl.spec.component_specs": (
-        "Agreement CostFunctionSpec CrowdPolicySpec EnvironmentSpec MetricSpec NoiseSpec "
-        "ObservationSpec PlannerDocument PlannerRole PlannerSpec RewardSpec RobotSpec SensorSpec"
+        "Agreement CostFunctionSpec CrowdPolicySpec DescribedPart EnvironmentSpec MetricSpec "
+        "NoiseSpec ObservationSpec PlannerDocument PlannerRole PlannerSpec RewardSpec RobotSpec "
+        "SensorSpec"
     ),
     "crowdbot.dsl.spec.metric_component": "Better MetricComponent MetricVariant declare_metric",
     "crowdbot.dsl.spec.metric_invariants": "MetricInvariants",

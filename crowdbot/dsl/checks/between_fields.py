@@ -11,7 +11,7 @@ from crowdbot.dsl.checks.facts import Facts
 from crowdbot.dsl.checks.paths import check_paths, check_place
 from crowdbot.dsl.checks.person_goals import check_person_goals
 from crowdbot.dsl.checks.pydantic_errors import locate, missing_field
-from crowdbot.dsl.checks.robots import check_robots, check_tasks
+from crowdbot.dsl.checks.robots import check_descriptions, check_robots, check_tasks
 from crowdbot.dsl.checks.spawns import check_spawns
 from crowdbot.dsl.checks.streams import check_streams
 from crowdbot.dsl.scenario.components import components
@@ -79,6 +79,7 @@ _CHECKS: tuple[tuple[Check, tuple[str, ...]], ...] = (
     (_of_crowd(check_agents), (*_PEOPLE, "robots")),
     (check_place, _PLACE),
     (check_robots, _ROBOTS),
+    (check_descriptions, ("robots",)),
     (_of_crowd(check_paths), _PEOPLE),
     (check_tasks, _ROBOTS),
     (check_person_goals, (*_PEOPLE, "robots")),

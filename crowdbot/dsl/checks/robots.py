@@ -15,7 +15,7 @@ from crowdbot.dsl.spec.outlines import Point
 from crowdbot.dsl.spec.place import Place
 from crowdbot.dsl.spec.spec import Rectangle
 from crowdbot.dsl.text.diagnostics import Diagnostic
-from crowdbot.errors import InputError
+from crowdbot.errors import InputError, did_you_mean, nearest
 
 #: Tolerance for a robot that touches a wall, m.
 _SLACK = 1e-6
@@ -44,6 +44,25 @@ def check_zones(facts: Facts) -> Iterator[Diagnostic]:
 def _overlap(one: Rectangle, other: Rectangle) -> bool:
     pairs = ((one.x, other.x), (one.y, other.y))
     return all(a[0] < b[1] and b[0] < a[1] for a, b in pairs)
+
+
+def check_descriptions(facts: Facts) -> Iterator[Diagnostic]:
+    """Check that a robot's description has the links and joints that its fields name."""
+    for name, robot in facts.scenario.robots.items():
+        known, path = robot.model.described(), ("robots", name)
+        if not known:
+            continue
+        named = [(what, own, (*path, "model", *at)) for what, own, at in robot.model.named()]
+        sensors = robot.sensors.items()
+        named += [("link", s.link, (*path, "sensors", n, "link")) for n, s in sensors if s.link]
+        for what, wanted, at in named:
+            if wanted not in known[what]:
+                text = f"the description of robot '{name}' has no {what} '{wanted}'"
+                names = sorted(known[what])
+                hint = did_you_mean(nearest(wanted, names)).removeprefix("; ")
+                yield Diagnostic(
+                    "E130", text, facts.mark(*at), hint or f"known: {', '.join(names)}"
+                )
 
 
 def check_tasks(facts: Facts) -> Iterator[Diagnostic]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from annotated_types import MinLen
@@ -137,6 +137,10 @@ class EnvironmentSpec(ComponentSpec):
         return None
 
 
+#: Parts that a robot's description names.
+DescribedPart = Literal["link", "joint"]
+
+
 class RobotSpec(ComponentSpec):
     """Abstract robot: body, drive and limits."""
 
@@ -155,6 +159,17 @@ class RobotSpec(ComponentSpec):
         `validate` refuses a start and a goal without room for this disc; larger is stricter.
         """
         return 0.1
+
+    def described(self) -> Mapping[DescribedPart, Collection[str]]:
+        """Return the links and joints of its description; empty if only a build knows them.
+
+        `validate` compares what sensors and `named` name.
+        """
+        return {}
+
+    def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
+        """Yield links and joints that the spec names: which, the name, and the field's path."""
+        yield from ()
 
 
 class SensorSpec(ComponentSpec):

@@ -37,7 +37,7 @@ CODES = {
     "E116": "text of the wrong form",
     "E120": "unknown kind",
     "E121": "unknown metric",
-    "E130": "unknown zone, portal, goal area or policy",
+    "E130": "unknown zone, portal, goal area, policy, link or joint",
     "E131": "number of people that is not whole",
     "E132": "place outside the environment",
     "E133": "policy without cost functions",

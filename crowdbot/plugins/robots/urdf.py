@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator, Mapping
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Gt, MinLen
@@ -10,6 +11,8 @@ from pydantic import Field, model_validator
 from crowdbot.plugin import (
     Asset,
     Component,
+    DescribedPart,
+    InputError,
     Length,
     NonNegativeLength,
     PositiveAcceleration,
@@ -22,6 +25,7 @@ from crowdbot.plugin import (
     RobotSpec,
     Spec,
 )
+from crowdbot.plugins.robots.urdf_names import urdf_names
 
 Torque = Annotated[float, Gt(0)]
 WheelJoints = str | Annotated[tuple[str, ...], Field(strict=False), MinLen(1)]
@@ -90,6 +94,19 @@ class UrdfFields(RobotSpec):
             raise ValueError("give either 'disc' or 'box'")
         return self
 
+    def described(self) -> Mapping[DescribedPart, Collection[str]]:
+        """Return the names of links and joints in the file, unless a build has to read it."""
+        try:
+            return urdf_names(self.file.file)
+        except (InputError, OSError):  # told with the file
+            return {}
+
+    def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
+        """Yield the base, and the joints that are held and driven."""
+        yield "link", self.base, ("base",)
+        for joint in self.positions:
+            yield "joint", joint, ("positions", joint)
+
     @property
     def height(self) -> float:
         """Return the height of the whole robot, m."""
@@ -134,6 +151,14 @@ class UrdfSpec(UrdfFields):
     kind: Literal["urdf"] = "urdf"
     drive: DrivenWheels = Field(description="The driven wheels of a differential drive.")
 
+    def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
+        """Yield the base, and the joints that are held and driven."""
+        yield from super().named()
+        for side, joints in zip(("left", "right"), self.drive.sides, strict=True):
+            several = not isinstance(getattr(self.drive, side), str)
+            for n, joint in enumerate(joints):
+                yield "joint", joint, ("drive", side, *((n,) if several else ()))
+
 
 class OmniWheels(Spec):
     """The wheels of a holonomic drive, which slide; a force moves the base."""
@@ -159,6 +184,12 @@ class HolonomicUrdfSpec(UrdfFields):
     drive: OmniWheels = Field(
         description="The wheels of a holonomic drive, which slide; a force moves the base."
     )
+
+    def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
+        """Yield the base, the joints that are held, and those of the wheels."""
+        yield from super().named()
+        for n, joint in enumerate(self.drive.joints):
+            yield "joint", joint, ("drive", "joints", n)
 
 
 #: Fields of both examples, a cart that is part of crowdbot.

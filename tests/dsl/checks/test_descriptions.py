@@ -1,0 +1,71 @@
+"""Links and joints that a robot's description does not have are errors with their place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from crowdbot.core.registry.registry import discover
+from crowdbot.core.scenarios.library import open_spec
+from crowdbot.errors import SpecError
+
+REGISTRY = discover(allow=())
+URDF = """\
+<robot name="bot"><link name="base_link"/><link name="left"/><link name="right"/>
+<link name="laser"/><joint name="left_wheel" type="continuous"><parent link="base_link"/>
+<child link="left"/></joint><joint name="right_wheel" type="continuous">
+<parent link="base_link"/><child link="right"/></joint></robot>
+"""
+DOCUMENT = """\
+crowdbot: 1
+scenario:
+  id: hall
+  extends: ["builtin:parts/corridor_50x10.yaml"]
+  robots:
+    robot:
+      model:
+        kind: urdf
+        file: bot.urdf
+        drive: {left: left_wheel, right: [right_wheel], radius: 0.1 m, effort: 4}
+        disc: {radius: 0.25 m, height: 0.9 m}
+        max_speed: 0.8 m/s
+        max_yaw_rate: 2 rad/s
+        max_acceleration: 1 m/s^2
+        max_yaw_acceleration: 3 rad/s^2
+      sensors: {lidar: {kind: lidar2d, link: laser}, odometry: {kind: wheel_odometry}}
+      task: {start: [2.5 m, 0 m, 0 deg], goal: {zone: robot_goal}}
+"""
+
+
+def opened(folder: Path, document: str, urdf: str = URDF) -> None:
+    """Open the document beside its URDF, which raises what is wrong."""
+    (folder / "bot.urdf").write_text(urdf)
+    (folder / "hall.yaml").write_text(document)
+    open_spec(str(folder / "hall.yaml"), REGISTRY)
+
+
+@pytest.mark.parametrize(
+    ("written", "wrong", "told"),
+    [
+        ("link: laser", "link: lasr", "no link 'lasr'"),
+        ("left: left_wheel", "left: left_weel", "no joint 'left_weel'"),
+        ("right: [right_wheel]", "right: [right_wheel, rear]", "no joint 'rear'"),
+        ("disc:", "positions: {arm: 0.2}\n        disc:", "no joint 'arm'"),
+        ("disc:", "base: base\n        disc:", "no link 'base'"),
+    ],
+)
+def test_a_name_that_is_not_there(tmp_path: Path, written: str, wrong: str, told: str) -> None:
+    opened(tmp_path, DOCUMENT)
+    document = DOCUMENT.replace(written, wrong)
+    with pytest.raises(SpecError) as info:
+        opened(tmp_path, document)
+    (problem,) = info.value.diagnostics
+    assert problem.code == "E130"
+    assert told in problem.message
+    assert told.split("'")[1] in document.splitlines()[problem.mark.line]
+
+
+@pytest.mark.parametrize("urdf", ["<robot", "<sdf/>", URDF.replace('"laser"', '"${laser}"')])
+def test_what_only_a_build_reads_is_left_to_it(tmp_path: Path, urdf: str) -> None:
+    opened(tmp_path, DOCUMENT.replace("link: laser", "link: other"), urdf)
