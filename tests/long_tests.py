@@ -4,6 +4,9 @@ from __future__ import annotations
 
 #: The longest tests, 13 minutes of processor time together.
 LONG = (
+    "tests/core/campaign/test_judge.py::test_nothing_is_run_where_it_would_not_be_contained",
+    "tests/plugins/crowd/test_named_policies.py::test_people_walk_through_a_corridor",
+    "tests/plugins/sensors/test_tilted.py::test_a_lidar_that_looks_down_sees_the_floor_at_h_over_sin_pitch",
     "tests/core/statistics/test_power.py::test_so_many_draws_find_it_in_four_cases_of_five",
     "tests/core/support/test_gc_throttle.py::test_many_new_objects_are_made_without_a_collection",
     "tests/core/support/compiling/test_compile_parts.py::test_python_gets_an_array_from_what_was_a_part",

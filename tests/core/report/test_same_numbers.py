@@ -21,6 +21,7 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.report import Contents, write_report
 from crowdbot.core.report.markdown import markdown
 from crowdbot.core.results.results import Results
+from crowdbot.core.scoring.four_scores import SHOWN
 from crowdbot.core.scoring.score_scale import score_scales
 from crowdbot.core.statistics import Estimate, Table, headline_names
 from crowdbot.core.statistics.estimate_text import (
@@ -70,12 +71,13 @@ def on_leaderboard(results: Results, folder: Path) -> _Told:
     write_leaderboard(folder / "board.html", tables, {}, "board")
     rows = _Cells((folder / "board.html").read_text(encoding="utf-8")).rows
     heads = next(row for row in rows if row and row[0] == ["Metric"])
+    roles = {score.role: score.metric for score in SHOWN}
     found = {}
     for row in rows[rows.index(heads) + 1 :]:
         for head, cell in zip(heads[1:], row[1:], strict=len(row) > 1):
             ends = [t for t in cell if t.startswith("[")]
             shown = cell[_rank(cell)].removeprefix("· ")
-            found[row[0][0], head[0]] = " ".join([shown, *ends])
+            found[roles.get(row[0][0], row[0][0]), head[0]] = " ".join([shown, *ends])
     return found
 
 

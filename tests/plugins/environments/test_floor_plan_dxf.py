@@ -81,7 +81,7 @@ def test_layers_belong_to_dxf() -> None:
 def test_without_ezdxf_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ezdxf", None)
     monkeypatch.setitem(sys.modules, "ezdxf.filemanagement", None)
-    with pytest.raises(InputError, match=r"pip install crowdbot\[dxf\]"):
+    with pytest.raises(InputError, match=r"pip install 'crowdbot\[dxf\]'"):
         plan(drawing(tmp_path, HALL))
 
 
