@@ -48,7 +48,7 @@ def opened(folder: Path, document: str, urdf: str = URDF) -> None:
 @pytest.mark.parametrize(
     ("written", "wrong", "told"),
     [
-        ("link: laser", "link: lasr", "no link 'lasr'"),
+        ("link: laser", "link: lasers", "no link 'lasers'"),
         ("left: left_wheel", "left: left_weel", "no joint 'left_weel'"),
         ("right: [right_wheel]", "right: [right_wheel, rear]", "no joint 'rear'"),
         ("disc:", "positions: {arm: 0.2}\n        disc:", "no joint 'arm'"),
