@@ -15,7 +15,7 @@ from crowdbot.plugin import (
     PositiveLength,
 )
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction import CrowdPredictionSpec
-from crowdbot.plugins.planners.people_mpc.people_mpc import Weight
+from crowdbot.plugins.planners.people_mpc.people_mpc import Weight, hurry_field
 
 
 class OracleSpec(CrowdPredictionSpec):
@@ -38,11 +38,7 @@ class OracleSpec(CrowdPredictionSpec):
     comfort: PositiveLength = Field(
         default=0.3, description="Clearance above which more is no better, m."
     )
-    hurry: Weight = Field(
-        default=1.0,
-        description="Weight of the time in which the robot would reach a person who stood still "
-        "within the headway.",
-    )
+    hurry: Weight = hurry_field(1.0)
     hurry_within: PositiveDuration = Field(
         default=10.0,
         exclude_if=lambda value: value == 10.0,  # hashes are as without it

@@ -96,6 +96,8 @@ class UrdfFields(RobotSpec):
 
     def described(self) -> Mapping[DescribedPart, Collection[str]]:
         """Return the names of links and joints in the file, unless a build has to read it."""
+        if not self.file.is_found:
+            return {}
         try:
             return urdf_names(self.file.file)
         except (InputError, OSError):  # told with the file

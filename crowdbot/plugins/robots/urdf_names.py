@@ -17,7 +17,7 @@ def urdf_names(file: Path) -> dict[DescribedPart, frozenset[str]]:
     Raises:
         OSError: it cannot be read.
     """
-    text = file.read_bytes().decode(errors="replace")
+    text = file.read_bytes().decode(errors="replace").lstrip("\ufeff \t\r\n")
     if any(sign in text for sign in _LEFT_TO_BUILD):
         return {}
     try:

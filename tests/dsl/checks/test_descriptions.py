@@ -66,6 +66,24 @@ def test_a_name_that_is_not_there(tmp_path: Path, written: str, wrong: str, told
     assert told.split("'")[1] in document.splitlines()[problem.mark.line]
 
 
+def test_a_byte_order_mark_hides_nothing(tmp_path: Path) -> None:
+    with pytest.raises(SpecError, match="no link 'other'"):
+        opened(tmp_path, DOCUMENT.replace("link: laser", "link: other"), "\ufeff\n" + URDF)
+
+
 @pytest.mark.parametrize("urdf", ["<robot", "<sdf/>", URDF.replace('"laser"', '"${laser}"')])
 def test_what_only_a_build_reads_is_left_to_it(tmp_path: Path, urdf: str) -> None:
     opened(tmp_path, DOCUMENT.replace("link: laser", "link: other"), urdf)
+
+
+def test_a_file_of_the_working_directory_is_not_taken_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "bot.urdf").write_text("<robot/>")
+    monkeypatch.chdir(elsewhere)
+    (tmp_path / "hall.yaml").write_text(DOCUMENT)
+    with pytest.raises(SpecError) as info:
+        open_spec(str(tmp_path / "hall.yaml"), REGISTRY)
+    assert [problem.code for problem in info.value.diagnostics] == ["E201"]

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from crowdbot.plugin import Component, PositiveDuration
-from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec, Weight
+from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec, Weight, hurry_field
 
 
 class CrowdPredictionSpec(PeopleMpcSpec):
@@ -17,11 +17,7 @@ class CrowdPredictionSpec(PeopleMpcSpec):
     """
 
     kind: Literal["crowd_prediction"] = "crowd_prediction"  # type: ignore[assignment]
-    hurry: Weight = Field(
-        default=0.0,
-        description="Weight of the time in which the robot would reach a person who stood still "
-        "within the headway.",
-    )
+    hurry: Weight = hurry_field(0.0)
     crowd: str = Field(
         default="calibrated", description="Crowd by whose engine people are predicted."
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Le
 from pydantic import Field
@@ -18,6 +18,15 @@ from crowdbot.plugin import (
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 Weight = Annotated[float, Ge(0)]
+
+
+def hurry_field(default: float) -> Any:
+    """Return the field ``hurry``, whose value differs between planners of this family."""
+    return Field(
+        default=default,
+        description="Weight of the time in which the robot would reach a person who stood still "
+        "within the headway.",
+    )
 
 
 class PeopleMpcSpec(RungSpec):
@@ -54,11 +63,7 @@ class PeopleMpcSpec(RungSpec):
     heading: Weight = Field(
         default=0.8, description="Weight of the angle to the goal after the first stretch."
     )
-    hurry: Weight = Field(
-        default=4.0,
-        description="Weight of the time in which the robot would reach a person who stood still "
-        "within the headway.",
-    )
+    hurry: Weight = hurry_field(4.0)
     headway: PositiveDuration = Field(
         default=0.5, description="That time to a person who stands still, s."
     )
