@@ -29,8 +29,9 @@ from crowdbot.plugin import NoValidCommand
 
 SPEC = ("challenge-2020", "in-d0500-dispersed-c20-r05")
 PLANNERS = (
-    "dwa", "stop_and_go", "rpp", "follow_the_gap", "vfh_plus", "social_force", "orca", "rds",
-    "people_mpc", "crowd_prediction", "mppi", "mpc", "navground", "crowd_model", "oracle",
+    "dwa", "stop_and_go", "rpp", "follow_the_gap", "vfh_plus", "social_force", "social_momentum",
+    "orca", "rds", "people_mpc", "crowd_prediction", "mppi", "mpc", "navground", "crowd_model",
+    "oracle",
 )  # fmt: skip
 
 

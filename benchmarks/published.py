@@ -6,6 +6,7 @@ says ``agrees`` or ``does not agree``. What counts as agreement is fixed here, b
     python benchmarks/published.py who-gives-way
     python benchmarks/published.py what-is-hard --out /tmp/hard
     python benchmarks/published.py effect-on-people --out /tmp/hard
+    python benchmarks/published.py legible --out /tmp/hard
 
 ``what-is-hard`` and ``effect-on-people`` share their runs; what is complete is not run again.
 docs/developers/published_results.md says what came out.
@@ -231,6 +232,47 @@ def effect_on_people(given: argparse.Namespace) -> bool:
     return held
 
 
+# --------------------------------------------------------------------------- legible
+
+#: People this near to the robot are compared, m; time over which velocities are taken, s.
+BESIDE, LOOK = 3.0, 0.25
+
+
+def acceleration_beside(run: crowdbot.Run) -> float:
+    """Return the mean acceleration of people beside the robot, m/s^2; nan if nobody is."""
+    found = run.trajectories
+    assert found.robot is not None
+    assert found.agents is not None
+    step = float(found.t[1] - found.t[0])
+    k = max(1, round(LOOK / step))
+    x, y = np.asarray(found.agents.x), np.asarray(found.agents.y)
+    size = np.hypot(*((a[2 * k :] - 2 * a[k:-k] + a[: -2 * k]) / (k * step) ** 2 for a in (x, y)))
+    away = np.hypot(x - found.robot.x[:, None], y - found.robot.y[:, None])[k:-k]
+    return float(np.mean(size[away < BESIDE])) if (away < BESIDE).any() else math.nan
+
+
+def legible(given: argparse.Namespace) -> bool:
+    """Mavrogiannis et al. 2019: people accelerate less beside Social Momentum than beside ORCA."""
+    planners = ("social_momentum", "orca", "goal_seek")
+    rows = []
+    for scenario in crowdbot.expand(SUITES / "stations.yaml"):
+        runs = [
+            crowdbot.simulate(scenario, planner=planner, out=given.out, suite="stations",
+                              record="none", metrics=["success_no_collision"], replay=False,
+                              in_process=True)
+            for planner in planners
+        ]  # fmt: skip
+        rows.append([acceleration_beside(run) for run in runs])
+        print(f"\r{len(rows)} draws", end="", file=sys.stderr)
+    print(file=sys.stderr)
+    table = np.array(rows)
+    for k, planner in enumerate(planners):
+        said = resampled(table[:, k], lambda column: float(np.nanmean(column)))
+        print(f"acceleration of people beside {planner}: {said} m/s^2")
+    less = resampled(table[:, 1] - table[:, 0], lambda column: float(np.nanmean(column)))
+    return verdict(f"less beside social_momentum than beside orca by {less} m/s^2", less.low > 0.0)
+
+
 def verdict(claim: str, holds: bool) -> bool:
     """Print a claim and its verdict."""
     print(f"{'agrees' if holds else 'does not agree'}: {claim}")
@@ -241,6 +283,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], bool]] = {
     "who-gives-way": who_gives_way,
     "what-is-hard": what_is_hard,
     "effect-on-people": effect_on_people,
+    "legible": legible,
 }
 
 

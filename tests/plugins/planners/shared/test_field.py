@@ -20,7 +20,7 @@ from tests.plugins.planners.world import LIMITS, PERSON, RADIUS, World
 #: Kinds that need a library which is an extra, and where it is.
 EXTRAS = {"mpc": "casadi", "navground": "navground"}
 KINDS: list[Any] = ["people_mpc", "crowd_prediction", "crowd_model", "mppi", "orca", "social_force"]
-KINDS += ["vfh_plus", "follow_the_gap", "rpp"]
+KINDS += ["vfh_plus", "follow_the_gap", "rpp", "social_momentum"]
 KINDS += [
     pytest.param(
         kind,

@@ -1,0 +1,1 @@
+"""Social Momentum: a robot that shows early on which side it will pass."""
