@@ -24,11 +24,13 @@ from crowdbot.core.types.score import Score
 
 #: Columns with texts that runs share, by their number in the table ``texts``.
 _SHARED = ("axes", "conditions", "provenance", "more", "labels", "states")
-_MORE = (
+#: Properties of runs that are stored together as one shared text.
+IN_MORE = (
     "changes", "source", "by_person", "role", "agents", "crowd", "suite_metrics", "axis_words",
     "replaced_draws",
 )  # fmt: skip
 _PLAIN = tuple(RUN_COLUMNS)
+_TRUTHS = tuple(name for name, kind in RUN_COLUMNS.items() if kind == "BOOLEAN")
 _SELECTED = (*_PLAIN, "moment", *_SHARED, "record", "scores")
 _BYTES = 3 * 8 + 2  # of a score: value, bounds, state
 
@@ -77,7 +79,7 @@ class _FromRecord:
         return plain.func(run) if isinstance(plain, cached_property) else plain.fget(run)
 
 
-for _name in (*_PLAIN, "moment", "axes", "conditions", "provenance", *_MORE):
+for _name in (*_PLAIN, "moment", "axes", "conditions", "provenance", *IN_MORE):
     if _name != "directory":
         setattr(IndexedRun, _name, _FromRecord(vars(RunRow)[_name]))
 
@@ -123,7 +125,7 @@ def row_of(run: RunRow, scores: Sequence[Score], texts: Texts) -> dict[str, Any]
         "axes": dict(run.axes),
         "conditions": dict(run.conditions),
         "provenance": dict(run.provenance),
-        "more": {name: getattr(run, name) for name in _MORE},
+        "more": {name: getattr(run, name) for name in IN_MORE},
         "labels": labels,
         "states": list(states),
     }
@@ -143,7 +145,7 @@ def read_all(database: sqlite3.Connection, order: str) -> tuple[tuple[RunRow, ..
     query = f"SELECT {', '.join(_SELECTED)} FROM runs {order}"  # noqa: S608  names of ours
     for place, row in enumerate(database.execute(query)):
         known = dict(zip(_PLAIN, row, strict=False))
-        known["privileged"], known["pinned"] = bool(known["privileged"]), bool(known["pinned"])
+        known |= {name: bool(known[name]) for name in _TRUTHS}
         moment, *shared, labels, states, record, scores = row[len(_PLAIN) :]
         axes, conditions, provenance, more = map(texts.value, shared)
         known |= {"axes": axes, "conditions": conditions, "provenance": provenance}

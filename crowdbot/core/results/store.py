@@ -11,6 +11,7 @@ import logging
 import os
 import sqlite3
 import stat
+import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from crowdbot.core.results.failure import SUFFIX, Failure, read_failure
-from crowdbot.core.results.indexed_rows import Texts, columns_of_table, read_all, row_of
+from crowdbot.core.results.indexed_rows import IN_MORE, Texts, columns_of_table, read_all, row_of
 from crowdbot.core.results.rows import RUN_COLUMNS, DamagedRun, RunRow, ScoreRow
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.run_record import RunRecord
@@ -28,8 +29,6 @@ from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
 INDEX, LOCK = "results.sqlite", "results.lock"
-#: Version of the tables; an index of another version is rebuilt.
-VERSION = 7
 #: Longest path that SQLite opens on Unix.
 _LONGEST = 504
 
@@ -49,6 +48,10 @@ CREATE TABLE IF NOT EXISTS failures (
     axes TEXT NOT NULL, error TEXT NOT NULL, traceback TEXT NOT NULL
 );
 """
+#: Counts up when columns mean something else than before; other changes of columns need nothing.
+_MEANING = 8
+#: Identifies the tables and their columns; an index with another number is rebuilt.
+VERSION = zlib.crc32(f"{_MEANING} {_TABLES} {IN_MORE}".encode()) & 0x7FFFFFFF
 
 
 @dataclass(frozen=True, slots=True)

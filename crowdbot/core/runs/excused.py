@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from crowdbot.core.runs import provenance
-from crowdbot.core.runs.outcome import TOPPLED, Outcome
+from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.runs.record_parts import ExcusedPart
 from crowdbot.core.trajectories.fault.struck_over import struck_over
 from crowdbot.core.trajectories.trajectories import Trajectories
+from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.scenario import Scenario
 
 
@@ -23,7 +24,7 @@ def excuse_of(
         realisation: hash of its people.
         draw: number of the draw, 0 for the scenario's own.
     """
-    if outcome.status != TOPPLED or outcome.toppled_time is None or len(runs) != 1:
+    if outcome.status != Ending.TOPPLED or outcome.toppled_time is None or len(runs) != 1:
         return None
     run = next(iter(runs.values()))
     struck = struck_over(run, outcome.toppled_time)

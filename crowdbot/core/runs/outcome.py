@@ -7,10 +7,6 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from crowdbot.core.recording.container.own_file import Written
-from crowdbot.core.types.ending import Ending
-
-ARRIVED, TIMEOUT, TOPPLED = Ending.ARRIVED, Ending.TIMEOUT, Ending.TOPPLED
-PLANNER_FAILED, INTERRUPTED = Ending.PLANNER_FAILED, Ending.INTERRUPTED
 
 
 class Progress(NamedTuple):

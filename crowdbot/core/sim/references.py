@@ -12,12 +12,13 @@ from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.identity import CROWD_ALONE, Reference
 from crowdbot.core.runs.make_record import ending, write_scenario
-from crowdbot.core.runs.outcome import INTERRUPTED, PLANNER_FAILED, Outcome
+from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.runs.run import Request
 from crowdbot.core.runs.run_record import ReferenceRecord
 from crowdbot.core.sim.built_run import build_runs
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.run_setup import RunSetup, record_crowd
+from crowdbot.core.types.ending import Ending
 from crowdbot.errors import Interrupted, PluginError
 
 _LOG = logging.getLogger("crowdbot")
@@ -47,7 +48,7 @@ def make_reference(request: Request, reference: Reference) -> Outcome:
             outcome = _record_alone(setup)
         check_interrupted(outcome, folder)
         recorded = files.check_recorded(folder, outcome.written)
-        if outcome.status == PLANNER_FAILED:
+        if outcome.status == Ending.PLANNER_FAILED:
             _LOG.warning("%s: the planner failed: %s", reference.name, outcome.reason)
         write_scenario(folder, reference.trial.scenario, request.registry)
         ReferenceRecord(
@@ -106,5 +107,5 @@ def check_interrupted(outcome: Outcome, folder: Path) -> None:
     Raises:
         Interrupted: the user stopped the run.
     """
-    if outcome.status == INTERRUPTED:
+    if outcome.status == Ending.INTERRUPTED:
         raise Interrupted(f"interrupted at {outcome.sim_time:.2f} s; what was recorded: {folder}")

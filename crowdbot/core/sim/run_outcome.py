@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from crowdbot.core.runs.outcome import (
-    ARRIVED,
-    INTERRUPTED,
-    PLANNER_FAILED,
-    TIMEOUT,
-    TOPPLED,
-    Outcome,
-)
+from crowdbot.core.runs.outcome import Outcome
 from crowdbot.core.sim.diagram import RunRobot
 from crowdbot.core.sim.robot_ending import RobotEnding
+from crowdbot.core.types.ending import Ending, of_several
 
 _INTERRUPTED_BY = "interrupted by the user"
 
@@ -30,17 +24,9 @@ def run_outcome(
     return replace(whole, sim_time=sim_time, wall_time=wall_time, cpu_time=cpu_time)
 
 
-def run_status(statuses: Collection[str]) -> str:
-    """Status of a run: the first of these that one robot has; arrived if all robots arrived."""
-    for status in (INTERRUPTED, PLANNER_FAILED, TOPPLED, TIMEOUT):
-        if status in statuses:
-            return status
-    return ARRIVED
-
-
 def status_of(ending: RobotEnding) -> str:
     """Status of a robot whose run is over."""
-    return ending.status or INTERRUPTED
+    return ending.status or Ending.INTERRUPTED
 
 
 def last_arrival(endings: Sequence[RobotEnding]) -> float | None:
@@ -68,11 +54,11 @@ def _robot_outcome(robot: RunRobot) -> Outcome:
 def _together(robots: Sequence[RunRobot], found: Mapping[str, Outcome]) -> Outcome:
     """Return the outcome of several robots; the caller fills in computing times."""
     outcomes = found.values()
-    status = run_status({outcome.status for outcome in outcomes})
+    status = of_several(outcome.status for outcome in outcomes)
     reason = "; ".join(f"{name}: {robots[k].ending.reason}" for k, name in enumerate(found))
     return Outcome(
         status=status,
-        reason=_INTERRUPTED_BY if status == INTERRUPTED else reason,
+        reason=_INTERRUPTED_BY if status == Ending.INTERRUPTED else reason,
         goal_time=last_arrival([robot.ending for robot in robots]),
         sim_time=0.0,
         wall_time=0.0,

@@ -23,12 +23,13 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.runs.outcome import INTERRUPTED, TIMEOUT, Outcome, Progress
+from crowdbot.core.runs.outcome import Outcome, Progress
 from crowdbot.core.runs.run import OnBegin, OnCrowd
 from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.crowd_only import run_crowd
 from crowdbot.core.sim.loggers.watched_run import WatchedRun
+from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 
@@ -90,7 +91,7 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
             engine, log, duration, scenario.rates.log, on_sample=report, stop=setup.stop
         )
         outcome = Outcome(
-            status=TIMEOUT if whole else INTERRUPTED,
+            status=Ending.TIMEOUT if whole else Ending.INTERRUPTED,
             reason=f"ran for {duration:g} s" if whole else "interrupted by the user",
             goal_time=None,
             sim_time=now,
@@ -118,9 +119,9 @@ def recording(
         yield writer, ending
     finally:
         last = ending[0] if ending else None
-        status = last.status if last else INTERRUPTED
+        status = last.status if last else Ending.INTERRUPTED
         goal_time = last.goal_time if last else None
-        writer.close(goal_time, status != INTERRUPTED, status)
+        writer.close(goal_time, status != Ending.INTERRUPTED, status)
 
 
 def ids(engine: CrowdEngine | None) -> NDArray[np.int64]:

@@ -9,9 +9,10 @@ from typing import Any
 from pydrake.systems.analysis import Simulator, SimulatorStatus
 
 from crowdbot.core.geometry.polygon import distance_to
-from crowdbot.core.runs.outcome import PLANNER_FAILED, Outcome, Progress
+from crowdbot.core.runs.outcome import Outcome, Progress
 from crowdbot.core.sim.diagram import Blocks, RobotBlocks
 from crowdbot.core.sim.run_outcome import run_outcome
+from crowdbot.core.types.ending import Ending
 from crowdbot.errors import PlannerError
 
 #: Simulated time between checks of progress and interruption, s.
@@ -50,7 +51,7 @@ def run(
         for robot in blocks.robots:
             if robot.given.ending.failure:
                 t = float(context.get_time())
-                robot.given.ending.end(PLANNER_FAILED, robot.given.ending.failure, t)
+                robot.given.ending.end(Ending.PLANNER_FAILED, robot.given.ending.failure, t)
     finally:
         _finish(blocks, context)
         for robot in blocks.robots:

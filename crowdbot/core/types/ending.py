@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 
 
@@ -88,6 +88,12 @@ def shown(counts: Mapping[str, int]) -> tuple[Ending, ...]:
     return tuple(e for e in ATTEMPTED if e != Ending.PEOPLE_ALONE or counts.get(e, 0))
 
 
+def of_several(statuses: Iterable[str]) -> Ending:
+    """Return the ending of a run from those of its robots: the last one in the table."""
+    return max(map(Ending, statuses), key=_ORDER.index)
+
+
+_ORDER = tuple(Ending)
 _FAILED = frozenset(ending for ending in Ending if ending.failed)
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
+
+from crowdbot.core.types.ending import Ending
 
 
 class Cause(StrEnum):
@@ -10,23 +13,39 @@ class Cause(StrEnum):
 
     Attributes:
         past: what such runs did, to follow their number.
+        happened: what happened in one; ``{stood}`` is how long the robot stood, s.
     """
 
     past: str
+    happened: str
 
-    def __new__(cls, word: str, past: str) -> Cause:  # noqa: D102
+    def __new__(cls, word: str, past: str, happened: str) -> Cause:  # noqa: D102
         self = str.__new__(cls, word)
         self._value_ = word
-        self.past = past
+        self.past, self.happened = past, happened
         return self
 
-    PLANNER = "planner", "ended because the planner failed"
-    TOPPLED = "toppled", "toppled"
-    RAN_INTO = "ran_into_person", "ran into a person, at fault"
-    WALL = "touched_wall", "touched a wall"
-    BLOCKED = "blocked", "stood too long and ran out of time"
-    SLOW = "slow", "were too slow and ran out of time"
-    ASIDE = "drove_aside", "drove a person aside"
-    STRUCK = "struck", "arrived, but a person walked into the robot"
-    CLOSE = "closest", "arrived without a contact"
-    ALONE = "met_no_one", "arrived and met no one"
+    PLANNER = "planner", "ended because the planner failed", "the planner failed"
+    TOPPLED = "toppled", "toppled", "the robot toppled"
+    RAN_INTO = "ran_into_person", "ran into a person, at fault", "the robot ran into a person"
+    WALL = "touched_wall", "touched a wall", "the robot touched a wall"
+    BLOCKED = (
+        "blocked", "stood too long and ran out of time", "the robot stood for {stood:.1f} s"
+    )  # fmt: skip
+    SLOW = "slow", "were too slow and ran out of time", "the robot moved until time was up"
+    ASIDE = (
+        "drove_aside", "drove a person aside",
+        "the robot drove a person aside, which halves its safe efficiency",
+    )  # fmt: skip
+    STRUCK = (
+        "struck", "arrived, but a person walked into the robot", "a person walked into the robot"
+    )  # fmt: skip
+    CLOSE = "closest", "arrived without a contact", "the robot was closest to a person"
+    ALONE = "met_no_one", "arrived and met no one", "the robot met no one"
+
+
+#: Endings that say themselves what decided a run; other runs are searched for their cause.
+CAUSES_OF_ENDINGS: Mapping[Ending, Cause] = {
+    Ending.PLANNER_FAILED: Cause.PLANNER,
+    Ending.TOPPLED: Cause.TOPPLED,
+}

@@ -16,7 +16,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.worst_moment import CONTACT_TOL, JUMP_SPEED, RELEASE_GAP, RULE
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.core.types.ending import Ending
-from crowdbot.core.why.causes import Cause
+from crowdbot.core.why.causes import CAUSES_OF_ENDINGS, Cause
 
 #: Defaults of the metric ``safe_efficiency``; J/kg, s, m.
 ASIDE = {"push": 0.25, "headway": 0.5, "reach": 2.0}
@@ -24,8 +24,8 @@ ASIDE = {"push": 0.25, "headway": 0.5, "reach": 2.0}
 STANDING = 0.05
 #: Share of the run that a robot stands, from which standing is why time ran out.
 _BLOCKED = 0.2
-#: A person who touched the robot so long before it toppled is named, s.
-_BEFORE_TOPPLING = 2.0
+#: A person who touched the robot so long before the run ended is named, s.
+_BEFORE_ENDING = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,11 +55,11 @@ def decisive_moment(run: Trajectories, ended: EndedPart) -> DecisiveMoment:
     run = truncate_at_arrival(run)
     contacts = person_contacts(run, JUMP_SPEED, CONTACT_TOL, RELEASE_GAP)
     last = float(run.t[-1])
-    if ended.status == Ending.PLANNER_FAILED:
-        return DecisiveMoment(cause=Cause.PLANNER, t=last)
-    if ended.status == Ending.TOPPLED:
+    known = CAUSES_OF_ENDINGS.get(ended.status)
+    if known is not None:
         t = last if ended.toppled_time is None else ended.toppled_time
-        return DecisiveMoment(cause=Cause.TOPPLED, t=t, agent=_last_touch(contacts, t))
+        who = None if known == Cause.PLANNER else _last_touch(contacts, t)
+        return DecisiveMoment(cause=known, t=t, agent=who)
     return (
         _first(contacts, at_fault(run, contacts, RULE, JUMP_SPEED), Cause.RAN_INTO)
         or _wall(run)
@@ -124,7 +124,7 @@ def _closest(run: Trajectories) -> DecisiveMoment:
 
 def _last_touch(contacts: PersonContacts, t: float) -> int | None:
     """Return the person who touched the robot last before a time, if it was shortly before."""
-    before = (contacts.time <= t) & (contacts.time >= t - _BEFORE_TOPPLING)
+    before = (contacts.time <= t) & (contacts.time >= t - _BEFORE_ENDING)
     before &= contacts.agent >= 0
     return int(contacts.agent[np.flatnonzero(before)[-1]]) if before.any() else None
 

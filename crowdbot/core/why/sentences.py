@@ -21,18 +21,6 @@ _SIDES = {"front": "ahead", "left": "on the left", "right": "on the right", "rea
 _SIDES_OF_ROBOT = {
     "front": "ahead of", "left": "left of", "right": "right of", "rear": "behind",
 }  # fmt: skip
-_HAPPENED = {
-    Cause.PLANNER: "the planner failed",
-    Cause.TOPPLED: "the robot toppled",
-    Cause.RAN_INTO: "the robot ran into a person",
-    Cause.WALL: "the robot touched a wall",
-    Cause.BLOCKED: "the robot stood for {stood:.1f} s",
-    Cause.SLOW: "the robot moved until time was up",
-    Cause.ASIDE: "the robot drove a person aside, which halves its safe efficiency",
-    Cause.STRUCK: "a person walked into the robot",
-    Cause.CLOSE: "the robot was closest to a person",
-    Cause.ALONE: "the robot met no one",
-}
 #: The beginning of a reason that names the planner, and its file.
 _PLANNER = re.compile(r"^planner '[^']*'( \([^)]*\))?:? ")
 #: Sensors that have a line of their own.
@@ -46,7 +34,7 @@ def what_happened(run: Trajectories, moment: DecisiveMoment, reason: str = "") -
         reason: why the run ended; told if the planner failed.
     """
     sample = max(0, int(np.searchsorted(run.t, moment.t, side="right")) - 1)
-    happened = _HAPPENED[moment.cause].format(stood=moment.stood)
+    happened = moment.cause.happened.format(stood=moment.stood)
     if moment.cause == Cause.PLANNER and reason:
         happened += f": {_PLANNER.sub('', reason)}"
     return [f"{moment.t:.1f} s: {happened}", *_person(run, moment, sample), _robot(run, sample)]

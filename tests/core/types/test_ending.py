@@ -7,7 +7,15 @@ import json
 
 import pytest
 
-from crowdbot.core.types.ending import ATTEMPTED, COMPLETE, Ending, ending_style, has_failed, shown
+from crowdbot.core.types.ending import (
+    ATTEMPTED,
+    COMPLETE,
+    Ending,
+    ending_style,
+    has_failed,
+    of_several,
+    shown,
+)
 
 
 def test_an_ending_is_the_word_that_files_have() -> None:
@@ -42,3 +50,17 @@ def test_each_has_its_texts_and_a_colour_of_its_own(ending: Ending) -> None:
     assert "{" not in ending.sentence.format(t=1.0)
     assert len({one.colour for one in Ending}) == len(Ending)
     assert f'[data-ending="{ending}"] {{ --ending: {ending.colour}; }}' in ending_style()
+
+
+@pytest.mark.parametrize(
+    ("statuses", "ending"),
+    [
+        (("arrived", "arrived"), Ending.ARRIVED),
+        (("arrived", "timeout"), Ending.TIMEOUT),
+        (("toppled", "timeout", "arrived"), Ending.TOPPLED),
+        (("toppled", "planner_failed"), Ending.PLANNER_FAILED),
+        (("interrupted", "planner_failed"), Ending.INTERRUPTED),
+    ],
+)
+def test_the_ending_of_several_robots(statuses: tuple[str, ...], ending: Ending) -> None:
+    assert of_several(statuses) == ending

@@ -12,7 +12,8 @@ import pytest
 from crowdbot.core.runs.record_parts import EndedPart
 from crowdbot.core.trajectories.fault.driven_aside import driven_aside
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.why.causes import Cause
+from crowdbot.core.types.ending import COMPLETE, Ending
+from crowdbot.core.why.causes import CAUSES_OF_ENDINGS, Cause
 from crowdbot.core.why.decisive_moment import ASIDE, DecisiveMoment, decisive_moment
 from crowdbot.core.why.sentences import what_happened, why_late
 from crowdbot.core.why.strip import BEFORE, strip
@@ -73,6 +74,11 @@ def moment(cause: Cause) -> DecisiveMoment:
 def test_each_cause_is_found_with_the_person_involved(cause: Cause) -> None:
     found = moment(cause)
     assert (found.cause, found.agent) == (cause, CASES[cause][2])
+
+
+def test_each_ending_has_a_cause_or_is_searched_for_one() -> None:
+    searched = {Ending.ARRIVED, Ending.TIMEOUT}
+    assert set(CAUSES_OF_ENDINGS) == set(COMPLETE) - searched
 
 
 def test_the_moment_is_when_it_began() -> None:

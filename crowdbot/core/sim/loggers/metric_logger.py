@@ -20,7 +20,6 @@ from pydrake.systems.framework import (
 from crowdbot.core.assistance.watch import PersonWatch
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
 from crowdbot.core.recording.run_log import RunLog
-from crowdbot.core.runs.outcome import ARRIVED, PLANNER_FAILED, TIMEOUT, TOPPLED
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.clearance_cache import ClearanceCache
@@ -32,6 +31,7 @@ from crowdbot.core.sim.person_targets import watch_of
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.robot import RobotState
 from crowdbot.core.types.task import Task
 
@@ -118,15 +118,15 @@ class MetricLogger(LeafSystem):
             if self._person is not None and crowd is not None:
                 arrived = self._is_done(self._person, t, RobotState(*now.tolist()), crowd)
         if arrived:
-            zone = "centre inside the goal zone"
-            return self._end(context, t, ARRIVED, zone if self._person is None else "task done")
+            reason = "centre inside the goal zone" if self._person is None else "task done"
+            return self._end(context, t, Ending.ARRIVED, reason)
         if ending.failure:
-            return self._end(context, t, PLANNER_FAILED, ending.failure)
+            return self._end(context, t, Ending.PLANNER_FAILED, ending.failure)
         if ending.toppled_time is not None:
-            return self._end(context, t, TOPPLED, f"toppled at {ending.toppled_time:.1f} s")
+            return self._end(context, t, Ending.TOPPLED, f"toppled at {ending.toppled_time:.1f} s")
         if t >= self._task.time_limit:
             reason = f"time limit of {self._task.time_limit:g} s"
-            return self._end(context, t, TIMEOUT, reason)
+            return self._end(context, t, Ending.TIMEOUT, reason)
         return None
 
     def _feel(self, context: Context, _values: DiscreteValues | None = None) -> None:

@@ -14,8 +14,9 @@ from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.loggers.watched_run import WatchedRun
 from crowdbot.core.sim.robot_ending import RobotEnding
-from crowdbot.core.sim.run_outcome import last_arrival, run_status, status_of
+from crowdbot.core.sim.run_outcome import last_arrival, status_of
 from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, choosers, ids
+from crowdbot.core.types.ending import of_several
 from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive
 
@@ -123,7 +124,7 @@ def _close_robot(writer: RecordingWriter, ending: RobotEnding) -> None:
 def _close_shared(writer: RecordingWriter, endings: Mapping[str, RobotEnding]) -> None:
     found = list(endings.values())
     complete = all(ending.ended for ending in found)
-    writer.close(last_arrival(found), complete, run_status({status_of(e) for e in found}))
+    writer.close(last_arrival(found), complete, of_several(map(status_of, found)))
 
 
 def header_of(setup: RunSetup, built: BuiltRun) -> RecordingHeader:
