@@ -17,7 +17,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -147,18 +147,25 @@ def who_gives_way(_: argparse.Namespace) -> bool:
 
 
 def run_all(
-    out: Path, people: str, planners: Sequence[str]
+    out: Path, suite: str, prefix: str, planners: Sequence[str]
 ) -> dict[tuple[str, str], list[dict[str, float]]]:
-    """Run what is missing; return level and planner -> numbers of its draws."""
+    """Run what is missing; return level and planner -> numbers of its draws.
+
+    Args:
+        out: root of the run directories.
+        suite: name of a file beside this one; its last axis but the draw is the level.
+        prefix: how labels begin.
+        planners: kinds.
+    """
     found: dict[tuple[str, str], list[dict[str, float]]] = {}
     metrics = ["success_no_collision", "effect_on_velocity"]
-    every = crowdbot.expand(SUITES / "narrow_and_dense.yaml")
-    scenarios = [one for one in every if name_of(one).startswith(f"{people}-")]
+    every = crowdbot.expand(SUITES / f"{suite}.yaml")
+    scenarios = [one for one in every if name_of(one).startswith(prefix)]
     for count, scenario in enumerate(scenarios):
-        level = name_of(scenario).split("-")[1]
+        level = name_of(scenario).split("-")[-2]
         for planner in planners:
             run = crowdbot.simulate(
-                scenario, planner=planner, out=out, suite="narrow-and-dense", record="none",
+                scenario, planner=planner, out=out, suite=suite.replace("_", "-"), record="none",
                 metrics=metrics, replay=False, in_process=True,
             )  # fmt: skip
             found.setdefault((level, planner), []).append(numbers(run))
@@ -169,18 +176,23 @@ def run_all(
 
 def numbers(run: crowdbot.Run) -> dict[str, float]:
     """Return the numbers of a run that are compared."""
-    robot = run.trajectories.robot
+    robot, t, goal = run.trajectories.robot, run.trajectories.t, run.trajectories.goal_zone
     assert robot is not None
+    assert goal is not None
     aside = robot.y - robot.y[0]
+    # A point that goes straight to where the goal begins, at the robot's largest speed.
+    speed = run.trajectories.robot_speed_limit or 0.0
+    there = np.minimum(speed * t, goal[:, 0].min() - robot.x[0])
     effect = run.scores.find("effect_on_velocity").value
     return {
         "success": float(run.scores.find("success_no_collision").value or 0.0),
         "aside": float(np.sqrt(np.mean(aside**2))),
+        "error": float(np.mean(np.hypot(robot.x - robot.x[0] - there, aside))),
         "effect": math.nan if effect is None else float(effect),
     }
 
 
-def column(found: dict[tuple[str, str], list[dict[str, float]]], levels: Sequence[str],
+def column(found: Mapping[tuple[str, str], list[dict[str, float]]], levels: Sequence[str],
            planners: Sequence[str], name: str) -> Array:  # fmt: skip
     """Return numbers (draws, levels, planners)."""
     return np.moveaxis(
@@ -193,7 +205,7 @@ def what_is_hard(given: argparse.Namespace) -> bool:
     """Stratton et al. 2024: success falls with density (rho -0.88), rises with width (0.64)."""
     held = True
     for people, planners in PLANNERS.items():
-        found = run_all(given.out, people, planners)
+        found = run_all(given.out, "narrow_and_dense", f"{people}-", planners)
         for factor, levels, sign in (("density", DENSITIES, -1), ("width", WIDTHS, 1)):
             table = column(found, list(levels), planners, "success")
             for k, planner in enumerate(planners):
@@ -215,16 +227,30 @@ def rank_correlation(values: Array, table: Array) -> float:
 
 def effect_on_people(given: argparse.Namespace) -> bool:
     """Gonon et al. 2021: RDS keeps to its course better than ORCA; neither slows people down."""
-    found = run_all(given.out, "look", ("rds", "orca"))
+    print("a round robot:")
+    held = rds_and_orca(run_all(given.out, "narrow_and_dense", "look-", ("rds", "orca")))
+    print("a long robot:")
+    return rds_and_orca(run_all(given.out, "long_robot", "", ("rds", "orca"))) and held
+
+
+def rds_and_orca(found: Mapping[tuple[str, str], list[dict[str, float]]]) -> bool:
+    """Compare both planners in all levels."""
     levels = sorted({level for level, _ in found})
-    both = column(found, levels, ("rds", "orca"), "aside").mean(axis=1)
-    print(f"aside of the straight course (rms), m: rds {both[:, 0].mean():.3f}, "
-          f"orca {both[:, 1].mean():.3f}")  # fmt: skip
-    gap = resampled(both, lambda rows: float(np.mean(rows[:, 1] - rows[:, 0])))
+    pair, held = ("rds", "orca"), True
+    for k, planner in enumerate(pair):
+        rates = column(found, levels, pair, "success")[:, :, k].mean(axis=0)
+        shown = zip(levels, rates, strict=True)
+        print(f"success of {planner}: " + ", ".join(f"{level} {rate:.2f}" for level, rate in shown))
     # A robot that drives straight and only brakes, as a blind one does, keeps to its course best.
-    steers = both[:, 0].mean() > LEAST_ASIDE
+    steers = column(found, levels, ("rds",), "aside").mean() > LEAST_ASIDE
     how = "" if steers else ", but rds drives straight on: nothing shown"
-    held = verdict(f"rds is nearer to its course than orca by {gap} m{how}", steers and gap.low > 0)
+    for name, what in (("aside", "its course (rms)"), ("error", "a point that goes on")):
+        both = column(found, levels, pair, name).mean(axis=1)
+        print(f"away from {what}: rds {both[:, 0].mean():.3f} m, orca {both[:, 1].mean():.3f} m")
+        gap = resampled(both[:, 1] - both[:, 0], lambda rows: float(np.mean(rows)))
+        held &= verdict(
+            f"rds is nearer to {what} than orca by {gap} m{how}", steers and gap.low > 0
+        )
     effects = np.nanmean(column(found, levels, ("rds", "orca"), "effect"), axis=1)
     for k, planner in enumerate(("rds", "orca")):
         said = resampled(effects[:, k], lambda rows: float(np.nanmean(rows)))
