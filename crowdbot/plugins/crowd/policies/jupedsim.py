@@ -49,4 +49,8 @@ JUPEDSIM = Component(
     build="crowdbot.plugins.crowd.policies.jupedsim_build:build",
     summary="collision-free-speed and anticipation-velocity models of JuPedSim",
     examples=({}, {"model": "anticipation_velocity"}),
+    exceptions={
+        "check_translation_invariant": "answers of the library differ by up to 0.008 m/s^2",
+        "check_rotation_equivariant": "answers of the library differ by up to 0.06 m/s^2",
+    },
 )
