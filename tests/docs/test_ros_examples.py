@@ -1,16 +1,23 @@
-"""The programs for users of ROS: clock, keyboard and joystick, launch file."""
+"""The programs for users of ROS: clock, keyboard and joystick, launch files."""
 
 from __future__ import annotations
 
 import ast
 import importlib.util
 import json
+import shutil
+import sys
 import threading
+from pathlib import Path
 from types import ModuleType
 from typing import Any
+from xml.etree.ElementTree import fromstring  # of what crowdbot prints
 
 import pytest
+import yaml
 
+from crowdbot.cli import main
+from crowdbot.core.recording.topics import Topic
 from tests.paths import ROOT
 
 FOLDER = ROOT / "docs" / "examples" / "ros"
@@ -68,10 +75,74 @@ def test_a_joystick() -> None:
     assert drive.after_event(stick, drive.EVENT.pack(9, 1, 1, 0)) == stick  # a button
 
 
-def test_the_launch_file_names_what_crowdbot_has() -> None:
-    tree = ast.parse((FOLDER / "crowdbot.launch.py").read_text(encoding="utf-8"))
+class _Made:
+    """What a launch file made: an action, a substitution or a value."""
+
+    def __init__(self, *given: Any, **fields: Any) -> None:
+        self.given, self.fields = given, fields
+
+
+@pytest.fixture
+def _launch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stand-ins for the packages of ROS 2 that launch files import."""
+    names = {
+        "launch": ("LaunchDescription",),
+        "launch.actions": ("DeclareLaunchArgument", "ExecuteProcess"),
+        "launch.substitutions": ("Command", "LaunchConfiguration"),
+        "launch_ros": (),
+        "launch_ros.actions": ("Node",),
+        "launch_ros.parameter_descriptions": ("ParameterValue",),
+    }
+    for module, classes in names.items():
+        stand_in = ModuleType(module)
+        for name in classes:
+            setattr(stand_in, name, type(name, (_Made,), {}))
+        monkeypatch.setitem(sys.modules, module, stand_in)
+
+
+def _words(parts: list[Any], given: dict[str, str]) -> list[str]:
+    """Return the words of a command in which arguments have values."""
+    text = "".join(p if isinstance(p, str) else given[p.given[0]] for p in parts)
+    return text.split()
+
+
+@pytest.mark.usefixtures("_launch")
+@pytest.mark.parametrize("file", ["crowdbot", "replay"])
+def test_rviz_gets_the_model_of_the_robot(
+    file: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The command that a launch file runs for robot_state_publisher prints the robot's URDF."""
+    module = _module(f"{file}.launch")
+    (actions,) = module.generate_launch_description().given
+    nodes = {a.fields["package"]: a.fields for a in actions if "package" in a.fields}
+    declared = {a.given[0]: a.fields.get("default_value") for a in actions if a.given}
+    if file == "replay":
+        declared["bag"] = str(tmp_path)
+        shutil.copy(ROOT / "docs/howto/files/my_urdf.yaml", tmp_path / "scenario.yaml")
+        shutil.copytree(ROOT / "docs/howto/files/my_robots", tmp_path / "my_robots")
+    (description,) = (p["robot_description"] for p in nodes["robot_state_publisher"]["parameters"])
+    crowdbot, *words = _words(description.given[0].given[0], declared)
+    assert crowdbot == "crowdbot"
+    assert main(words) == 0
+    robot = fromstring(capsys.readouterr().out)
+    assert "base_footprint" in {link.get("name") for link in robot}
+    ((_, config),) = [nodes["rviz2"]["arguments"]]
+    assert Path(config) == FOLDER / "crowdbot.rviz"
+
+
+def test_rviz_shows_topics_that_there_are() -> None:
+    config = yaml.safe_load((FOLDER / "crowdbot.rviz").read_text(encoding="utf-8"))
+    displays = config["Visualization Manager"]["Displays"]
+    shown = {d.get("Topic", d.get("Description Topic", {})).get("Value") for d in displays}
+    assert shown - {None} <= {*Topic, "/scan", "/odom"}
+    assert Topic.DESCRIPTION in shown
+
+
+@pytest.mark.parametrize("file", ["crowdbot", "replay"])
+def test_a_launch_file_names_what_crowdbot_has(file: str) -> None:
+    tree = ast.parse((FOLDER / f"{file}.launch.py").read_text(encoding="utf-8"))
     words = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
     from crowdbot.cli.app.typer_app import load
 
-    options = {text for param in load("serve").params for text in param.opts}
+    options = {text for param in load("serve").params for text in param.opts} | {"--remap"}
     assert {w for w in words if isinstance(w, str) and w.startswith("--")} <= options

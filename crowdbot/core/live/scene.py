@@ -45,12 +45,12 @@ class LiveScene:
 
 def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessage]:
     """Return all constant messages, stamped ``ns``."""
-    header = _header(scene, task)
+    header, description = _header(scene, task), to_urdf(scene.model, scene.sensors, scene.name)
     found = [
-        (Topic.TF_STATIC, ros.transforms(scenery.static_frames(header))),
+        (Topic.TF_STATIC, ros.transforms(scenery.static_frames(header, description))),
         (Topic.GOAL, markers.polygon(ns, task.goal_zone)),
         (Topic.GOAL_POSE, scenery.goal_pose(ns, header)),
-        ("/robot_description", ros.new("std_msgs/String", data=_description(scene))),
+        ("/robot_description", ros.new("std_msgs/String", data=description)),
         ("/crowdbot/task", _task(scene, task, scene.model.limits, seed)),
     ]
     walls = scene.parts.walls
@@ -75,10 +75,6 @@ def _header(scene: LiveScene, task: Task) -> RecordingHeader:
             scenario=scene.scenario, robot=robot, sensors=scene.sensors, namespace=scene.namespace
         )
     )
-
-
-def _description(scene: LiveScene) -> str:
-    return to_urdf(scene.model, scene.sensors, scene.name)
 
 
 def _task(scene: LiveScene, task: Task, limits: RobotLimits, seed: int) -> object:

@@ -17,15 +17,21 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-class _Wheel(NamedTuple):
-    """A joint of the robot's description: frames, place (m), turn at angle 0, axis."""
+class UrdfJoint(NamedTuple):
+    """A joint of the robot's description: links, place (m), turn at angle 0, axis."""
 
-    joint: str
+    name: str
+    kind: str
     parent: str
     child: str
     at: Vector
-    turn: Quaternion
+    rpy: Vector
     axis: Vector
+
+    @property
+    def turn(self) -> Quaternion:
+        """Return x, y, z, w of the turn at angle 0."""
+        return quaternion(*self.rpy)
 
 
 class WheelMessages:
@@ -38,7 +44,9 @@ class WheelMessages:
     """
 
     def __init__(self, description: str, joints: Sequence[str], namespace: str) -> None:
-        self._wheels = [_wheel(description, name, namespace) for name in joints]
+        root = Xml.fromstring(description)  # noqa: S314 - written by crowdbot itself
+        found = {joint.name: _named(joint, namespace) for joint in urdf_joints(root)}
+        self._wheels = [found[name] for name in joints]
         self._before: tuple[int, Sequence[float]] | None = None
 
     def states(self, ns: int, angles: Sequence[float]) -> Any:
@@ -51,7 +59,7 @@ class WheelMessages:
         return ros.new(
             "sensor_msgs/JointState",
             header=ros.header(ns, ""),
-            name=[wheel.joint for wheel in self._wheels],
+            name=[wheel.name for wheel in self._wheels],
             position=np.array(angles, np.float64),
             velocity=np.array(rates, np.float64),
             effort=np.zeros(0),
@@ -63,19 +71,27 @@ class WheelMessages:
         return ros.transforms([_frame(ns, wheel, angle) for wheel, angle in pairs])
 
 
-def _wheel(description: str, name: str, namespace: str) -> _Wheel:
-    root = Xml.fromstring(description)  # noqa: S314 - written by crowdbot itself
-    joint = next(j for j in root.iter("joint") if j.get("name") == name)
+def urdf_joints(robot: Xml.Element) -> list[UrdfJoint]:
+    """Return the joints of a URDF."""
+    return [_joint(joint) for joint in robot.findall("joint")]
+
+
+def _joint(joint: Xml.Element) -> UrdfJoint:
     origin, axis = joint.find("origin"), joint.find("axis")
-    rpy = _three(origin, "rpy", "0 0 0")
-    return _Wheel(
-        joint=name,
-        parent=in_namespace(namespace, _link(joint, "parent")),
-        child=in_namespace(namespace, _link(joint, "child")),
+    return UrdfJoint(
+        name=joint.get("name", ""),
+        kind=joint.get("type", ""),
+        parent=_link(joint, "parent"),
+        child=_link(joint, "child"),
         at=_three(origin, "xyz", "0 0 0"),
-        turn=quaternion(*rpy),
+        rpy=_three(origin, "rpy", "0 0 0"),
         axis=_three(axis, "xyz", "1 0 0"),
     )
+
+
+def _named(joint: UrdfJoint, namespace: str) -> UrdfJoint:
+    parent, child = (in_namespace(namespace, end) for end in (joint.parent, joint.child))
+    return joint._replace(parent=parent, child=child)
 
 
 def _link(joint: Xml.Element, end: str) -> str:
@@ -89,7 +105,7 @@ def _three(element: Xml.Element | None, key: str, default: str) -> Vector:
     return x, y, z
 
 
-def _frame(ns: int, wheel: _Wheel, angle: float) -> Any:
+def _frame(ns: int, wheel: UrdfJoint, angle: float) -> Any:
     half = 0.5 * math.remainder(angle, 2.0 * math.pi)
     length = math.hypot(*wheel.axis)
     x, y, z = (math.sin(half) * part / length for part in wheel.axis)

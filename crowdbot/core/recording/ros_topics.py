@@ -123,7 +123,7 @@ class ToolTopics:
             self._file.put(Topic.PATH, ns, self._path_so_far.path(ns))
 
     def _scenery(self, header: RecordingHeader, description: str) -> None:
-        frames = scenery.static_frames(header)
+        frames = scenery.static_frames(header, description)
         if frames:
             self._file.put(Topic.TF_STATIC, 0, ros.transforms(frames), latched=True)
         if description:

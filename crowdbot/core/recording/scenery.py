@@ -12,6 +12,7 @@ import crowdbot.core.recording.markers as markers
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
 from crowdbot.core.recording.header import RecordingHeader
+from crowdbot.core.recording.links import link_frames
 from crowdbot.core.recording.namespace import in_namespace
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
@@ -25,8 +26,10 @@ CELL, _RIM, _MOST_CELLS = 0.05, 0.5, 4000
 _OCCUPIED, _UNKNOWN = 100, -1
 
 
-def static_frames(header: RecordingHeader) -> list[Any]:
+def static_frames(header: RecordingHeader, description: str = "") -> list[Any]:
     """Return the transforms of ``map``, ``odom``, ``base_footprint``, ``base_link`` and sensors.
+
+    Further those of the links in the robot's URDF that do not move against it.
 
     Empty without a robot, as for a fleet's people, who have no odometry.
     """
@@ -46,7 +49,8 @@ def static_frames(header: RecordingHeader) -> list[Any]:
         turned = dict(zip("xyzw", OPTICAL_QUATERNION, strict=True))
         here.transform.rotation = ros.new("geometry_msgs/Quaternion", **turned)
         frames.append(here)
-    return frames
+    known = [footprint, *(frame.child_frame_id for frame in frames)]
+    return [*frames, *link_frames(description, header.namespace, known)]
 
 
 def wall_lines(walls: Array) -> Any:
