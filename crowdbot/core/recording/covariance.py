@@ -1,4 +1,4 @@
-"""Covariances of pose and twist of odometry, propagated from its noise.
+"""Covariances of odometry and IMU messages, from the noise of the sensor.
 
 The error of the pose grows by the Jacobian of a motion along the heading, as in the prediction of
 an extended Kalman filter (Thrun, Burgard, Fox, "Probabilistic Robotics", 2005, section 7.4).
@@ -10,21 +10,39 @@ import math
 from collections.abc import Sequence
 from struct import Struct
 
+from crowdbot.core.types.sensor import SensorInfo
+
 #: m^2, rad^2, (m/s)^2: default covariances. A matrix of zeros would mean "unknown".
 LEAST = 1e-6
 _MATRIX = Struct("<36d")
 #: Bits of the numbers: a covariance needs no more, and short ones take less room.
 _BITS = 12
+#: Numbers of a reading of odometry, and of `SensorInfo.deviations`: x, y, yaw, v, w, vy.
+_SIX = 6
+
+
+def has_noise(info: SensorInfo) -> bool:
+    """Return True if the random errors of a sensor are known; otherwise covariances are zeros."""
+    return any(info.deviations) or any(info.scatter)
+
+
+def imu_deviations(info: SensorInfo) -> tuple[float, ...]:
+    """Return (6,) standard deviations of an IMU's numbers, rad/s and m/s^2; 0: unknown."""
+    rate, force, *_ = (*info.deviations, 0.0, 0.0)
+    scatter = info.scatter or (0.0,) * _SIX
+    return tuple(map(math.hypot, (rate,) * 3 + (force,) * 3, scatter))
 
 
 class OdometryCovariance:
-    """Covariances of one odometry, reading by reading."""
+    """Covariances of one odometry, whose readings come one by one, or every n-th."""
 
-    def __init__(self, deviations: Sequence[float]) -> None:
-        """Build the covariances. ``deviations``: `SensorInfo.deviations` for odometry."""
-        self._along, self._turn, self._drift = deviations
+    def __init__(self, info: SensorInfo) -> None:
+        """Build the covariances of an odometry that `has_noise`."""
+        squares = [d * d for d in (*info.deviations, *[0.0] * _SIX)[:_SIX]]
+        self._along, self._turn, self._drift, self._ahead, self._aside, self._spin = squares
+        self._scatter = [d * d for d in (*info.scatter, *[0.0] * _SIX)[:_SIX]]
+        self._rate = info.rate
         self._last: tuple[int, float, float, float] | None = None
-        self._period = 0.0
         self._xx = self._xy = self._yy = self._xa = self._ya = self._aa = 0.0
 
     def __call__(self, ns: int, values: Sequence[float]) -> tuple[bytes, bytes]:
@@ -35,38 +53,47 @@ class OdometryCovariance:
             values: x, y, yaw, v, w, and perhaps vy; m, rad, s.
         """
         x, y, yaw, v, _, *aside = values
-        if self._last is not None and ns > self._last[0]:
-            self._grow((ns - self._last[0]) / 1e9, x - self._last[1], y - self._last[2])
         if self._last is None or ns > self._last[0]:
+            if self._last is not None:
+                before = self._last
+                self._grow((ns - before[0]) / 1e9, x - before[1], y - before[2], before[3])
             self._last = (ns, x, y, yaw)
-        pose = {
-            (0, 0): self._xx, (0, 1): self._xy, (1, 0): self._xy, (1, 1): self._yy,
-            (0, 5): self._xa, (5, 0): self._xa, (1, 5): self._ya, (5, 1): self._ya,
-            (5, 5): self._aa,
-        }  # fmt: skip
-        vy = aside[0] if aside else 0.0
-        rate = self._drift**2 / self._period if self._period else 0.0
-        twist = {
-            (0, 0): (self._along * v) ** 2,
-            (1, 1): (self._along * vy) ** 2,
-            (5, 5): (self._turn * math.hypot(v, vy)) ** 2 + rate,
-        }
-        return _matrix(pose), _matrix(twist)
+        return self._pose(), self._twist(v, aside[0] if aside else 0.0)
 
-    def _grow(self, dt: float, dx: float, dy: float) -> None:
-        """Propagate the covariance by a motion, m, in ``dt`` s."""
-        self._period = dt
+    def _pose(self) -> bytes:
+        own_x, own_y, own_yaw, *_ = self._scatter
+        return _matrix({
+            (0, 0): self._xx + own_x, (0, 1): self._xy, (1, 0): self._xy, (1, 1): self._yy + own_y,
+            (0, 5): self._xa, (5, 0): self._xa, (1, 5): self._ya, (5, 1): self._ya,
+            (5, 5): self._aa + own_yaw,
+        })  # fmt: skip
+
+    def _twist(self, v: float, vy: float) -> bytes:
+        _, _, _, own_v, own_w, own_vy = self._scatter
+        turn = self._turn * (v * v + vy * vy) + self._drift * self._rate
+        return _matrix({
+            (0, 0): self._along * v * v + self._ahead + own_v,
+            (1, 1): self._along * vy * vy + self._aside + own_vy,
+            (5, 5): turn + self._spin + own_w,
+        })  # fmt: skip
+
+    def _grow(self, dt: float, dx: float, dy: float, yaw: float) -> None:
+        """Propagate the covariance by a motion, m, from a heading on, in ``dt`` s."""
         xa, ya, aa = self._xa, self._ya, self._aa
         self._xx += -2.0 * dy * xa + dy * dy * aa
         self._xy += dx * xa - dy * ya - dx * dy * aa
         self._yy += 2.0 * dx * ya + dx * dx * aa
         self._xa -= dy * aa
         self._ya += dx * aa
-        part = self._along**2  # squared distance, along the motion
-        self._xx += part * dx * dx
-        self._xy += part * dx * dy
-        self._yy += part * dy * dy
-        self._aa += self._turn**2 * (dx * dx + dy * dy) + self._drift**2 * dt
+        readings = max(1.0, dt * self._rate)
+        part = self._along / readings  # squared distance, along the motion
+        ahead, aside = (d * dt * dt / readings for d in (self._ahead, self._aside))
+        c, s = math.cos(yaw), math.sin(yaw)
+        self._xx += part * dx * dx + ahead * c * c + aside * s * s
+        self._xy += part * dx * dy + (ahead - aside) * c * s
+        self._yy += part * dy * dy + ahead * s * s + aside * c * c
+        self._aa += self._turn * (dx * dx + dy * dy) / readings
+        self._aa += self._drift * dt + self._spin * dt * dt / readings
 
 
 def _matrix(values: dict[tuple[int, int], float]) -> bytes:

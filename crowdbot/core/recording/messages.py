@@ -163,14 +163,14 @@ def point_cloud(ns: int, info: SensorInfo, points: NDArray[np.float32]) -> Any:
     )
 
 
-def imu(ns: int, frame: str, values: Array, deviations: Sequence[float] = (0.0, 0.0)) -> Any:
+def imu(ns: int, frame: str, values: Array, deviations: Sequence[float]) -> Any:
     """Return angular rate (3), rad/s, and specific force (3), m/s^2; without orientation.
 
     Args:
-        deviations: standard deviations of both; 0: unknown.
+        deviations: (6,) standard deviations of the values; 0: unknown.
     """
     unknown = np.zeros(9)
-    rate, force = (np.diag(np.full(3, d * d)).ravel() for d in deviations)
+    rate, force = (np.diag(np.square(part)).ravel() for part in (deviations[:3], deviations[3:]))
     return new(
         "sensor_msgs/Imu",
         header=header(ns, frame),

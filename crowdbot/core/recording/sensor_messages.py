@@ -12,15 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 import crowdbot.core.recording.template as template
-from crowdbot.core.recording.covariance import OdometryCovariance
+from crowdbot.core.recording.covariance import OdometryCovariance, has_noise, imu_deviations
 from crowdbot.core.recording.declared_message import declared_encoder
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.sensor import SensorInfo
 
 #: Makes a serialised message of a time (ns) and a reading's values.
 Encoder = Callable[[int, Array], bytes]
-#: Length of `SensorInfo.deviations` of an odometry.
-_DEVIATIONS = 3
 ODOMETRY, SCAN = "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan"
 _NUMBERS = "std_msgs/msg/Float64MultiArray"
 
@@ -76,8 +74,7 @@ def has_shape(*shapes: tuple[int, ...]) -> Callable[[SensorInfo], bool]:
 def _odometry(info: SensorInfo, namespace: str) -> Encoder:
     before = f"{namespace}/" if namespace else ""
     blank = template.odometry(f"{before}base_footprint", f"{before}odom")
-    known = len(info.deviations) == _DEVIATIONS
-    covariance = OdometryCovariance(info.deviations) if known else None
+    covariance = OdometryCovariance(info) if has_noise(info) else None
 
     def message(ns: int, values: Array) -> bytes:
         numbers = values.tolist()
@@ -126,7 +123,7 @@ def _cloud(info: SensorInfo, _: str) -> Encoder:
 
 
 def _imu(info: SensorInfo, _: str) -> Encoder:
-    blank = template.imu(info.frame, info.deviations[:2] if len(info.deviations) > 1 else (0, 0))
+    blank = template.imu(info.frame, imu_deviations(info))
 
     def message(ns: int, values: Array) -> bytes:
         data = np.asarray(values, np.float64)

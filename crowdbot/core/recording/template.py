@@ -147,7 +147,7 @@ def point_cloud(info: SensorInfo) -> Template:
     return Template(ros.point_cloud(ANY_TIME, info, points), ANY_STAMP, points.tobytes())
 
 
-def imu(frame: str, deviations: Sequence[float] = (0.0, 0.0)) -> Template:
+def imu(frame: str, deviations: Sequence[float]) -> Template:
     """Return an IMU message. Places: stamp; angular rate; specific force; three float64 each."""
     values = np.array([_A, _B, _C, _C, _D, _E])
     marks = values[:3].tobytes(), values[3:].tobytes()

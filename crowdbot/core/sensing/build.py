@@ -164,13 +164,21 @@ def _check(info: object) -> None:
         refuse("angles are not finite")
     if math.isnan(info.range_min) or not info.range_min < info.range_max:
         refuse(f"range is from {info.range_min} to {info.range_max} m")
-    if not all(isinstance(d, int | float) and 0.0 <= d < math.inf for d in info.deviations):
-        refuse(f"deviations are {info.deviations!r}; numbers from 0 on are wanted")
+    _check_noise(info, refuse)
     _check_camera(info, refuse)
     if info.message is not None and not (
         isinstance(info.message, SensorMessage) and callable(info.message.fields)
     ):
         refuse(f"message is a {type(info.message).__name__}; a SensorMessage is wanted")
+
+
+def _check_noise(info: SensorInfo, refuse: Callable[[str], None]) -> None:
+    for name in ("deviations", "scatter"):
+        found = getattr(info, name)
+        if not all(isinstance(d, int | float) and 0.0 <= d < math.inf for d in found):
+            refuse(f"{name} are {found!r}; numbers from 0 on are wanted")
+    if info.scatter and info.shape != (len(info.scatter),):
+        refuse(f"scatter has {len(info.scatter)} numbers, and a reading the shape {info.shape}")
 
 
 def _check_shape(info: SensorInfo, refuse: Callable[[str], None]) -> None:

@@ -40,7 +40,7 @@ class ErringSensor:
                     f"which has {width}: 0 to {width - 1}"
                 )
         random = info.random or any(not isinstance(e, OffsetError) for e in self._errors)
-        self._info = replace(info, random=random)
+        self._info = replace(info, random=random, scatter=_scatter(info, self._errors))
         self._two_valued = info.category == "bumper"
 
     def info(self) -> SensorInfo:
@@ -54,6 +54,25 @@ class ErringSensor:
         for error in self._errors:
             _add(values, error, rng)
         return np.where(values > 0.5, 1.0, 0.0) if self._two_valued else values
+
+
+def _scatter(info: SensorInfo, errors: Sequence[ReadingError]) -> tuple[float, ...]:
+    """Return the standard deviation of each number of a reading, which is one row of numbers."""
+    if len(info.shape) != 1:
+        return info.scatter
+    squares = np.square(info.scatter or np.zeros(info.shape))
+    for error in errors:
+        squares[slice(None) if error.entries is None else list(error.entries)] += _variance(error)
+    return tuple(np.sqrt(squares).tolist())
+
+
+def _variance(error: ReadingError) -> float:
+    if isinstance(error, GaussianError):
+        return error.std**2
+    if isinstance(error, PeakError):
+        mean = error.probability * error.mean
+        return error.probability * (error.mean**2 + error.std**2) - mean**2
+    return 0.0
 
 
 def _add(values: Array, error: ReadingError, rng: np.random.Generator) -> None:

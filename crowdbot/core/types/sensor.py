@@ -73,7 +73,10 @@ class SensorInfo:
         deviations: standard deviations of what it measures, for the covariances of its messages;
             none where they are not known. Of an IMU: of angular rates (rad/s) and of specific
             force (m/s^2). Of odometry: of the distance between two readings as a part of it, of
-            the turn on each metre (rad/m), of the turn in a second (rad/sqrt(s)).
+            the turn on each metre (rad/m), of the turn in a second (rad/sqrt(s)); and perhaps of
+            the speeds of each reading: ahead, to the left (m/s), turning (rad/s).
+        scatter: standard deviation of each number of a reading in itself, by errors that do not
+            add up from reading to reading, such as those of ``errors:``; none: no such errors.
         privileged: True if readings contain what no real sensor could measure; only planners
             that say that they are privileged may read them.
         message: of a sensor whose ``ros_type`` crowdbot has no encoder for; without it its
@@ -95,6 +98,7 @@ class SensorInfo:
     feels: bool = False
     camera: Pinhole | None = None
     deviations: tuple[float, ...] = ()
+    scatter: tuple[float, ...] = ()
     privileged: bool = False
     tilt: tuple[float, float] = (0.0, 0.0)
     message: SensorMessage | None = None

@@ -6,8 +6,8 @@ exact on straight lines and second-order on arcs. A holonomic robot has a third 
 s_s to the left of that heading. With ``heading: gyro`` the turn is measured by a gyro, whose noise
 density n adds n sqrt(dt) (Woodman 2007, section 3.2.1).
 
-``noise`` scales a wheel's apparent rotation by a new random draw between readings; the encoders
-count the apparent rotation.
+``noise`` adds a new random draw to the rate of a wheel's apparent rotation between readings; the
+encoders count the apparent rotation.
 """
 
 from __future__ import annotations
@@ -52,9 +52,12 @@ class WheelOdometry:
             memory=_SIZE,
             random=spec.noise > 0.0 or (self._gyro and spec.gyro_noise > 0.0),
             deviations=(
-                spec.noise / math.sqrt(2.0),
-                0.0 if self._gyro else spec.noise * math.sqrt(2.0) / track,
+                0.0,
+                0.0,
                 spec.gyro_noise if self._gyro else 0.0,
+                spec.noise * radius / math.sqrt(2.0),
+                spec.noise * radius if self._sideways else 0.0,
+                0.0 if self._gyro else spec.noise * radius * math.sqrt(2.0) / track,
             ),
             sees=False,
         )

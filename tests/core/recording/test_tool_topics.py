@@ -1,4 +1,4 @@
-"""What a recording has for viewers and ROS: path, arrows, contacts, frames, names, covariances."""
+"""What a recording has for viewers and ROS: path, arrows, contacts, frames, names."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rosbags.highlevel import AnyReader
 
-from crowdbot.core.recording.covariance import LEAST, OdometryCovariance
 from crowdbot.core.recording.viewers import PeopleArrows, RobotPath
-from crowdbot.testing.sensor_scenes import context
 from tests.core.recording.recording_cases import URDF, random_run, write_run
 
 RUN = random_run()
@@ -107,78 +105,3 @@ def test_a_path_grows_by_two_poses_a_second() -> None:
         0.5 * k for k in range(9)
     ]
     assert poses[-1].pose.position.x == pytest.approx(3.2, abs=5e-4)
-
-
-# ------------------------------------------------------------------------- covariances
-def _grown(steps: int, dx: float, turn: float, deviations: tuple[float, float, float]) -> Any:
-    covariance, x, y, yaw = OdometryCovariance(deviations), 0.0, 0.0, 0.0
-    for k in range(steps + 1):
-        pose, twist = covariance(k * 10**8, (x, y, yaw, dx / 0.1, turn / 0.1))
-        yaw += turn
-        x, y = x + dx * math.cos(yaw), y + dx * math.sin(yaw)
-    return np.frombuffer(pose).reshape(6, 6), np.frombuffer(twist).reshape(6, 6)
-
-
-@given(
-    st.integers(0, 200), st.floats(-0.2, 0.2), st.floats(-0.5, 0.5),
-    st.tuples(st.floats(0, 0.1), st.floats(0, 0.1), st.floats(0, 0.01)),
-)  # fmt: skip
-def test_a_covariance_is_symmetric_and_positive(
-    steps: int, dx: float, turn: float, deviations: tuple[float, float, float]
-) -> None:
-    for matrix in _grown(steps, dx, turn, deviations):
-        assert np.array_equal(matrix, matrix.T)
-        scale = max(float(np.abs(matrix).max()), LEAST)
-        assert np.linalg.eigvalsh(matrix).min() > -2e-3 * scale
-        assert matrix.diagonal().min() >= LEAST
-
-
-def test_straight_ahead_it_is_as_computed_by_hand() -> None:
-    """100 steps of 0.1 m: sqrt(100) * 0.02 * 0.1 m along; the turn's drift 0.01 sqrt(10)."""
-    pose, twist = _grown(100, 0.1, 0.0, (0.02, 0.0, 0.01))
-    assert pose[0, 0] - LEAST == pytest.approx(100 * (0.02 * 0.1) ** 2, rel=1e-3)
-    assert pose[5, 5] - LEAST == pytest.approx(0.01**2 * 10.0, rel=1e-3)
-    # y drifts as the integral of a random walk: q * sum of (0.1 k)^2 * dt
-    expected = 0.01**2 * 0.1 * sum((0.1 * k) ** 2 for k in range(100))
-    assert pose[1, 1] - LEAST == pytest.approx(expected, rel=2e-3)
-    assert twist[0, 0] - LEAST == pytest.approx((0.02 * 1.0) ** 2, rel=1e-3)
-    assert twist[5, 5] - LEAST == pytest.approx(0.01**2 / 0.1, rel=1e-3)
-
-
-def test_it_agrees_with_many_noisy_drives() -> None:
-    """A turn to the left at 1 m/s: sample covariance of 4000 drives within 10 %."""
-    deviations, steps, dx, turn, dt = (0.05, 0.02, 0.03), 60, 0.1, 0.04, 0.1
-    pose, _ = _grown(steps, dx, turn, deviations)
-    rng = np.random.default_rng(0)
-    x = y = yaw = np.zeros(4000)
-    for _ in range(steps):
-        gone = dx * (1.0 + deviations[0] * rng.standard_normal(4000))
-        drift = math.hypot(deviations[1] * dx, deviations[2] * math.sqrt(dt))
-        yaw = yaw + turn
-        x, y = x + gone * np.cos(yaw), y + gone * np.sin(yaw)
-        yaw = yaw + drift * rng.standard_normal(4000)
-    sample = np.cov(np.stack([x, y, yaw]))
-    mine = pose[np.ix_([0, 1, 5], [0, 1, 5])]
-    assert np.abs(mine - sample).max() < 0.1 * np.abs(sample).max()
-
-
-def test_the_same_reading_again_changes_nothing() -> None:
-    covariance = OdometryCovariance((0.05, 0.0, 0.01))
-    covariance(0, (0.0, 0.0, 0.0, 1.0, 0.0))
-    first = covariance(10**8, (0.1, 0.0, 0.0, 1.0, 0.0))
-    assert covariance(10**8, (0.1, 0.0, 0.0, 1.0, 0.0)) == first
-
-
-def test_what_is_not_known_is_zero(found: dict[str, list[Any]]) -> None:
-    assert not any(m.pose.covariance.any() or m.twist.covariance.any() for m in found["/odom"])
-
-
-def test_odometry_and_imu_know_their_noise() -> None:
-    from crowdbot.plugins.sensors.imu import ImuSpec
-    from crowdbot.plugins.sensors.imu_build import Imu
-    from crowdbot.plugins.sensors.wheel_odometry import WheelOdometrySpec
-    from crowdbot.plugins.sensors.wheel_odometry_build import WheelOdometry
-
-    imu = Imu(ImuSpec(rate=64.0)).info()
-    assert imu.deviations == pytest.approx((5.2e-4 * 8.0, 3.9e-3 * 8.0))
-    assert len(WheelOdometry(WheelOdometrySpec(), context()).info().deviations) == 3
