@@ -108,6 +108,8 @@ class Filmed:
             yield "ramp", f"people, 0–{FASTEST:g} m/s"
         if any(run.goal_zone is not None for run in self.tracks):
             yield "goal", "goal"
+        if any(self.drawings):
+            yield "thought", "drawn by the planner"
 
     def _drawing(self, t: float, world: Map) -> Drawing:
         x, y, width, _ = world.box

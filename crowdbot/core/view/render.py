@@ -173,7 +173,7 @@ def _swatch(role: str, x: float, y: float) -> Iterator[Shape]:
         yield Path(points=((x, middle), (end, middle)), role=role, inside=False)
         wings = ((end - 5.0, middle - 3.0), (end, middle), (end - 5.0, middle + 3.0))
         yield Path(points=wings, role=role, inside=False)
-    elif role.startswith("wall") or role in ("group", "route", "torus", "mesh"):
+    elif role.startswith("wall") or role in ("group", "route", "thought", "torus", "mesh"):
         yield Path(points=((x, middle), (end, middle)), role=role, inside=False)
     else:
         yield Path(points=_box(x, low, end, high), role=role, closed=True, inside=False)

@@ -48,6 +48,14 @@ def test_a_legend_and_a_scale_are_below() -> None:
         assert (np.abs(found.astype(int) - wanted).max(axis=1) < 12).sum() > 20
 
 
+def test_the_legend_names_what_the_planner_drew() -> None:
+    drawn = PlacedDrawing(9.0, "path", np.array([[0.0, 2.0], [0.0, 0.5]]), None)  # not shown now
+    for drawings, named in (((), False), (((drawn,),), True)):
+        (image,) = filmed(drawings=drawings).images([0.0])
+        below = image.crop((0, image.height - LEGEND, *image.size))
+        assert (len(near(below, LIGHT["thought"])) > 5) == named
+
+
 def test_the_robot_moves_to_the_right() -> None:
     first, last = filmed().images([0.0, 3.0])
     assert first.size == last.size
@@ -77,7 +85,7 @@ def test_what_the_planner_draws_is_filmed_for_half_a_second() -> None:
         drawn("why", (1.0, 0.5), texts=("waits",)),
         tracks,
     ):
-        before, during, late = filmed(drawings=[[one]]).images([0.9, 1.4, 1.6])
+        before, during, late = filmed(drawings=[[one]], legend=False).images([0.9, 1.4, 1.6])
         assert not len(near(before, LIGHT["thought"]))
         assert len(near(during, LIGHT["thought"])) > 10, one.name
         assert not len(near(late, LIGHT["thought"]))
