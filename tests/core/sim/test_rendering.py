@@ -251,9 +251,35 @@ def test_light_changes_how_bright_the_picture_is_and_nothing_else() -> None:
         Renderer(scene, info.camera, info.mount, info.tilt, (), light)(scene, POSE).astype(float)
         for light in lights
     ]
-    assert np.abs(pictures[0] - pictures[1]).mean() < 2.0  # the usual light, written out
+    assert pictures[1].mean() == pytest.approx(pictures[0].mean(), rel=0.15)
     assert pictures[2].mean() < 0.4 * pictures[0].mean()
     assert np.allclose(pictures[2][0, 0], [16, 16, 24], atol=3)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.8, math.pi / 2, math.pi, -math.pi / 2])
+def test_light_from_all_sides_reaches_every_wall_wherever_the_camera_looks(yaw: float) -> None:
+    """Half of it makes walls and floor half as bright, and none of them black."""
+    x, y, c, s = POSE.x, POSE.y, math.cos(yaw), math.sin(yaw)
+    left, right = (
+        [x - side * s, y + side * c, x - side * s + 9 * c, y + side * c + 9 * s]
+        for side in (1.5, -1.5)
+    )
+    scene = Scene([left, right], [0.0, 2.5], [], [])
+    info = build(SPEC, context()).info()
+    camera, pose = info.camera, Pose(x, y, yaw)
+    assert camera is not None
+
+    def brightness(ambient: float) -> NDArray[np.float64]:
+        light = SceneLight(sun=0.0, ambient=ambient, sky="#ffffff")
+        ahead = (0.0, 0.0, 1.0, 0.0)
+        image = Renderer(scene, camera, ahead, (0.0, 0.0), (), light)(scene, pose)
+        return np.asarray(image.max(axis=2), np.float64)
+
+    whole, half = brightness(1.0), brightness(0.5)
+    solid = whole < 200.0  # without the sky and its edges
+    assert solid.mean() > 0.3
+    assert np.quantile(half[solid], 0.01) > 10.0
+    assert np.quantile(np.abs(half - 0.5 * whole)[solid], 0.99) < 5.0
 
 
 def test_figures_take_the_place_of_the_nearest_people(tmp_path: Path) -> None:

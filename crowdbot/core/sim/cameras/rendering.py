@@ -262,7 +262,7 @@ def _parameters(light: SceneLight | None = None) -> RenderEngineVtkParams:
 
 
 def _lit(light: SceneLight) -> RenderEngineVtkParams:
-    """Return the same lights, with strengths, colour and direction of a scene's light."""
+    """Return lights of a scene's strengths and colours, with its sun, and the sky on all sides."""
     sun = LightParameter(
         type="directional", frame="world", direction=[-x for x in light.towards_sun],
         intensity=0.8 * light.sun, color=Rgba(*_rgb(light.colour), 1.0),
@@ -270,12 +270,16 @@ def _lit(light: SceneLight) -> RenderEngineVtkParams:
     lamp = LightParameter(
         type="directional", frame="camera", direction=[0.0, 0.3, 1.0], intensity=0.5 * light.ambient
     )
-    sky = LightParameter(
-        type="directional", frame="world", direction=[-0.5, -0.7, -0.3],
-        intensity=0.35 * light.ambient,
-    )  # fmt: skip
+    sides = [(0.5, 0.7), (-0.5, -0.7), (0.7, -0.5), (-0.7, 0.5)]
+    sky = [
+        LightParameter(
+            type="directional", frame="world", direction=[x, y, -0.1],
+            intensity=0.3 * light.ambient,
+        )
+        for x, y in sides
+    ]  # fmt: skip
     return RenderEngineVtkParams(
-        lights=[sun, lamp, sky], default_clear_color=np.array(_rgb(light.sky)), backend="EGL"
+        lights=[sun, lamp, *sky], default_clear_color=np.array(_rgb(light.sky)), backend="EGL"
     )
 
 
