@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core.bundle.judge_log import LOG, RECEIVED, LogLine, append, read_log
+from crowdbot.core.bundle.manifest import Manifest
 from crowdbot.core.bundle.pack import Submission, pack
 from crowdbot.core.bundle.signature import own_public_key
 from crowdbot.core.bundle.submission import SUFFIX, Sealed, read_submission, unpack_submission
@@ -171,38 +172,14 @@ def _judge_one(
     found: Judgement,
 ) -> None:
     """Make the runs of one submission, pack them and log it, or log why not."""
-    name, short = sealed.path.name, sealed.sha256[:_SHORT]
-
-    def leave_out(event: str, reason: str) -> None:
-        append(path, lines, event, submission=sealed.sha256, reason=reason[:_REASON])
-        found.left_out[name] = reason
-
-    folder = setup.out / "planners" / short
+    name = sealed.path.name
+    bundle = setup.out / f"{sealed.sha256[:_SHORT]}.cbz"
     try:
-        request, label = _prepared(setup, sealed, folder)
-        state = _made(setup, request)
-    except (InputError, PluginError) as error:
-        leave_out(_REFUSED, str(error))
-        return
-    except SimulationError as error:  # not the submission's: others are judged, and it is later
-        leave_out(_INCOMPLETE, f"{error}; the same command goes on")
-        return
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-    if state.failures:
-        reason = f"{len(state.failures)} runs could not be made; the same command goes on"
-        leave_out(_INCOMPLETE, reason)
-        return
-    bundle = setup.out / f"{short}.cbz"
-    about = sealed.about
-    wanted = Submission(
-        root=state.plan.out, planner=label, team=about.team, contact=about.contact, failing=True,
-        recordings=setup.options.record != "none",
-    )  # fmt: skip
-    try:
-        manifest = pack(wanted, *suite, setup.registry, bundle)
-    except (InputError, UnknownNameError) as error:  # the next submission is judged all the same
-        leave_out(_INCOMPLETE, f"its runs cannot be packed: {error}; the same command goes on")
+        state, label = _run_all(setup, sealed)
+        manifest = _packed(setup, suite, sealed, state, label, bundle)
+    except _LeftOutError as error:
+        append(path, lines, error.event, submission=sealed.sha256, reason=str(error)[:_REASON])
+        found.left_out[name] = str(error)
         return
     record = _record(bundle, sealed, [f"{r.scenario} seed-{r.seed}" for r in manifest.runs])
     save_verification(bundle, record)
@@ -211,6 +188,59 @@ def _judge_one(
         runs=len(manifest.runs), statuses=dict(Counter(state.statuses.values())),
     )  # fmt: skip
     found.judged[name] = bundle
+
+
+class _LeftOutError(Exception):
+    """A submission is not judged, now or ever; ``event`` is what the log says."""
+
+    def __init__(self, event: str, reason: str) -> None:
+        super().__init__(reason if event == _REFUSED else f"{reason}; the same command goes on")
+        self.event = event
+
+
+def _run_all(setup: Judge, sealed: Sealed) -> tuple[State, str]:
+    """Make all runs of a submission; return their states, and the planner's label.
+
+    Raises:
+        _LeftOutError: it is refused, or runs are missing.
+    """
+    folder = setup.out / "planners" / sealed.sha256[:_SHORT]
+    try:
+        request, label = _prepared(setup, sealed, folder)
+        state = _made(setup, request)
+    except (InputError, PluginError) as error:
+        raise _LeftOutError(_REFUSED, str(error)) from error
+    except SimulationError as error:  # not the submission's: others are judged, and it is later
+        raise _LeftOutError(_INCOMPLETE, str(error)) from error
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    if state.failures:
+        raise _LeftOutError(_INCOMPLETE, f"{len(state.failures)} runs could not be made")
+    return state, label
+
+
+def _packed(
+    setup: Judge,
+    suite: tuple[Expansion, LockFiles],
+    sealed: Sealed,
+    state: State,
+    label: str,
+    bundle: Path,
+) -> Manifest:
+    """Pack the runs of a submission.
+
+    Raises:
+        _LeftOutError: they cannot be packed; the next submission is judged all the same.
+    """
+    about = sealed.about
+    wanted = Submission(
+        root=state.plan.out, planner=label, team=about.team, contact=about.contact, failing=True,
+        recordings=setup.options.record != "none",
+    )  # fmt: skip
+    try:
+        return pack(wanted, *suite, setup.registry, bundle)
+    except (InputError, UnknownNameError) as error:
+        raise _LeftOutError(_INCOMPLETE, f"its runs cannot be packed: {error}") from error
 
 
 def _prepared(setup: Judge, sealed: Sealed, folder: Path) -> tuple[CampaignRequest, str]:

@@ -71,12 +71,12 @@ def _table(record: RecordType[Any], count: int, **columns: NDArray[Any]) -> Rows
 
 
 def _places(count: int, columns: Array) -> Rows[PlaceRecord]:
-    """Places (K,) of columns x, y, width, height, turn and, for a route, pause."""
+    """Make K records of places from their columns x, y, width, height, turn, perhaps pause."""
     return _table(PLACE, count, **dict(zip(PLACE.names, columns.T, strict=False)))
 
 
 def _may_stay(agents: Agents) -> Mask:
-    """(N,) True for people who are in a queue or pause somewhere."""
+    """Return (N,) True for people who queue, or pause on their route."""
     pauses = np.concatenate([[0.0], np.cumsum(agents.pause)])
     found: Mask = (agents.ahead >= 0) | (np.diff(pauses[agents.first]) > 0.0)
     return found

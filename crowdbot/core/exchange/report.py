@@ -60,7 +60,7 @@ class Report:
         self.entries.append(Trace(Fate.CARRIED, item.path, item.mark, ours))
 
     def interpreted(self, item: Item, ours: str, note: str) -> None:
-        """Record a part that means something like a field of ours."""
+        """Record a part that means nearly the same as a field of crowdbot."""
         item.used = True
         self.entries.append(Trace(Fate.INTERPRETED, item.path, item.mark, ours, note))
 

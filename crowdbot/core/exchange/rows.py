@@ -20,7 +20,7 @@ class Fate(StrEnum):
 
 
 def number(item: Item) -> float:
-    """Return a number of any sign."""
+    """Return a cell as a number, which may be negative."""
     return item.number()
 
 

@@ -21,7 +21,7 @@ _NOT_IN_IDS = re.compile(r"[^A-Za-z0-9_.-]+")
 
 @dataclass(slots=True)
 class Draft:
-    """A scenario of ours that is read from foreign files.
+    """A scenario that is read from files of another simulator.
 
     Attributes:
         id: its name, as far as files have one.

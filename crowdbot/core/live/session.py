@@ -153,7 +153,7 @@ class LiveSession:
             return self.take_request()
 
     def take_request(self) -> Request:
-        """Return the pending request once."""
+        """Return the pending request and forget it; empty if there is none."""
         with self._changed:
             wanted, self._request = self._request, ""
             return wanted

@@ -14,8 +14,8 @@ from crowdbot.core.planning.choice import PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.containment.declared import needs_of_program
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.process import foreign_main
-from crowdbot.core.planning.process.process_planner import NotLoaded, ProcessPlan, describe
-from crowdbot.core.planning.unchanged_files import UnchangedFiles
+from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.planning.unchanged_files import while_unchanged
 from crowdbot.core.support.source_digest import (
     data_files,
     digest_of_files,
@@ -57,18 +57,7 @@ def external_choice(
         raise InputError(f"{path}: another program cannot run in the simulator's process")
     program = _Program(path, document)
     parameters = {**program.parameters, **settings}
-    plan = ProcessPlan(
-        who=planner_title(program.name, str(path)),
-        command=program.command,
-        folder=str(path.resolve().parent),
-        parameters=parameters,
-        memory=place.memory,
-        contained=place.contained,
-        sealed=place.sealed,
-        needs=program.needs,
-        beside=path.resolve().parent,
-    )
-    said, build = describe(plan, lenient=place.lenient)
+    said, build = describe(program.process(parameters, place), lenient=place.lenient)
     dump: dict[str, Any] = {
         "kind": f"{path.name}:{program.name}",
         "sha256": program.sha256,
@@ -77,14 +66,12 @@ def external_choice(
         **({"parameters": parameters} if parameters else {}),
         **({"network": True} if program.needs.network else {}),
     }
-    if not isinstance(build, NotLoaded):
-        build = UnchangedFiles(
-            build, lambda: _Program(path, document).sha256, program.sha256, str(path)
-        )
     return PlannerChoice(
         name=program.name,
         spec_dump=dump,
-        build=build,
+        build=while_unchanged(
+            build, lambda: _Program(path, document).sha256, program.sha256, str(path)
+        ),
         pinned=False,
         origin=str(path),
         needs=said.needs,
@@ -139,6 +126,20 @@ class _Program:
             sources |= {here / name for name in _FOREIGN_SIDE}
         self.needs = needs_of_program(
             Path(self.command[0]), sources, self._libraries(), network=self._network()
+        )
+
+    def process(self, parameters: Mapping[str, Any], place: PlannerPlace) -> ProcessPlan:
+        """Return the process in which it runs."""
+        return ProcessPlan(
+            who=planner_title(self.name, str(self._path)),
+            command=self.command,
+            folder=str(self._folder),
+            parameters=parameters,
+            memory=place.memory,
+            contained=place.contained,
+            sealed=place.sealed,
+            needs=self.needs,
+            beside=self._folder,
         )
 
     def _mapping(self) -> dict[str, Any]:

@@ -10,7 +10,9 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from crowdbot.core.planning.choice import ANYWHERE, PlannerChoice, PlannerPlace, label_of
-from crowdbot.core.planning.containment.declared import needs_of_class, needs_of_kind
+from crowdbot.core.planning.class_choice import class_choice
+from crowdbot.core.planning.containment.declared import needs_of_kind
+from crowdbot.core.planning.containment.offer import Needs
 from crowdbot.core.planning.description import described, role_of, sensors_of
 from crowdbot.core.planning.external import external_choice, is_external
 from crowdbot.core.planning.files_of_spec import (
@@ -23,15 +25,8 @@ from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.half_choice import choice_with_half
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.policies.policy_name import is_policy
-from crowdbot.core.planning.process.process_planner import NotLoaded, ProcessPlan, describe
-from crowdbot.core.planning.python_file import (
-    build_of_class,
-    call_of_class,
-    check_parameters,
-    guess_class,
-    planner_class,
-    preloads,
-)
+from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.planning.python_file import guess_class
 from crowdbot.core.planning.registered import (
     build_of_kind,
     find_kind,
@@ -41,12 +36,9 @@ from crowdbot.core.planning.registered import (
     uses_half,
 )
 from crowdbot.core.planning.selected_sensors import select_sensors
-from crowdbot.core.planning.unchanged_files import UnchangedFiles
 from crowdbot.core.registry.build_reference import load_build
-from crowdbot.core.registry.plugin import BUILTIN
+from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.support.source_digest import check_source, source_digest
-from crowdbot.core.support.text_files import suggest_files
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import PlannerRole, PlannerSpec
 from crowdbot.dsl.suite.settings import setting_texts
@@ -91,7 +83,7 @@ def resolve_planner(
         return policy_choice(text, given, registry)
     path, colon, name = text.rpartition(":")
     if colon and path.endswith(".py"):
-        return _from_class(Path(path), name, given, place)
+        return class_choice(Path(path), name, given, place)
     if text.endswith(".py"):
         raise InputError(f"{text}: which class? Write {text}:{guess_class(Path(text))}")
     if colon and Path(f"{path}.py").is_file():
@@ -161,15 +153,7 @@ def _from_kind(
     spec = with_files(spec, origin.folders, place.kept)
     files = files_of_spec(spec)
     owner = registry.owner(component)
-    as_given = _is_default(component, spec)
-    in_process = place.in_process
-    if in_process is None:  # ours are known; separate processes do not know a manual registry
-        in_process = owner.name == BUILTIN or registry.source is None
-    if not in_process and registry.source is None:
-        raise InputError(
-            f"planner '{kind}' cannot run in a process of its own: its plugin is known to this "
-            "process only"
-        )
+    in_process = _runs_here(kind, owner, registry, place)
     if uses_half(spec) and owner.name == BUILTIN:
         return choice_with_half(
             spec, component, registry, _half(spec, registry, origin, place), _is_default
@@ -177,28 +161,16 @@ def _from_kind(
     if uses_half(spec):
         half_spec(spec, registry, origin.where)  # it is built in the same process
     description = described(component.spec, registry.plugin_call(spec))
-    dump = spec.model_dump(mode="json")
-    build: Callable[[], Planner]
-    if in_process or registry.source is None:
+    if in_process:
         # Import it now, so that an import error is reported before a run begins.
         load_build(component, registry.plugin_call(spec))
-        build = partial(build_of_kind, spec, registry)
+        build: Callable[[], Planner] = partial(build_of_kind, spec, registry)
     else:
-        plan = ProcessPlan(
-            who=planner_title(kind, owner.distribution),
-            what={
-                "name": kind,
-                "origin": owner.distribution,
-                "kind": kind,
-                "parameters": {**parameters, **with_absolute_files(spec)},
-                "plugins": registry.source,
-            },
-            memory=place.memory,
-            contained=place.contained,
-            sealed=place.sealed,
-            needs=needs_of_kind(component, registry, files.values()),
+        needs = needs_of_kind(component, registry, files.values())
+        _, build = describe(
+            _process_of_kind(spec, parameters, registry, needs, place), lenient=place.lenient
         )
-        _, build = describe(plan, lenient=place.lenient)
+    dump, as_given = spec.model_dump(mode="json"), _is_default(component, spec)
     return PlannerChoice(
         name=kind,
         spec_dump=dump,
@@ -212,6 +184,48 @@ def _from_kind(
         in_process=in_process,
         memory=place.own_memory(in_process),
         files=files,
+    )
+
+
+def _runs_here(kind: str, owner: Plugin, registry: Registry, place: PlannerPlace) -> bool:
+    """Return True if a planner runs in this process.
+
+    Raises:
+        InputError: it should run in another one, which does not know its plugin.
+    """
+    known_elsewhere = registry.source is not None
+    if place.in_process is None:
+        return owner.name == BUILTIN or not known_elsewhere
+    if not place.in_process and not known_elsewhere:
+        raise InputError(
+            f"planner '{kind}' cannot run in a process of its own: its plugin is known to this "
+            "process only"
+        )
+    return place.in_process
+
+
+def _process_of_kind(
+    spec: PlannerSpec,
+    parameters: Mapping[str, Any],
+    registry: Registry,
+    needs: Needs,
+    place: PlannerPlace,
+) -> ProcessPlan:
+    """Return the process in which a planner of a plugin runs."""
+    owner = registry.owner(registry.find("planner", spec.kind))
+    return ProcessPlan(
+        who=planner_title(spec.kind, owner.distribution),
+        what={
+            "name": spec.kind,
+            "origin": owner.distribution,
+            "kind": spec.kind,
+            "parameters": {**parameters, **with_absolute_files(spec)},
+            "plugins": registry.source,
+        },
+        memory=place.memory,
+        contained=place.contained,
+        sealed=place.sealed,
+        needs=needs,
     )
 
 
@@ -269,59 +283,3 @@ def _read(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise InputError(f"{path}: a planner is a mapping with 'kind' and parameters")
     return document
-
-
-# --------------------------------------------------------------------- Python files
-def _from_class(
-    path: Path, name: str, parameters: Mapping[str, Any], place: PlannerPlace
-) -> PlannerChoice:
-    if not path.is_file():
-        raise InputError(f"{path}: no such file{suggest_files(path)}")
-    check_source(path)
-    in_process = place.in_process is True
-    build: Callable[[], Planner]
-    if in_process:
-        kind = planner_class(path, name)
-        check_parameters(kind, parameters, f"{path}:{name}")
-        description = described(kind, call_of_class(path, name))
-        build = partial(build_of_class, kind, parameters, path, name)
-    else:
-        plan = ProcessPlan(
-            who=planner_title(name, str(path)),
-            what={
-                "name": name,
-                "origin": str(path),
-                "file": str(path),
-                "class": name,
-                "parameters": dict(parameters),
-            },
-            preload=preloads(path),
-            memory=place.memory,
-            contained=place.contained,
-            sealed=place.sealed,
-            needs=needs_of_class(path, name),
-            beside=path.parent,
-        )
-        description, build = describe(plan, lenient=place.lenient)
-    digest = partial(source_digest, path, description.data)
-    sha256 = digest()
-    if not isinstance(build, NotLoaded):
-        build = UnchangedFiles(build, digest, sha256, str(path))
-    dump = {
-        "kind": f"{path.name}:{name}",
-        "sha256": sha256,
-        **({"parameters": dict(parameters)} if parameters else {}),
-    }
-    return PlannerChoice(
-        name=name,
-        spec_dump=dump,
-        build=build,
-        pinned=False,
-        origin=str(path),
-        needs=description.needs,
-        label=label_of(name, parameters, description.privileged),
-        privileged=description.privileged,
-        role="candidate" if parameters else description.role,
-        in_process=in_process,
-        memory=place.own_memory(in_process),
-    )

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from crowdbot.core.planning.planner import Planner
+from crowdbot.core.planning.process.process_planner import NotLoaded
 from crowdbot.errors import InputError
 
 
@@ -35,3 +36,10 @@ class UnchangedFiles:
                 f"{self.origin}: the planner's files changed since it was chosen; start again"
             )
         return self.build()
+
+
+def while_unchanged(
+    build: Callable[[], Planner], digest: Callable[[], str], sha256: str, origin: str
+) -> Callable[[], Planner]:
+    """Return the builder of a planner as long as its files stay; one that fails stays as it is."""
+    return build if isinstance(build, NotLoaded) else UnchangedFiles(build, digest, sha256, origin)

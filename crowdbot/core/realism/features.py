@@ -70,17 +70,9 @@ def _features(
     here = np.empty(position.shape[1], np.int64)
     inside = np.empty(position.shape[1], np.int64)
     for k in range(first, last):
-        present = 0
-        for i in range(position.shape[1]):
-            if not math.isnan(position[k, i, 0]):
-                here[present] = i
-                present += 1
+        present = _present(position[k], here)
         for w in range(windows.shape[0]):
-            count = 0
-            for a in range(present):
-                if windows[w, 0] <= position[k, here[a], 0] < windows[w, 1]:
-                    inside[count] = here[a]
-                    count += 1
+            count = _inside(position[k], here, present, windows[w], inside)
             density = count / ((windows[w, 1] - windows[w, 0]) * width)
             cell = np.searchsorted(edges, density, side="right") - 1
             cell = cell if cell < len(edges) - 1 else -1
@@ -110,6 +102,28 @@ def _features(
                 spaces[frames, LANES] = lanes / judged if judged > 0 else math.nan
                 frames += 1
     return rows, frames
+
+
+@kernel
+def _present(position: Array, here: Indices) -> int:
+    """Write who is there, of (N, 2) positions of which some are NaN; return how many."""
+    count = 0
+    for i in range(position.shape[0]):
+        if not math.isnan(position[i, 0]):
+            here[count] = i
+            count += 1
+    return count
+
+
+@kernel
+def _inside(position: Array, here: Indices, present: int, window: Array, inside: Indices) -> int:
+    """Write who of ``here`` is in a window along x, begin and end in m; return how many."""
+    count = 0
+    for a in range(present):
+        if window[0] <= position[here[a], 0] < window[1]:
+            inside[count] = here[a]
+            count += 1
+    return count
 
 
 @kernel

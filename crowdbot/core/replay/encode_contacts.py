@@ -1,4 +1,4 @@
-"""Contacts for the page."""
+"""Encode contacts for the replay page."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def solid_people(scenario: Scenario, people: Realisation) -> SolidPeople | None:
 
 
 def _figures(assets: Mapping[str, Asset]) -> list[Figure]:
-    """Return the figures; none, with a warning, where a file is not there any more."""
+    """Return the figures; none, with a warning, where a file is missing."""
     try:
         return [load_figure(asset.file) for asset in assets.values()]
     except InputError as error:

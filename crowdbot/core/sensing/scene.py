@@ -111,7 +111,7 @@ class Scene:
         self.wall_heights, self.pillar_heights = immutable(plates), immutable(discs)
 
     def show_robots(self, poses: Sequence[Pose | None]) -> None:
-        """Move the other robots to their poses; None: has left."""
+        """Move the other robots to their poses; a robot whose pose is None has left."""
         self.others.place(poses)
         self._plates[self.fixed_walls :] = self.others.plates
         self._rounds[self.fixed_pillars :] = self.others.discs

@@ -137,12 +137,12 @@ class PlannerSystem(LeafSystem):
         crowd_size: int = 0,
         others: OtherRobots,
     ) -> None:
-        """Take a planner.
+        """Connect a planner with its sensors and its robot.
 
         Args:
-            people: who they are, for a planner that may know; None hides the truth.
-            guided: what tells it where its person is, if its task is about one.
-            crowd_size: length of their state.
+            people: true data of the people, for a privileged planner; None for all others.
+            guided: tells the planner where the person of its task is, if there is one.
+            crowd_size: length of the state vector of all people.
             others: the other robots, and the ending of this one.
         """
         super().__init__()
@@ -217,7 +217,7 @@ class PlannerSystem(LeafSystem):
         return self._seen(context, t)
 
     def _seen(self, context: Context, t: float) -> Observation:
-        """Return what the planner gets; of a task about a person also where the person is."""
+        """Return the planner's observation; in a task about a person with the person's pose."""
         bank = self._port.Eval(context)
         obs = self._observe(bank, t, self._truth(context))
         if self._guided is None or self._robot is None or self._crowd is None:

@@ -31,14 +31,14 @@ class RobotEnding:
 
     @property
     def ended(self) -> bool:
-        """True if it has arrived, toppled, failed, or run out of time."""
+        """True if the robot has arrived, toppled, failed, or run out of time."""
         return bool(self.status)
 
     @property
     def gone(self) -> bool:
-        """True if it is not there any more."""
+        """True if the robot has left the world."""
         return self.leaves and self.ended
 
     def end(self, status: str, reason: str, t: float) -> None:
-        """It ends at ``t``, s."""
+        """End the robot's run at ``t``, s."""
         self.status, self.reason, self.until = status, reason, t

@@ -41,7 +41,7 @@ class Rows(Protocol[T]):
 
     @property
     def shape(self) -> tuple[int]:
-        """Return how many there are."""
+        """The number of records, as of an array with one dimension."""
 
     @overload
     def __getitem__(self, row: int) -> T: ...
@@ -208,7 +208,7 @@ if TYPE_CHECKING:
         """The record at a pointer, or at the beginning of an array."""
 
     def as_rows(source: Any, record: RecordType[T]) -> Rows[T]:
-        """The records at a pointer, or in a contiguous array, which says how many there are.
+        """The records at a pointer, or those of a contiguous array, whose length is then known.
 
         The memory is the caller's, and has to outlive them.
         """

@@ -76,7 +76,7 @@ class TaskGoal(Spec):
 
 
 class PersonGoal(TaskGoal):
-    """Fields that all goals have that are people."""
+    """Fields that all goals about a person have."""
 
     #: True if the time in place counts only without interruption.
     in_a_row: ClassVar[bool] = False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,6 +18,7 @@ from crowdbot.dsl.suite.suite_entry import NO_SUITE
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
+    from crowdbot.core.bundle.manifest import Manifest
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.suite.expand import Expansion
 
@@ -83,49 +85,67 @@ def bundle(
     from crowdbot.core.scenarios.library import open_suite
     from crowdbot.core.scenarios.lock_check import check_revealed
 
-    if root.is_file():
-        raise UsageError(
-            f"{root} is a file; ROOT is a folder of runs. To check a bundle that is there: "
-            f"crowdbot verify {root}"
-        )
     registry = installed(plugin, no_plugins)
-    if suite is None:
-        offers = _offer(root, registry)
-        raise UsageError(f"which runs? Give --suite SPEC and --planner LABEL; {offers}")
+    if root.is_file() or suite is None or planner is None:
+        raise _usage(root, suite, registry)
     expansion, lock = open_suite(suite, registry)
     for scenario in expansion.scenarios:
         check_revealed(scenario)
-    if planner is None:
-        raise UsageError(f"which planner? Give --planner LABEL; {_offer(root, registry)}")
     submission = Submission(
         root=root, planner=planner, team=team, contact=contact, partial=partial,
         recordings=recordings,
     )  # fmt: skip
     target = out or Path(f"{expansion.suite_id}-{planner}.cbz")
     manifest = pack(submission, expansion, lock, registry, target)
-    for line in _round_lines(expansion):
+    for line in _warnings(expansion, other_seeds(submission, expansion)):
         say(f"warning: {line}", err=True)
-    if more := other_seeds(submission, expansion):
-        seeds = ", ".join(map(str, more))
-        say(f"warning: left out: seeds {seeds}, which the suite does not name", err=True)
-    # The team trusts its own plugins.
-    own = tuple(p.name for p in registry.plugins if p.name != BUILTIN)
-    asked = Asked(size=sample, seed=seed, trusted=own)
-    place = source, ANYWHERE
-    verdict = verify_bundle(target, registry, suite, place, asked) if check else None
+    verdict = None
+    if check:
+        # The team trusts its own plugins.
+        own = tuple(p.name for p in registry.plugins if p.name != BUILTIN)
+        asked = Asked(size=sample, seed=seed, trusted=own)
+        verdict = verify_bundle(target, registry, suite, (source, ANYWHERE), asked)
     if as_json:
         document = {"bundle": str(target), **manifest.model_dump(mode="json")}
         say(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))
-        raise typer.Exit(0 if verdict is None or verdict["ok"] else 1)
+    else:
+        _print_manifest(manifest, target)
+        if verdict is not None:
+            print_verdict(verdict)
+    if verdict is not None and not verdict["ok"]:
+        raise typer.Exit(1)
+
+
+def _usage(root: Path, suite: str | None, registry: Registry) -> UsageError:
+    """Return the error of a command without runs, suite or planner."""
+    if root.is_file():
+        return UsageError(
+            f"{root} is a file; ROOT is a folder of runs. To check a bundle that is there: "
+            f"crowdbot verify {root}"
+        )
+    if suite is None:
+        asked = "which runs? Give --suite SPEC and --planner LABEL"
+    else:
+        asked = "which planner? Give --planner LABEL"
+    return UsageError(f"{asked}; {_offer(root, registry)}")
+
+
+def _print_manifest(manifest: Manifest, target: Path) -> None:
     lacking = f", {len(manifest.missing)} missing" if manifest.missing else ""
     say(
         f"{manifest.edition_name}: {manifest.label}, {plural(len(manifest.runs), 'run')}{lacking}, "
         f"{plural(len(manifest.members), 'file')}, {size_text(target.stat().st_size)}"
     )
     say(f"wrote {target}")
-    if verdict is not None:
-        print_verdict(verdict)
-        raise typer.Exit(0 if verdict["ok"] else 1)
+
+
+def _warnings(expansion: Expansion, other_seeds: Sequence[int]) -> list[str]:
+    """Return what the suite's round says, and which seeds are left out."""
+    lines = _round_lines(expansion)
+    if other_seeds:
+        seeds = ", ".join(map(str, other_seeds))
+        lines.append(f"left out: seeds {seeds}, which the suite does not name")
+    return lines
 
 
 def _round_lines(expansion: Expansion) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -104,14 +105,11 @@ def show(
     if context.invoked_subcommand is not None:
         return
     from crowdbot.core.results.chosen_planners import of_planners
-    from crowdbot.core.results.rows import named_metrics
-    from crowdbot.core.results.score_columns import metrics_of
     from crowdbot.core.results.with_reference import (
         among_references,
         reference_results,
         with_reference,
     )
-    from crowdbot.core.statistics.groups import Grouped
     from crowdbot.errors import UsageError
 
     given = reference_results(reference) if reference else None
@@ -125,14 +123,7 @@ def show(
     groups = [name.strip() for name in by.split(",") if name.strip()]
     if "suite" not in groups and len(found.suites) > 1:
         groups.append("suite")  # each change to a scenario is a suite of its own, too
-    known = metrics_of(found.scores)
-    first = [*named_metrics(found.runs), *_HEADLINES]
-    wanted = metric or [m for m in dict.fromkeys(first) if m in known]
-    grouped = Grouped(found, groups)
-    summaries = [s for m in wanted for s in grouped.summaries(m, variant)]
-    lines = [line_of(s) for s in summaries]
-    once = {tuple(sorted(line.items(), key=lambda cell: cell[0])): line for line in lines}
-    shown = [*once.values()]  # patterns may overlap
+    shown = _summaries(found, groups, metric, variant)
     if shown and "planner" in groups and not (details or as_csv or as_json):
         print_by_planner(shown)
     else:
@@ -141,6 +132,23 @@ def show(
         damaged = f", {len(found.damaged)} damaged" if found.damaged else ""
         runs, failures = plural(len(found.runs), "run"), plural(len(found.failures), "failure")
         say("\n".join([f"{runs}, {failures}{damaged}", *among_references(found, references)]))
+
+
+def _summaries(
+    found: Results, groups: Sequence[str], metrics: Sequence[str] | None, variant: str | None
+) -> list[dict[str, Any]]:
+    """Return the lines of groups and metrics; without metrics those of the suites, and a few."""
+    from crowdbot.core.results.rows import named_metrics
+    from crowdbot.core.results.score_columns import metrics_of
+    from crowdbot.core.statistics.groups import Grouped
+
+    known = metrics_of(found.scores)
+    first = [*named_metrics(found.runs), *_HEADLINES]
+    wanted = metrics or [m for m in dict.fromkeys(first) if m in known]
+    grouped = Grouped(found, groups)
+    lines = [line_of(s) for m in wanted for s in grouped.summaries(m, variant)]
+    once = {tuple(sorted(line.items(), key=lambda cell: cell[0])): line for line in lines}
+    return [*once.values()]  # patterns may overlap
 
 
 @results.command()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -160,19 +161,18 @@ def export(
         raise InputError(f"{run}: no such run directory or recording")
     target = out or _target(run, to)
     _check_new(target)
+    write: Callable[[Path], None]
     if to.value in (*FILMS, PICTURE):
-        _whole(target, lambda aside: write_film(to.value, recording, aside, film))
+        write = partial(write_film, to.value, recording, options=film)
     elif to in (ExportFormat.rosbag1, ExportFormat.rosbag2):
-        options = BagOptions(
-            offset=offset * 10**9,
-            tree=tf.value,
-            ros_names=names,
-            markers=markers,
+        bag = BagOptions(
+            offset=offset * 10**9, tree=tf.value, ros_names=names, markers=markers,
             description=_description(run) if run.is_dir() else None,
-        )
-        _whole(target, lambda aside: _bag(to, recording, aside, options, run))
+        )  # fmt: skip
+        write = partial(_bag, to, recording, options=bag, run=run)
     else:
-        _whole(target, lambda aside: _tables(to, recording, aside, robot))
+        write = partial(_tables, to, recording, robot=robot)
+    _whole(target, write)
     say(str(target))
 
 

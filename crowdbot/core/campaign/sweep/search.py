@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -153,23 +153,22 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
         request.better,
     ):  # fmt: skip
         _write(request, found.values())
-    sign = -1.0 if request.better == "higher" else 1.0
-    ordered = sorted(
-        found.values(),
-        key=lambda t: (t.score.value is None, sign * (t.score.value or 0.0), words(t.trial)),
-    )
-    checked = [
-        rounds[_CHECK].again(
-            t, f"check {i + 1} of {request.check} on other people: {words(t.trial)}"
-        )
-        if i < request.check
-        else t
-        for i, t in enumerate(ordered)
-    ]
+    tried, again = _ordered(request, found.values()), rounds[_CHECK].again
+    for i, one in enumerate(tried[: request.check]):
+        title = f"check {i + 1} of {request.check} on other people: {words(one.trial)}"
+        tried[i] = again(one, title)
     if request.check:
-        usual = rounds[_CHECK].again(usual, "check of the defaults on other people")
-    _write(request, checked)
-    return Sweep(request=request, tried=tuple(checked), usual=usual)
+        usual = again(usual, "check of the defaults on other people")
+    _write(request, tried)
+    return Sweep(request=request, tried=tuple(tried), usual=usual)
+
+
+def _ordered(request: SweepRequest, tried: Iterable[Tried]) -> list[Tried]:
+    """Return trials from the best to the worst; those without a score are last."""
+    sign = -1.0 if request.better == "higher" else 1.0
+    return sorted(
+        tried, key=lambda t: (t.score.value is None, sign * (t.score.value or 0.0), words(t.trial))
+    )
 
 
 def _check_parameters(request: SweepRequest, registry: Registry) -> None:

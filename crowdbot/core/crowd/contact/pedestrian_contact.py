@@ -97,9 +97,9 @@ def push_apart(
 
 @kernel
 def _sort_along_x(agents: People, order: NDArray[np.int64]) -> None:
-    """By x, then by row, so that the result does not depend on the order before.
+    """Sort people by x, equal ones by row, by insertion.
 
-    From one tick to the next hardly any change places: few steps.
+    The order hardly changes from one tick to the next, so this takes few steps.
     """
     for a in range(1, order.shape[0]):
         i = order[a]

@@ -1,4 +1,4 @@
-"""Shapes of others as our rectangles and outlines."""
+"""Shapes of other simulators as rectangles and outlines of crowdbot."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def rectangle_in(corners: Sequence[Sequence[float]], floor: Any = None) -> tuple
 
 
 def box(x0: float, x1: float, y0: float, y1: float) -> Data:
-    """Return a rectangle of ours, rounded to micrometres."""
+    """Return a rectangle as scenarios write it, rounded to micrometres."""
     return {"x": [round(x0, 6), round(x1, 6)], "y": [round(y0, 6), round(y1, 6)]}
 
 

@@ -18,7 +18,7 @@ def social_forces() -> Data:
 
 
 def vision() -> Data:
-    """Return the policy that stands for models without a like of ours."""
+    """Return the policy that stands for models that crowdbot has nothing like."""
     return {
         "policy": {"kind": "velocity_space"},
         "costs": {

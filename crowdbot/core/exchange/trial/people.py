@@ -1,4 +1,4 @@
-"""People of a trial: agents, and players that the crowd sees, as rows of ours."""
+"""People of a trial, agents and players whom the crowd sees, as rows of an agents table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trials of the original as scenes of ours."""
+"""Convert trials of the original CrowdBot simulator to scenes."""
 
 from __future__ import annotations
 

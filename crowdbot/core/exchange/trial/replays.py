@@ -1,4 +1,4 @@
-"""Files that people of a trial replay, as one table of ours."""
+"""Files of recorded people in a trial, converted to one table of crowdbot."""
 
 from __future__ import annotations
 

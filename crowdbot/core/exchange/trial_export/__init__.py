@@ -1,1 +1,1 @@
-"""Scenarios of ours as trials of the original, with a report of what they cannot say."""
+"""Write scenarios as trials of the original CrowdBot simulator; report what is lost."""

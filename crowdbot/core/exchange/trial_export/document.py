@@ -165,7 +165,7 @@ def _obstacles(root: Xml.Element, scenario: Scenario, registry: Registry, report
 
 
 def _line(root: Xml.Element, ends: Sequence[float], thickness: float) -> None:
-    """Append a straight wall between two points of ours, m."""
+    """Append a straight wall between two points of crowdbot's scenario, m."""
     x1, y1, x2, y2 = ends
     lines = add(add(add(root, "obstacle"), "TrialObstacle"), "Lines")
     add(lines, "Line", x1=number(-y1), y1=number(x1), x2=number(-y2), y2=number(x2),

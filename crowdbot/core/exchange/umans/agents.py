@@ -1,4 +1,4 @@
-"""Agents of UMANS as rows of ours."""
+"""Agents of UMANS as rows of an agents table."""
 
 from __future__ import annotations
 

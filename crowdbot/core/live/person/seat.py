@@ -102,7 +102,7 @@ class Seat:
                 self._away = ""
 
     def move(self, who: Hashable, stick: Stick) -> bool:
-        """Take a position of the stick; return False from a page that does not drive."""
+        """Store a position of the stick; return False if the page does not drive."""
         with self._lock:
             if self._page != who:
                 self.session.refuse()
@@ -113,7 +113,7 @@ class Seat:
         return True
 
     def begin(self, who: Hashable) -> None:
-        """Start the run that waits for it, at the wish of the person in the seat."""
+        """Start the waiting run, because the driving page asks for it."""
         with self._lock:
             if self._page == who and self.why_waiting == "not begun":
                 self._begun = True
@@ -127,13 +127,13 @@ class Seat:
         self.session.leave(who)
 
     def latency(self, who: Hashable, ms: float) -> None:
-        """Note a latency that the page in the seat measured, ms."""
+        """Record a latency that the driving page measured, ms."""
         with self._lock:
             if self._page == who and 0.0 <= ms < 1e5:
                 self.log.latencies.append(ms)
 
     def drives(self, who: Hashable) -> bool:
-        """Return True if this page is in the seat."""
+        """Return True if this page drives."""
         return self._page == who
 
     @property
@@ -149,7 +149,7 @@ class Seat:
 
     # ----------------------------------------------------------------------- the simulation asks
     def pace(self, t: float) -> None:
-        """Return when the step at ``t`` (s) is due in real time and someone is in the seat."""
+        """Wait until the step at ``t`` (s) is due in real time, and until someone drives."""
         if t < self._t:  # another recording
             self.log, self._begun, self._zero, self._held = SeatLog(), False, None, False
         self._t = t
@@ -164,7 +164,7 @@ class Seat:
         self.session.sleep(self._zero + t / self._rate)
 
     def take(self, t: float) -> Stick | Command:
-        """Return the stick of the page in the seat at a step, or the command of a program."""
+        """Return the driving page's stick at a step, or the command of a program that drives."""
         self.log.steps += 1
         command, fresh = self.session.newest(self._robot)
         if self._from_outside:

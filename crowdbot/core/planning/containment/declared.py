@@ -72,10 +72,10 @@ def needs_of_files(files: Iterable[Path]) -> Needs:
 
 
 def with_data(needs: Needs, folder: Path, patterns: Iterable[str]) -> Needs:
-    """Return needs with declared data.
+    """Add the data files that a planner declares to what it needs.
 
     Args:
-        folder: folder of the names and patterns.
+        folder: folder that the names and patterns are relative to.
 
     Raises:
         InputError: a name matches no file.
@@ -90,7 +90,7 @@ def with_data(needs: Needs, folder: Path, patterns: Iterable[str]) -> Needs:
 
 
 def _written_data(path: Path, name: str) -> tuple[str, ...]:
-    """Return ``data`` of a class as the file has it, if it is written without computing it."""
+    """Return the attribute ``data`` of a class in a file, if it is a literal; else nothing."""
     tree = parsed_source(path)
     if tree is None:
         return ()

@@ -100,10 +100,10 @@ def _other_legs(
     tracks: Array, count: int, legs: Array, found: int,
     person: float, first: Indices, second: Indices, owner: Indices,
 ) -> None:  # fmt: skip
-    """Give tracks a second leg if the middle of both lies where the person is expected.
+    """Assign second legs, best pair first, where the middle of both legs fits the prediction.
 
-    Meanwhile ``second`` holds the best free leg of tracks that have no second one, as `_CANDIDATE`
-    less its number.
+    While this runs, ``second`` also holds candidates: ``_CANDIDATE - leg`` for a track without a
+    second leg.
     """
     for i in range(count):
         if second[i] == NONE and tracks[i, k.PERSON] == person:

@@ -164,7 +164,7 @@ class _Reading:
         return by_stamp
 
     def _names(self, people: Columns | None) -> list[str]:
-        """Return the name of each row of people, or its place in the list."""
+        """Return the name of each person's row; without names, its place in the list."""
         if people is None:
             return []
         rows = self._rows(people)

@@ -216,7 +216,7 @@ class LateStart(Bully):
 
 
 class DrawReplay(Bully):
-    """Waits as long as worked with the crowd that looks like this at first."""
+    """Recognises a known draw by its first scan, and starts after the best delay for it."""
 
     def __init__(self, spec: specs.DrawReplaySpec) -> None:
         super().__init__()

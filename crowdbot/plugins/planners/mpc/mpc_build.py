@@ -134,7 +134,7 @@ class Mpc:
         return np.array([*state, *aim, top])
 
     def _given(self, world: AroundRobot, plan: Array, told: Array) -> Array:
-        """Return the parameters of the problem around a plan."""
+        """Return the optimiser's parameters: the state, and constraints along the last plan."""
         assert self._problem is not None
         spec = self._spec
         poses = poses_of(tuple(told[:3].tolist()), plan, self._problem.dt)

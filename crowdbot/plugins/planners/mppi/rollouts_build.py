@@ -106,6 +106,42 @@ def _predict(around: Around, p: Array, state: MotionState, samples: Samples) -> 
 
 
 @kernel
+def _among_people(
+    around: Around,
+    p: Array,
+    samples: Samples,
+    n: int,
+    pose: tuple[float, float, float, float],
+    need: float,
+) -> tuple[bool, float]:
+    """Return if a person is nearer than needed at step n, and the share of closeness.
+
+    Args:
+        around: the surroundings.
+        p: parameters.
+        samples: the arrays.
+        n: the step.
+        pose: x, y (m), cosine and sine of the heading.
+        need: clearance below which it counts as a hit, m.
+    """
+    doubt = p[GROWTH] * (n + 1) * p[DT]
+    near, count = samples.near[n], samples.counts[n]
+    gap = _people_gap(around.robot, near, count, pose, p[COMFORT] + doubt)
+    close = PEOPLE_EVERY * (1.0 - (gap - doubt) / p[COMFORT]) if gap - doubt < p[COMFORT] else 0.0
+    return gap < need, close
+
+
+@kernel
+def _turned_away(around: Around, samples: Samples, i: int) -> float:
+    """Return how far lane i ends turned away from the goal: 0, towards it, to 1, backwards."""
+    kept, lanes = samples.kept, samples.lanes
+    last = kept.shape[0] - 1
+    gx, gy = around.goal[0] - kept[last, X, i], around.goal[1] - kept[last, Y, i]
+    long = max(math.sqrt(gx * gx + gy * gy), 1e-6)
+    return float(0.5 * (1.0 - (gx * lanes.c[i] + gy * lanes.s[i]) / long))
+
+
+@kernel
 def _cost(
     around: Around, p: Array, samples: Samples, i: int, start: float, need: tuple[float, ...]
 ) -> float:
@@ -139,15 +175,11 @@ def _cost(
         if gap < p[COMFORT]:
             close += 0.25 * WALLS_EVERY * (1.0 - gap / p[COMFORT])
         if n % PEOPLE_EVERY == 0:
-            doubt = p[GROWTH] * (n + 1) * dt
-            gap = _people_gap(
-                around.robot, samples.near[n], samples.counts[n], (x, y, c, s), p[COMFORT] + doubt
-            )
-            if gap < need[1]:
+            hard, near = _among_people(around, p, samples, n, (x, y, c, s), need[1])
+            if hard:
                 v, vy = kept[m, V, i], kept[m, VY, i]
                 hit = max(hit, (_STANDING + math.sqrt(v * v + vy * vy) / p[V_MAX]) * rest)
-            if gap - doubt < p[COMFORT]:
-                close += PEOPLE_EVERY * (1.0 - (gap - doubt) / p[COMFORT])
+            close += near
         away = kept[m, AWAY, i]
         total += min(WALLS_EVERY, steps - n) * (start - away)
         if hit > 0.0:
@@ -160,16 +192,12 @@ def _cost(
         known = per_step * close + p[BACKWARD] * kept[m, BACK, i] + fixed
         if known - made * most > left_over:
             return math.inf
-    last, lanes = kept.shape[0] - 1, samples.lanes
-    gx, gy = around.goal[0] - kept[last, X, i], around.goal[1] - kept[last, Y, i]
-    long = max(math.sqrt(gx * gx + gy * gy), 1e-6)
-    off = 0.5 * (1.0 - (gx * lanes.c[i] + gy * lanes.s[i]) / long)
     return float(
         p[PROGRESS]
         - scale * total / steps
         + p[CLEARANCE] * close / steps
-        + p[HEADING] * off
-        + p[BACKWARD] * lanes.back[i]
+        + p[HEADING] * _turned_away(around, samples, i)
+        + p[BACKWARD] * samples.lanes.back[i]
         + fixed
     )
 

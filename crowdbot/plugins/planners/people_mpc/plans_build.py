@@ -62,6 +62,53 @@ def _slewed(value: float, target: float, change: float) -> float:
 
 
 @kernel
+def _second(
+    p: Array, first: tuple[float, float, float], off: float, aside: float, top: float
+) -> tuple[float, float, float]:
+    """Return the velocity v, w, vy that the robot wants in the second stretch.
+
+    Args:
+        p: parameters.
+        first: v, w, vy of the first stretch.
+        off: direction of the goal from the heading, rad.
+        aside: angle of the motion from the goal's direction, rad.
+        top: speed, m/s.
+    """
+    if p[SIDEWAYS] > 0.0:
+        w = _GAIN * _wrapped(off)
+        v, vy = top * math.cos(off + aside), top * math.sin(off + aside)
+    else:
+        off = _wrapped(off + aside)
+        w = _GAIN * off
+        v, vy = top * max(0.0, math.cos(off)) if abs(off) < 1.3 else 0.0, first[2]
+    return v, max(-p[W_MAX], min(p[W_MAX], w)), vy
+
+
+@kernel
+def _stepped(
+    p: Array, state: tuple[float, float, float, float], wanted: tuple[float, float, float]
+) -> tuple[float, float, float, float, float, float]:
+    """Return the way in x and y (m), then yaw, v, w, vy, after a step within acceleration limits.
+
+    Args:
+        p: parameters.
+        state: yaw, v, w, vy before.
+        wanted: v, w, vy.
+    """
+    yaw, v, w, vy = state
+    dv, dvy = wanted[0] - v, wanted[2] - vy
+    most, change = p[A_MAX] * STEP, math.sqrt(dv * dv + dvy * dvy)
+    if change > most:
+        dv, dvy = dv * most / change, dvy * most / change
+    w_next = _slewed(w, wanted[1], p[ALPHA_MAX] * STEP)
+    middle = yaw + (w + w_next) / 4.0 * STEP
+    c, s = math.cos(middle), math.sin(middle)
+    ahead, left = (v + 0.5 * dv) * STEP, (vy + 0.5 * dvy) * STEP
+    yaw += (w + w_next) / 2.0 * STEP
+    return ahead * c - left * s, ahead * s + left * c, yaw, v + dv, w_next, vy + dvy
+
+
+@kernel
 def roll(
     world: PlanWorld,
     p: Array,
@@ -99,35 +146,17 @@ def roll(
         gx, gy = world.goal[0] - x, world.goal[1] - y
         away = math.sqrt(gx * gx + gy * gy)
         brake = math.sqrt(2.0 * p[A_MAX] * away)
-        vt, wt, vyt = first
+        off = math.atan2(gy, gx) - yaw
         if t > p[TURN_TIME] + 0.5 * STEP:
-            fade = max(0.0, 1.0 - t / p[HORIZON])
-            off = math.atan2(gy, gx) - yaw
             top = min(pace * p[V_MAX], brake)
-            if p[SIDEWAYS] > 0.0:
-                wt = _GAIN * _wrapped(off)
-                vt, vyt = top * math.cos(off + aside * fade), top * math.sin(off + aside * fade)
-            else:
-                off = _wrapped(off + aside * fade)
-                wt = _GAIN * off
-                vt = top * max(0.0, math.cos(off)) if abs(off) < 1.3 else 0.0
-            wt = max(-p[W_MAX], min(p[W_MAX], wt))
+            wanted = _second(p, first, off, aside * max(0.0, 1.0 - t / p[HORIZON]), top)
         else:
-            vt = min(vt, brake)
-            beside = abs(_wrapped(math.atan2(gy, gx) - yaw))
-        dv, dvy = vt - v, vyt - vy
-        most, change = p[A_MAX] * STEP, math.sqrt(dv * dv + dvy * dvy)
-        if change > most:
-            dv, dvy = dv * most / change, dvy * most / change
-        w_next = _slewed(w, wt, p[ALPHA_MAX] * STEP)
-        middle = yaw + (w + w_next) / 4.0 * STEP
-        c, s = math.cos(middle), math.sin(middle)
-        ahead, left = (v + 0.5 * dv) * STEP, (vy + 0.5 * dvy) * STEP
-        x += ahead * c - left * s
-        y += ahead * s + left * c
-        yaw += (w + w_next) / 2.0 * STEP
-        v, vy, w = v + dv, vy + dvy, w_next
-        going = (ahead * c - left * s) / STEP, (ahead * s + left * c) / STEP
+            wanted = min(first[0], brake), first[1], first[2]
+            beside = abs(_wrapped(off))
+        dx, dy, yaw, v, w, vy = _stepped(p, (yaw, v, w, vy), wanted)
+        x += dx
+        y += dy
+        going = dx / STEP, dy / STEP
         if responds:
             n = min(round(t / STEP), world.predicted.shape[0]) - 1
             give_way(
