@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -79,6 +80,13 @@ def with_zone(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) 
     x, y = at
     words["zones"] = {**words["zones"], "kit": {"x": [x - 0.4, x - 0.3], "y": [y, y + 0.1]}}
     return registry.spec_model(spec.category, spec.kind).model_validate(words)
+
+
+def each_built(component: Component[Any], registry: Registry | None) -> Iterator[Any]:
+    """Yield the unchecked result of the build function for each of the component's examples."""
+    known = around(component, registry)
+    for spec in specs_of(component, known):
+        yield built(known, spec)
 
 
 def built(registry: Registry, spec: ComponentSpec, *args: Any) -> Any:

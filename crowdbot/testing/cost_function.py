@@ -28,7 +28,7 @@ from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.spec.component import Component
-from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.around import each_built
 from crowdbot.testing.cost_parts import above_lower_bound, bases_of, forgets_work, stops_at_budget
 from crowdbot.testing.crowd_views import (
     SEEDS,
@@ -249,9 +249,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
 
 
 def _costs(component: Component[Any], registry: Registry | None) -> Iterator[Cost]:
-    known = around(component, registry)
-    for spec in specs_of(component, known):
-        yield built(known, spec)
+    return each_built(component, registry)
 
 
 def _candidates(view: CrowdView) -> Array:

@@ -11,7 +11,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.spec.component import Component
-from crowdbot.testing.around import around, built, specs_of, with_zone
+from crowdbot.testing.around import around, built, each_built, specs_of, with_zone
 from crowdbot.testing.free_floor import FreeFloorGrid, seen_sides, viewpoints
 
 
@@ -146,9 +146,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
 
 
 def _parts(component: Component[Any], registry: Registry | None) -> Iterator[EnvironmentParts]:
-    known = around(component, registry)
-    for spec in specs_of(component, known):
-        yield built(known, spec)
+    return each_built(component, registry)
 
 
 def _assert_table(name: str, table: Array, shape: tuple[int, int]) -> None:

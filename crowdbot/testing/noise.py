@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.sensor import NoiseGenerator
 from crowdbot.dsl.spec.component import Component
-from crowdbot.testing.around import around, built, specs_of
+from crowdbot.testing.around import each_built
 
 #: Distances as passed by sensors: near and far hits, no hit, no ray.
 _DISTANCES = (
@@ -110,9 +110,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
 
 
 def _generators(component: Component[Any], registry: Registry | None) -> Iterator[NoiseGenerator]:
-    known = around(component, registry)
-    for spec in specs_of(component, known):
-        yield built(known, spec)
+    return each_built(component, registry)
 
 
 def _rng() -> np.random.Generator:

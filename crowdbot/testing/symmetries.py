@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.trajectories.commands import Commands
+from crowdbot.core.trajectories.preprocess import rows_of
 from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack, Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.person_task import PersonSide
@@ -115,7 +116,7 @@ def permute(run: Trajectories) -> Trajectories:
     run = with_people(run, range(len(run.agents.id))[::-1])
     if run.trips is None:
         return run
-    return replace(run, trips=_rows(run.trips, np.arange(len(run.trips.agent))[::-1]))
+    return replace(run, trips=rows_of(run.trips, np.arange(len(run.trips.agent))[::-1]))
 
 
 def shift_commands(commands: Commands) -> Commands:
@@ -155,9 +156,9 @@ def with_people(run: Trajectories, columns: Sequence[int]) -> Trajectories:
     kept = AgentTracks(**rows, **ends, jump=jump)
     trips, contacts = run.trips, run.contacts
     if trips is not None:
-        trips = _rows(trips, np.isin(trips.agent, kept.id))
+        trips = rows_of(trips, np.isin(trips.agent, kept.id))
     if contacts is not None:
-        contacts = _rows(contacts, np.isin(contacts.agent, [*kept.id, -1]))
+        contacts = rows_of(contacts, np.isin(contacts.agent, [*kept.id, -1]))
     return replace(run, agents=kept, trips=trips, contacts=contacts)
 
 
@@ -215,7 +216,3 @@ def writable_copy(value: Any) -> Any:
         names = [f.name for f in fields(value) if f.init]
         return replace(value, **{n: writable_copy(getattr(value, n)) for n in names})
     return value
-
-
-def _rows(table: Any, pick: Any) -> Any:
-    return replace(table, **{f.name: getattr(table, f.name)[pick] for f in fields(table)})

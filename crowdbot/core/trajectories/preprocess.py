@@ -19,7 +19,7 @@ from crowdbot.core.trajectories.trajectories import (
     Trajectories,
     Trips,
 )
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.errors import InputError
 
 #: Times closer than this are equal, s.
@@ -305,15 +305,16 @@ def _first_agent_samples(agents: AgentTracks, keep: int) -> AgentTracks:
 
 
 def _first_trips(trips: Trips, end: float) -> Trips:
-    trips = _rows(trips, trips.t0 <= end + TIME_TOLERANCE)
+    trips = rows_of(trips, trips.t0 <= end + TIME_TOLERANCE)
     late = trips.t1 > end + TIME_TOLERANCE
     return replace(trips, t1=np.where(late, end, trips.t1), reached=trips.reached & ~late)
 
 
 def _first_contacts(contacts: ContactEvents, end: float) -> ContactEvents:
-    contacts = _rows(contacts, contacts.t0 <= end + TIME_TOLERANCE)
+    contacts = rows_of(contacts, contacts.t0 <= end + TIME_TOLERANCE)
     return replace(contacts, t1=np.minimum(contacts.t1, end))
 
 
-def _rows(table: _Table, keep: Mask) -> _Table:
-    return replace(table, **{f.name: getattr(table, f.name)[keep] for f in fields(table)})
+def rows_of(table: _Table, which: Mask | Indices) -> _Table:
+    """Return some rows of a table of columns, in the order of indices if these are given."""
+    return replace(table, **{f.name: getattr(table, f.name)[which] for f in fields(table)})

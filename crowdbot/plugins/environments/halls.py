@@ -15,7 +15,7 @@ from crowdbot.plugin import (
     Rectangle,
     Solid,
 )
-from crowdbot.plugins.environments.pillar_sets import PillarFieldSpec, PillarGridSpec
+from crowdbot.plugins.environments.pillar_sets import PillarFieldSpec, PillarGridSpec, all_pillars
 from crowdbot.plugins.environments.shapes import (
     BlockSpec,
     PillarSpec,
@@ -62,11 +62,8 @@ class _HallSpec(WalkwaySpec):
 
     def columns(self) -> tuple[Pillar, ...]:
         """Return all pillars: named, in the grid, and random."""
-        found = tuple(p.pillar(self.wall_height) for p in self.pillars.values())
-        for many in (self.pillar_grid, self.pillar_field):
-            if many is not None:
-                found += many.pillars(self.area, self.wall_height)
-        return found
+        sets = self.pillar_grid, self.pillar_field
+        return all_pillars(self.pillars.values(), sets, self.area, self.wall_height)
 
     def solids(self) -> tuple[Solid, ...]:
         """Return the blocks."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import Annotated
 
@@ -11,6 +12,7 @@ from annotated_types import Ge, Le
 from pydantic import Field
 
 from crowdbot.plugin import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec, outlines
+from crowdbot.plugins.environments.shapes import PillarSpec
 
 Count = Annotated[int, Ge(1), Le(1000)]
 #: Attempts to place one pillar before giving up.
@@ -107,3 +109,23 @@ def _drawn(field: PillarFieldSpec, area: Rectangle, top: float) -> tuple[Pillar,
 def _even(ends: tuple[float, float], count: int) -> list[float]:
     step = (ends[1] - ends[0]) / (count + 1)
     return [ends[0] + (k + 1) * step for k in range(count)]
+
+
+def all_pillars(
+    named: Iterable[PillarSpec],
+    sets: Iterable[PillarGridSpec | PillarFieldSpec | None],
+    floor: Rectangle,
+    top: float,
+) -> tuple[Pillar, ...]:
+    """Return the pillars of a floor: the named ones, then those of grids and fields.
+
+    Args:
+        named: single pillars.
+        sets: grids and fields; None: there is none.
+        floor: where they stand.
+        top: height of the walls, m, which pillars reach by default.
+    """
+    found = tuple(pillar.pillar(top) for pillar in named)
+    for many in sets:
+        found += () if many is None else many.pillars(floor, top)
+    return found

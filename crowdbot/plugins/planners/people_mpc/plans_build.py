@@ -16,6 +16,7 @@ from crowdbot.plugins.planners.people_mpc.plan_world_build import (
     extent_of,
     gaps,
 )
+from crowdbot.plugins.planners.shared.points_build import wrapped
 
 #: Directions of the second stretch beside the goal's, rad, and its speeds as shares.
 ASIDE = (0.0, 0.35, -0.35, 0.8, -0.8, 1.4, -1.4)
@@ -75,10 +76,10 @@ def _second(
         top: speed, m/s.
     """
     if p[SIDEWAYS] > 0.0:
-        w = _GAIN * _wrapped(off)
+        w = _GAIN * wrapped(off)
         v, vy = top * math.cos(off + aside), top * math.sin(off + aside)
     else:
-        off = _wrapped(off + aside)
+        off = wrapped(off + aside)
         w = _GAIN * off
         v, vy = top * max(0.0, math.cos(off)) if abs(off) < 1.3 else 0.0, first[2]
     return v, max(-p[W_MAX], min(p[W_MAX], w)), vy
@@ -152,7 +153,7 @@ def roll(
             wanted = _second(p, first, off, aside * max(0.0, 1.0 - t / p[HORIZON]), top)
         else:
             wanted = min(first[0], brake), first[1], first[2]
-            beside = abs(_wrapped(off))
+            beside = abs(wrapped(off))
         dx, dy, yaw, v, w, vy = _stepped(p, (yaw, v, w, vy), wanted)
         x += dx
         y += dy
@@ -191,11 +192,6 @@ def roll(
 
 
 @kernel
-def _wrapped(angle: float) -> float:
-    return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
-
-
-@kernel
 def best_plan(
     world: PlanWorld,
     p: Array,
@@ -219,7 +215,7 @@ def best_plan(
     away = math.sqrt(gx * gx + gy * gy)
     going = math.sqrt(state[3] ** 2 + state[5] ** 2)
     outlined = world.robot.shape[0] > 1
-    turned = abs(_wrapped(math.atan2(gy, gx) - state[2]))
+    turned = abs(wrapped(math.atan2(gy, gx) - state[2]))
     for k in range(firsts.shape[0] - 1, -1, -1):  # fast ones first, which are seldom worse
         first = firsts[k, V], firsts[k, W], firsts[k, VY]
         speed = math.sqrt(first[0] ** 2 + first[2] ** 2)
@@ -274,11 +270,11 @@ def path_of(
         vt, wt, vyt = first
         if t > p[TURN_TIME] + 0.5 * STEP:
             off = math.atan2(goal[1] - y, goal[0] - x) - yaw
-            turn = _wrapped(off + aside * max(0.0, 1.0 - t / p[HORIZON]))
+            turn = wrapped(off + aside * max(0.0, 1.0 - t / p[HORIZON]))
             vt = pace * p[V_MAX] * max(0.0, math.cos(turn))
             wt, vyt = _GAIN * turn, 0.0
             if p[SIDEWAYS] > 0.0:
-                wt = _GAIN * _wrapped(off)
+                wt = _GAIN * wrapped(off)
                 vt, vyt = pace * p[V_MAX] * math.cos(turn), pace * p[V_MAX] * math.sin(turn)
         v, vy = _slewed(v, vt, p[A_MAX] * STEP), _slewed(vy, vyt, p[A_MAX] * STEP)
         w = _slewed(w, max(-p[W_MAX], min(p[W_MAX], wt)), p[ALPHA_MAX] * STEP)
