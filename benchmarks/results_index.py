@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.core.results.store import INDEX
+from crowdbot.core.results.index_file import INDEX
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scenarios.library import open_suite

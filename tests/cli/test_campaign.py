@@ -18,9 +18,9 @@ import pytest
 from crowdbot import cli
 from crowdbot.cli.shared.campaign_run import read_seeds
 from crowdbot.core.results.failure import Failure
+from crowdbot.core.results.index_file import INDEX
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow, ScoreRow
-from crowdbot.core.results.store import INDEX
 from crowdbot.core.statistics.groups import by_group
 from crowdbot.errors import UsageError
 from tests.cli.campaign_cases import TINY, outcome, run, start

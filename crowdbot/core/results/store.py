@@ -10,17 +10,16 @@ import json
 import logging
 import os
 import sqlite3
-import stat
-import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from crowdbot.core.results.failure import SUFFIX, Failure, read_failure
-from crowdbot.core.results.indexed_rows import IN_MORE, Texts, columns_of_table, read_all, row_of
-from crowdbot.core.results.rows import RUN_COLUMNS, DamagedRun, RunRow, ScoreRow
+from crowdbot.core.results.index_file import INDEX, VERSION, opened, prepare, reader, unwritable
+from crowdbot.core.results.indexed_rows import Texts, read_all, row_of
+from crowdbot.core.results.rows import DamagedRun, RunRow, ScoreRow
+from crowdbot.core.results.scan import Scan, stamp_of, stamp_of_run
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.scores_csv import RunScore, read_scores_csv, safe_cell
@@ -28,51 +27,10 @@ from crowdbot.core.support.locks import try_lock
 from crowdbot.errors import InputError
 
 _LOG = logging.getLogger("crowdbot")
-INDEX, LOCK = "results.sqlite", "results.lock"
-#: Longest path that SQLite opens on Unix.
-_LONGEST = 504
+LOCK = "results.lock"
 
 #: Number of new or changed runs from which on a reader renews the index, if it may.
 RENEWED_FROM = 200
-
-_RUNS = ", ".join(f"{name} {kind}" for name, kind in (*RUN_COLUMNS.items(), *columns_of_table()))
-_TABLES = f"""
-CREATE TABLE IF NOT EXISTS runs ({_RUNS}, PRIMARY KEY (directory));
-CREATE TABLE IF NOT EXISTS texts (id INTEGER PRIMARY KEY, text TEXT NOT NULL UNIQUE);
-CREATE TABLE IF NOT EXISTS damaged (
-    directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, reason TEXT NOT NULL
-);
-CREATE TABLE IF NOT EXISTS failures (
-    directory TEXT PRIMARY KEY, stamp TEXT NOT NULL, suite TEXT NOT NULL, scenario TEXT NOT NULL,
-    position INTEGER NOT NULL, planner TEXT NOT NULL, seed INTEGER NOT NULL,
-    axes TEXT NOT NULL, error TEXT NOT NULL, traceback TEXT NOT NULL
-);
-"""
-#: Counts up when columns mean something else than before; other changes of columns need nothing.
-_MEANING = 8
-#: Identifies the tables and their columns; an index with another number is rebuilt.
-VERSION = zlib.crc32(f"{_MEANING} {_TABLES} {IN_MORE}".encode()) & 0x7FFFFFFF
-
-
-@dataclass(frozen=True, slots=True)
-class Scan:
-    """Contents of a root.
-
-    Attributes:
-        there: directory of a run, or file of a failure -> its stamp.
-        missing: runs that have lost their records.
-    """
-
-    there: dict[str, str]
-    missing: tuple[DamagedRun, ...]
-
-    @staticmethod
-    def of(root: Path) -> Scan:
-        """List all runs and failures below a root by their files' stamps; no file is opened."""
-        found = list(_scan(root))
-        reason = f"{files.RECORD} is missing"
-        lost = (DamagedRun(directory=d, reason=reason) for d, stamp in found if not stamp)
-        return Scan({d: stamp for d, stamp in found if stamp}, tuple(lost))
 
 
 class StoredRows(NamedTuple):
@@ -155,7 +113,7 @@ def index(root: Path) -> Iterator[Store]:
             raise InputError(f"{root}: cannot be locked: {error.strerror}") from error
         if state == "taken":
             raise InputError(f"{root}: another campaign is writing there")
-        with closing(_opened(root / INDEX, guarded=state == "locked")) as database:
+        with closing(opened(root / INDEX, guarded=state == "locked")) as database:
             yield Store(root, database)
     finally:
         os.close(handle)
@@ -165,81 +123,11 @@ def index(root: Path) -> Iterator[Store]:
 def _copy(root: Path) -> Iterator[Store]:
     """Yield the index in memory; empty if there is none that can be read."""
     with closing(sqlite3.connect(":memory:")) as database:
-        with suppress(sqlite3.Error, OSError), closing(_reader(root / INDEX)) as original:
+        with suppress(sqlite3.Error, OSError), closing(reader(root / INDEX)) as original:
             if original.execute("PRAGMA user_version").fetchone()[0] == VERSION:
                 original.backup(database)
-        _prepare(database)
+        prepare(database)
         yield Store(root, database)
-
-
-def _reader(file: Path) -> sqlite3.Connection:
-    """Open the index without creating files beside it.
-
-    SQLite creates files beside an index with a write-ahead log (WAL), even for readers. During a
-    campaign they exist; otherwise the file is complete, and is read as bytes marked as having no
-    log.
-    """
-    if file.with_name(f"{file.name}-wal").exists():
-        return sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
-    content = bytearray(file.read_bytes())
-    content[18:20] = b"\1\1"
-    database = sqlite3.connect(":memory:")
-    database.deserialize(bytes(content))
-    return database
-
-
-def _opened(file: Path, *, guarded: bool = True) -> sqlite3.Connection:
-    """Return a usable index; a damaged or outdated one is recreated.
-
-    Args:
-        file: the index.
-        guarded: False where the file system has no locks, which SQLite would need, too.
-    """
-    for _ in range(2):
-        try:
-            if guarded:
-                database = sqlite3.connect(file, timeout=30.0)
-            else:
-                database = sqlite3.connect(f"{file.resolve().as_uri()}?nolock=1", uri=True)
-        except sqlite3.OperationalError as error:
-            raise unwritable(file, error) from error
-        try:
-            database.execute(f"PRAGMA journal_mode = {'WAL' if guarded else 'DELETE'}")
-            database.execute("PRAGMA synchronous = NORMAL")
-            if database.execute("PRAGMA user_version").fetchone()[0] not in (0, VERSION):
-                raise sqlite3.DatabaseError("another version")
-            _prepare(database)
-            return database
-        except sqlite3.DatabaseError as error:
-            database.close()
-            if isinstance(error, sqlite3.OperationalError):
-                raise unwritable(file, error) from error
-            for name in (file.name, f"{file.name}-wal", f"{file.name}-shm"):
-                file.with_name(name).unlink(missing_ok=True)
-    raise InputError(f"{file}: cannot be made")
-
-
-def unwritable(file: Path, error: sqlite3.OperationalError) -> InputError:
-    """Return the error of a file of SQLite that cannot be written, such as on a full disk."""
-    full = getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL
-    length = len(os.fsencode(file.absolute()))
-    if length > _LONGEST:
-        return InputError(
-            f"{file}: its path has {length} characters, and SQLite takes {_LONGEST}: choose a "
-            "shorter folder"
-        )
-    return InputError(
-        f"{file}: no space left on device; free some, and the same command goes on where it was"
-        if full
-        else f"{file}: cannot be written: {error}"
-    )
-
-
-def _prepare(database: sqlite3.Connection) -> None:
-    database.execute("PRAGMA foreign_keys = ON")
-    database.executescript(_TABLES)
-    database.execute(f"PRAGMA user_version = {VERSION}")
-    database.commit()
 
 
 class Store:
@@ -300,7 +188,7 @@ class Store:
 
     def add(self, directory: str) -> None:
         """Add a new run and remove its failure, if any."""
-        stamp = _stamp_of_run(self._root / directory)
+        stamp = stamp_of_run(self._root / directory)
         with self._writing():
             self._forget(directory + SUFFIX)
             self._insert(directory, stamp)
@@ -308,7 +196,7 @@ class Store:
     def add_failure(self, directory: str) -> None:
         """Add a run that could not be made."""
         with self._writing():
-            self._insert(directory + SUFFIX, _stamp(self._root / (directory + SUFFIX)))
+            self._insert(directory + SUFFIX, stamp_of(self._root / (directory + SUFFIX)))
 
     def rows(self, scan: Scan | None = None) -> StoredRows:
         """Return everything, in the documented order; with what ``scan`` has found missing."""
@@ -360,89 +248,6 @@ class Store:
 
 
 _FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error", "traceback")
-
-
-def _scan(root: Path) -> Iterator[tuple[str, str]]:
-    """Yield runs and failures below a root with their stamps, without calibration runs.
-
-    Folders of runs, which are most, are not listed: the files of a run have known names.
-    """
-    top, waiting = len(str(root)) + 1, [str(root)]
-    while waiting:
-        folder = waiting.pop()
-        place = folder[top:].replace(os.sep, "/") or "."
-        if stamp := _stamp_if_run(folder):
-            yield place, stamp
-            continue
-        names, below = _listed(folder)
-        if files.RECORD in names:  # replaced at this moment, or a broken link
-            if os.path.islink(f"{folder}/{files.RECORD}"):  # noqa: PTH114  as below
-                yield place, ""
-            continue
-        if files.RECORDING in names or files.SCORES in names:
-            yield place, ""
-            continue
-        if folder == str(root):
-            below.discard("references")
-        kept = (b for b in below if ".partial" not in b and ".old-" not in b)
-        waiting += [f"{folder}{os.sep}{b}" for b in sorted(kept, reverse=True)]
-        for name in names:
-            run = f"{folder}/{name.removesuffix(SUFFIX)}"
-            if name.endswith(SUFFIX) and not os.path.exists(f"{run}/{files.RECORD}"):  # noqa: PTH110
-                with suppress(OSError):
-                    file = f"{folder}{os.sep}{name}"
-                    yield file[top:].replace(os.sep, "/"), _stamp(file)
-
-
-def _listed(folder: str) -> tuple[list[str], set[str]]:
-    """Return the names of files in a folder, and of folders that are not links."""
-    names, below = list[str](), set[str]()
-    with suppress(OSError), os.scandir(folder) as entries:
-        for entry in entries:
-            if not _is_folder(entry):
-                names.append(entry.name)
-            elif not entry.is_symlink():
-                below.add(entry.name)
-    return names, below
-
-
-def _is_folder(entry: os.DirEntry[str]) -> bool:
-    try:
-        return entry.is_dir()
-    except OSError:  # a link to itself
-        return False
-
-
-def _stamp_if_run(folder: str) -> str:
-    """Return the stamp of a run; empty for a bag or another folder, or if it cannot be read."""
-    try:
-        about = os.stat(f"{folder}/{files.RECORD}")  # noqa: PTH116  many files: a Path takes longer
-        run = not stat.S_ISDIR(about.st_mode) and not files.is_bag(folder)
-        return _stamp_of_run(folder, about) if run else ""
-    except OSError:
-        return ""
-
-
-def _stamp(file: str | Path, known: os.stat_result | None = None) -> str:
-    about = known or os.stat(file)  # noqa: PTH116  many files: a Path takes longer
-    return f"{about.st_mtime_ns} {about.st_size} {about.st_ino} {about.st_ctime_ns}"
-
-
-def _stamp_of_run(run: str | Path, known: os.stat_result | None = None) -> str:
-    """Return a stamp that changes with each of its files; the time of a change cannot be set.
-
-    Args:
-        run: its folder.
-        known: the status of its record, if that has been asked for.
-    """
-    parts = [_stamp(f"{run}/{files.RECORD}", known)]
-    for name in (files.RECORDING, files.SCORES, files.SCENARIO):
-        try:
-            about = os.stat(f"{run}/{name}")  # noqa: PTH116
-            parts.append(f"{about.st_size} {about.st_ctime_ns}")
-        except OSError:
-            parts.append("-")
-    return " ".join(parts)
 
 
 def _read_row(run: Path, directory: str) -> RunRow:

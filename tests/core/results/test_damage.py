@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from crowdbot import cli
+from crowdbot.core.results.index_file import INDEX
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.store import INDEX, index
+from crowdbot.core.results.store import index
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.recordings import expand_paths
 from tests.core.bundle.made_up_runs import make_runs, record_runs, write_suite

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core.results import store
+from crowdbot.core.results.index_file import INDEX
 from crowdbot.core.results.indexed_rows import IndexedRun
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RUN_COLUMNS, RunRow
 from crowdbot.core.results.score_columns import ScoreColumns
-from crowdbot.core.results.store import INDEX
 from crowdbot.core.runs.run_record import RunRecord
 from tests.core.bundle.made_up_runs import make_runs, write_suite
 
