@@ -12,7 +12,8 @@ from crowdbot.core.planning.containment.declared import needs_of_class
 from crowdbot.core.planning.description import PlannerDescription, described
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.planner import Planner
-from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.planning.process.describe import describe
+from crowdbot.core.planning.process.process_plan import ProcessPlan
 from crowdbot.core.planning.python_file import (
     build_of_class,
     call_of_class,

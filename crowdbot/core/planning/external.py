@@ -14,7 +14,8 @@ from crowdbot.core.planning.choice import PlannerChoice, PlannerPlace, label_of
 from crowdbot.core.planning.containment.declared import needs_of_program
 from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.process import foreign_main
-from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.planning.process.describe import describe
+from crowdbot.core.planning.process.process_plan import ProcessPlan
 from crowdbot.core.planning.unchanged_files import while_unchanged
 from crowdbot.core.support.source_digest import (
     data_files,

@@ -25,7 +25,8 @@ from crowdbot.core.planning.guarded import planner_title
 from crowdbot.core.planning.half_choice import choice_with_half
 from crowdbot.core.planning.planner import Planner
 from crowdbot.core.planning.policies.policy_name import is_policy
-from crowdbot.core.planning.process.process_planner import ProcessPlan, describe
+from crowdbot.core.planning.process.describe import describe
+from crowdbot.core.planning.process.process_plan import ProcessPlan
 from crowdbot.core.planning.python_file import guess_class
 from crowdbot.core.planning.registered import (
     build_of_kind,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from crowdbot.core.planning.planner import Planner
-from crowdbot.core.planning.process.process_planner import NotLoaded
+from crowdbot.core.planning.process.describe import NotLoaded
 from crowdbot.errors import InputError
 
 

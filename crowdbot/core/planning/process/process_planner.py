@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import contextlib
-import logging
 import math
 import os
 import signal
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
 from typing import Any, NoReturn
 
-import msgpack
-
-from crowdbot.core.planning.containment.declared import with_data
 from crowdbot.core.planning.containment.offer import (
-    Needs,
     contained_request,
     kernel_offer,
 )
-from crowdbot.core.planning.description import PlannerDescription, read_description
+from crowdbot.core.planning.description import read_description
 from crowdbot.core.planning.host import RESET_LIMIT
-from crowdbot.core.planning.planner import NoValidCommand, Observation, Planner
+from crowdbot.core.planning.planner import NoValidCommand, Observation
 from crowdbot.core.planning.process.messages import ObservationWriter, reserve, reset_message
 from crowdbot.core.planning.process.planner_line import (
     LineClosed,
@@ -32,6 +25,7 @@ from crowdbot.core.planning.process.planner_line import (
     PlannerLine,
     WrongAnswer,
 )
+from crowdbot.core.planning.process.process_plan import ProcessPlan, check_plan
 from crowdbot.core.planning.process.server_handle import POOL, ServerGone, ServerHandle
 from crowdbot.core.planning.process.serving import PROTOCOL
 from crowdbot.core.planning.process.shared_memory import SharedMemory, has_shared_memory
@@ -43,7 +37,6 @@ from crowdbot.core.types.task import Task
 from crowdbot.errors import InputError, PlannerError, printable
 from crowdbot.old_names import say_old_names
 
-_LOG = logging.getLogger("crowdbot")
 #: Seconds for a process to exit by itself, and to be gone after closing its connection.
 _LEAVES, _DIES = 1.0, 0.3
 _GIB = 1 << 30
@@ -53,94 +46,12 @@ _LONGEST_REASON = 2000
 _KILLED_ALL = -(1 << 16)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessPlan:
-    """The program of a planner process.
-
-    Attributes:
-        who: start of every message about it.
-        what: for a planner in our Python, argument of `OwnSide`.
-        command: for any other program, its command line.
-        folder: its working directory; empty: that of the simulator.
-        parameters: its parameters; another program gets them in ``hello``.
-        preload: installed modules that are imported before the process is forked.
-        memory: largest address space, bytes; None: unlimited.
-        needs: files and network that it asks for.
-        beside: folder of the data that its description declares.
-        contained: True to refuse to run it where it would not be contained.
-        sealed: folder that holds all that it may declare; None: it may declare more.
-    """
-
-    who: str
-    what: Mapping[str, Any] | None = None
-    command: Sequence[str] = ()
-    folder: str = ""
-    parameters: Mapping[str, Any] = field(default_factory=dict)
-    preload: Sequence[str] = ()
-    memory: int | None = 4 * _GIB
-    needs: Needs = field(default_factory=Needs)
-    beside: Path | None = None
-    contained: bool = False
-    sealed: Path | None = None
-
-
 class ProcessLostError(PlannerError):
     """A planner's process died, hung or sent an invalid reply."""
 
 
 class ProcessDiedError(ProcessLostError):
     """A planner's process died: by itself, by a signal, or out of memory."""
-
-
-@dataclass(frozen=True, slots=True)
-class NotLoaded:
-    """Stands for the builder of a planner that could not be loaded, and fails in its place.
-
-    Attributes:
-        text: the error.
-        died: the error if its process died, so that a new attempt may succeed; else empty.
-    """
-
-    text: str
-    died: str = ""
-
-    def __call__(self) -> NoReturn:
-        """Raise the original error.
-
-        Raises:
-            PlannerError: always.
-        """
-        raise PlannerError(self.text)
-
-
-def describe(
-    plan: ProcessPlan, *, lenient: bool = False
-) -> tuple[PlannerDescription, Callable[[], Planner]]:
-    """Return a planner's description, from a short-lived process, and its builder.
-
-    A planner whose process dies or hangs on loading is accepted and fails in every run.
-
-    Args:
-        plan: the program.
-        lenient: accept also a planner that raises.
-
-    Raises:
-        InputError: it is missing, or its description is invalid.
-        PlannerError: it cannot be loaded.
-    """
-    try:
-        planner = ProcessPlanner(plan)
-    except PlannerError as error:
-        if not (lenient or isinstance(error, ProcessLostError)):
-            raise
-        died = str(error) if isinstance(error, ProcessDiedError) else ""
-        return PlannerDescription(needs=()), NotLoaded(str(error), died)
-    planner.close()
-    said = planner.description
-    if plan.beside is not None and said.data:
-        plan = replace(plan, needs=with_data(plan.needs, plan.beside, said.data))
-        _check_sealed(plan)
-    return said, partial(ProcessPlanner, plan)
 
 
 class ProcessPlanner:
@@ -157,9 +68,7 @@ class ProcessPlanner:
 
     def __init__(self, plan: ProcessPlan) -> None:
         self._plan, self._step = plan, 0
-        _check_parameters(plan)
-        _check_sealed(plan)
-        _check_containment(plan)
+        check_plan(plan)
         self._server: ServerHandle | None = None
         self._why = ""
         try:
@@ -388,49 +297,6 @@ def _here() -> str:
     with contextlib.suppress(OSError):
         return str(Path.cwd())
     return ""
-
-
-def _check_sealed(plan: ProcessPlan) -> None:
-    """Refuse a sealed planner that would reach more than what was sealed.
-
-    Raises:
-        InputError: it declares other files, or asks for the network.
-    """
-    if plan.sealed is not None and (beyond := plan.needs.beyond(plan.sealed)):
-        raise InputError(f"{plan.who}: a sealed planner {beyond}")
-
-
-def _check_containment(plan: ProcessPlan) -> None:
-    """Say, once in a process, that planners are not contained here, or refuse to run one.
-
-    Raises:
-        InputError: it has to be contained.
-    """
-    missing = kernel_offer().missing
-    if missing and plan.contained:
-        raise InputError(
-            f"{plan.who}: it would not be contained ({missing}); "
-            "--not-contained runs it all the same"
-        )
-    if missing:
-        _say_uncontained(missing)
-
-
-@cache
-def _say_uncontained(missing: str) -> None:
-    _LOG.warning("warning: planners are not contained: %s", missing)
-
-
-def _check_parameters(plan: ProcessPlan) -> None:
-    """Check that the parameters can be sent.
-
-    Raises:
-        InputError: one has a type of YAML that msgpack does not have, such as a date.
-    """
-    try:
-        msgpack.packb(dict(plan.parameters))
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(f"{plan.who}: its parameters cannot be sent: {error}") from None
 
 
 def _signal(number: int) -> str:
