@@ -31,7 +31,7 @@ def read_seeds(text: str) -> list[int]:
 
 
 def worker_count(jobs: int) -> int:
-    """Return this many, or one per core."""
+    """Return the number of worker processes: ``jobs``, or one per core if it is 0."""
     from crowdbot.core.support.cores import available_cores
 
     return jobs or available_cores()

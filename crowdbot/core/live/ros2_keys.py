@@ -41,11 +41,11 @@ class Ros2Topic:
         return f"{package}::{kind}::dds_::{name}_"
 
     def key(self, domain: int) -> str:
-        """Return the key of its messages."""
+        """Return the zenoh key of the topic's messages."""
         return f"{domain}/{self.name.strip('/')}/{self.dds_type}/{self.hash}"
 
     def token(self, domain: int, session: str, entity: int, kind: str, node: str) -> str:
-        """Return the token of a node that publishes or subscribes to it."""
+        """Return the liveliness token of a publisher or subscriber of the topic."""
         mangled = self.name.replace("/", "%")
         qos = _LATCHED_QOS if self.latched else _QOS
         return (
@@ -55,12 +55,12 @@ class Ros2Topic:
 
 
 def node_token(domain: int, session: str, node: str) -> str:
-    """Return the token of a node."""
+    """Return the liveliness token of a node."""
     return f"@ros2_lv/{domain}/{session}/0/0/{NODE}/%/%/{node}"
 
 
 def drivers_of(domain: int, name: str) -> str:
-    """Return the pattern of all tokens of a topic's publishers."""
+    """Return the pattern of the liveliness tokens of a topic's publishers."""
     return f"@ros2_lv/{domain}/*/*/*/{PUBLISHER}/*/*/*/{name.replace('/', '%')}/**"
 
 

@@ -160,7 +160,7 @@ class _Table:
 
 
 def _metrics(results: Results) -> dict[str, Any]:
-    """Return what runs say of the metrics that are kept."""
+    """Return version and parameters of each metric in the file, from the records of runs."""
     found: dict[str, Any] = {}
     for run in results.runs:
         document = run.record.document()

@@ -45,7 +45,7 @@ class PushWork:
     spec: PushWorkSpec
 
     def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the push work per progress, per person met, in total, and beyond a ghost's."""
+        """Score push work per progress, per person met, in total, and less that without a robot."""
         factory = ScoreFactory(PUSH_WORK)
         found = _near(factory, run, self.spec)
         if isinstance(found, list):
