@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -187,3 +188,28 @@ def test_nothing_is_left_of_a_file_that_failed(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="taken: cannot be written"):
         atomic_write(folder, "text")
     assert [p.name for p in tmp_path.iterdir()] == ["taken"]
+
+
+def test_a_link_without_looks_is_seen_as_what_it_collides_as() -> None:
+    """Convex pieces as the boxes around them, turned and moved with their collision."""
+    text = (
+        '<robot name="r"><link name="base_link"><inertial><mass value="9"/><inertia ixx="1" '
+        'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+        '<collision name="a"><origin xyz="0 0 0.3"/><geometry><box size="1 2 3"/></geometry>'
+        '</collision><collision><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/><geometry>'
+        '<mesh filename="p.piece" corners="0 0 0 2 0 0 0 1 0 0 0 4"/></geometry></collision>'
+        '</link><link name="mast"><visual><geometry><sphere radius="0.1"/></geometry></visual>'
+        '<collision><geometry><sphere radius="0.2"/></geometry></collision></link>'
+        '<joint name="j" type="fixed"><parent link="base_link"/><child link="mast"/></joint>'
+        "</robot>"
+    )
+    plain = build_model(discover(), discover().find("robot", "cuybot").spec())
+    model = replace(plain, description=text, base="base_link")
+    robot = URDF.from_xml_string(to_urdf(model, {}, "r").encode())
+    links = {link.name: link for link in robot.links}
+    box, piece = links["base_link"].visuals
+    assert (box.geometry.size, box.origin.xyz) == ([1, 2, 3], [0, 0, 0.3])
+    assert piece.geometry.size == [2, 1, 4]
+    assert piece.origin.xyz == pytest.approx([1 - 0.5, 1.0, 2.0])
+    assert piece.origin.rpy == pytest.approx([0, 0, math.pi / 2])
+    assert [v.geometry.radius for v in links["mast"].visuals] == [0.1]

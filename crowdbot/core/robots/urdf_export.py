@@ -15,9 +15,10 @@ import numpy as np
 
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY, optical
 from crowdbot.core.recording.scenery import FRAMES
+from crowdbot.core.robots.convex_piece import corners_of, is_piece
 from crowdbot.core.robots.description import Description, read_description
 from crowdbot.core.robots.sdf_to_urdf import from_sdf, write_origin
-from crowdbot.core.robots.xml import matrix
+from crowdbot.core.robots.xml import matrix, pose_of, six
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.errors import InputError
@@ -45,6 +46,9 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
     document = deepcopy(described.model) if urdf else from_sdf(described, wheel_rates(robot))
     document.set("name", name)
     _ground(document, robot, described)
+    for link in document.findall("link"):
+        if link.find("visual") is None:
+            _show(link)
     for sensor, info in sensors.items():
         if info.category == "odometry":
             continue
@@ -56,6 +60,32 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
             _frame(document, sensor, eye, f"{eye}_joint", (0.0, 0.0, 0.0), OPTICAL_RPY)
     Xml.indent(document)
     return '<?xml version="1.0"?>\n' + Xml.tostring(document, encoding="unicode") + "\n"
+
+
+def _show(link: Xml.Element) -> None:
+    """Let a viewer see what a link collides as; a convex piece as the box around it."""
+    for collision in link.findall("collision"):
+        seen = deepcopy(collision)
+        seen.tag = "visual"
+        seen.attrib.pop("name", None)
+        geometry = seen.find("geometry")
+        for shape in [] if geometry is None else list(geometry):
+            if is_piece(shape):
+                _box_around(seen, shape)
+        link.append(seen)
+
+
+def _box_around(visual: Xml.Element, piece: Xml.Element) -> None:
+    corners = corners_of(piece)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle = np.eye(4)
+    middle[:3, 3] = 0.5 * (low + high)
+    at = matrix(pose_of(visual)) @ middle
+    for part in (*visual.findall("origin"), *visual.findall("geometry")):
+        visual.remove(part)
+    write_origin(visual, six(at))
+    size = " ".join(f"{side:.6g}" for side in (high - low).tolist())
+    Xml.SubElement(Xml.SubElement(visual, "geometry"), "box", size=size)
 
 
 def _ground(document: Xml.Element, robot: RobotModel, described: Description) -> None:
