@@ -86,11 +86,13 @@ def bundle(
     from crowdbot.core.scenarios.lock_check import check_revealed
 
     registry = installed(plugin, no_plugins)
-    if root.is_file() or suite is None or planner is None:
+    if root.is_file() or suite is None:
         raise _usage(root, suite, registry)
     expansion, lock = open_suite(suite, registry)
     for scenario in expansion.scenarios:
         check_revealed(scenario)
+    if planner is None:
+        raise _usage(root, suite, registry)
     submission = Submission(
         root=root, planner=planner, team=team, contact=contact, partial=partial,
         recordings=recordings,
