@@ -1,7 +1,7 @@
 """Train a policy by PPO of Stable-Baselines3, and save it as a planner, with its learning curve.
 
-    python benchmarks/train_ppo.py --minutes 6 --touch 12 --forced 0 --out first.onnx
-    python benchmarks/train_ppo.py --start first.zip --noise 0.2 --minutes 18 --out policy.onnx
+    python benchmarks/train_ppo.py --minutes 25 --out first.onnx
+    python benchmarks/train_ppo.py --start taught.zip --values 0.7 --noise 0.1 --out policy.onnx
 
 docs/howto/train_a_policy.md has the commands of the policy that comes along.
 
@@ -10,8 +10,9 @@ level begins once nine of ten episodes arrive, or when its share of the time is 
 goes on from a policy at the last level, among people who walk along, too, or in a ``--suite`` with
 new draws of people; with less noise in its actions: what drives well among people in spite of much
 noise keeps too far away without it. With more ``--directions`` than before it begins with the same
-actions. Beside the policy stand ``policy.zip``, for Stable-Baselines3, and ``policy.csv`` and
-``policy.svg``, its learning curve.
+actions. It may also go on from what benchmarks/imitate.py has taught; then it learns for the first
+``--values`` minutes only how much what it sees is worth. Beside the policy stand ``policy.zip``,
+for Stable-Baselines3, and ``policy.csv`` and ``policy.svg``, its learning curve.
 Time is the processor time of this process.
 """
 
@@ -43,7 +44,7 @@ WORLDS: dict[str, Any] = {
                ["counter-d010-*", "counter-d020-*", "in-d010-mixed-*"]],
     "observation": {
         "kind": "free_velocities", "sensor": "front_lidar", "others": ["rear_lidar"],
-        "directions": 17, "widest": 2.0,
+        "directions": 33, "widest": 2.4, "speeds": 3, "people": 12,
     },
     "start_spread": {"x": 0.5, "y": 3.5, "yaw": 2.0},
     "reward": {
@@ -66,6 +67,7 @@ class Course(BaseCallback):
     def __init__(self, given: argparse.Namespace, before: Sequence[tuple[float, ...]]) -> None:
         super().__init__()
         self._budget: float = 60.0 * given.minutes
+        self._alone: float = 60.0 * given.values
         self._out: Path = given.out
         self._rate: float = given.learning_rate or (1e-4 if before else 3e-4)
         self._level = len(ENDS) + bool(given.suite) if before else 0
@@ -76,6 +78,12 @@ class Course(BaseCallback):
     def _on_training_start(self) -> None:
         env: Any = self.training_env
         env.set_level(self._level)
+
+    def _on_rollout_start(self) -> None:
+        """Let the actor learn only once the values are known."""
+        policy: Any = self.model.policy
+        for part in (policy.mlp_extractor.policy_net, policy.action_net):
+            part.requires_grad_(self.used >= self._alone)
 
     @property
     def used(self) -> float:
@@ -198,7 +206,7 @@ def begin(env: StableVecEnv, given: argparse.Namespace) -> PPO:
     return PPO(
         "MlpPolicy", env, batch_size=2048, n_epochs=6, learning_rate=3e-4, seed=given.seed,
         device="cpu", **horizon(given.hertz),
-        policy_kwargs={"net_arch": [128, 128], "log_std_init": math.log(given.noise)},
+        policy_kwargs={"net_arch": [256, 256], "log_std_init": math.log(given.noise)},
     )  # fmt: skip
 
 
@@ -232,26 +240,32 @@ def widened(weight: torch.Tensor, before: int, after: int, speeds: int) -> torch
     return torch.cat([wider, weight[:, size:]], dim=1)
 
 
-def main(arguments: list[str]) -> None:
-    """Read the arguments and train."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=float, default=6.0, help="of processor time")
+def add_worlds(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the worlds and of the policy."""
     parser.add_argument("--worlds", type=int, default=96)
     parser.add_argument("--noise", type=float, default=0.5, help="deviation of actions")
-    parser.add_argument("--start", type=Path, help="policy.zip, beside policy.csv, to go on from")
     parser.add_argument("--touch", type=float, default=20.0, help="cost of touching a person")
     parser.add_argument("--forced", type=float, default=40.0, help="of forcing people aside, kg/J")
     parser.add_argument("--aside", type=float, default=0.0, help="cost of a person driven aside")
     parser.add_argument("--advance", type=float, default=2.0, help="of a metre towards them, 1/m")
     parser.add_argument("--time", type=float, default=0.1, help="cost of a second, 1/s")
-    parser.add_argument("--directions", type=int, default=17, help="seen, 0.25 rad apart")
-    parser.add_argument("--hertz", type=int, default=4, help="decisions a second")
+    parser.add_argument("--directions", type=int, default=33, help="seen, 0.15 rad apart")
+    parser.add_argument("--hertz", type=int, default=8, help="decisions a second")
     parser.add_argument("--suite", help="to go on in, instead of the corridors")
     parser.add_argument("--only", action="append", help="pattern of its scenario ids")
-    parser.add_argument("--learning-rate", type=float, help="at the beginning")
     parser.add_argument("--threads", type=int, default=1, help="that step the worlds")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("policy.onnx"))
+
+
+def main(arguments: list[str]) -> None:
+    """Read the arguments and train."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=6.0, help="of processor time")
+    parser.add_argument("--values", type=float, default=0.0, help="first minutes, for values only")
+    parser.add_argument("--start", type=Path, help="policy.zip, beside policy.csv, to go on from")
+    parser.add_argument("--learning-rate", type=float, help="at the beginning")
+    add_worlds(parser)
     train(parser.parse_args(arguments))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 #: The longest tests, 13 minutes of processor time together.
 LONG = (
+    "tests/rl/test_teachers.py::test_teachers_drive_towards_the_goals_of_their_worlds",
     "tests/core/campaign/test_judge.py::test_nothing_is_run_where_it_would_not_be_contained",
     "tests/plugins/crowd/test_named_policies.py::test_people_walk_through_a_corridor",
     "tests/plugins/sensors/test_tilted.py::test_a_lidar_that_looks_down_sees_the_floor_at_h_over_sin_pitch",

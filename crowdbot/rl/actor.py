@@ -141,10 +141,14 @@ class Actor:
                 pose=pose,
                 twist=twist,
                 goal=self._goals,
-                readings={seen.name: self._ranges(batches, k, seen) for k, seen in self._sensors},
+                readings=self.readings(batches),
                 people=people,
             )
         )
+
+    def readings(self, batches: Batches) -> dict[str, Array]:
+        """Return the latest readings (W, ...) of its sensors, by name."""
+        return {seen.name: self._ranges(batches, k, seen) for k, seen in self._sensors}
 
     def _ranges(self, batches: Batches, k: int, seen: Any) -> Array:
         shape = seen.info.shape
