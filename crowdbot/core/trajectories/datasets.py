@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+import crowdbot.core.trajectories.plausibility.exchanged as exchanged
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.trajectories.raw_table import RawTable
-from crowdbot.core.trajectories.table_columns import FRAMES, unit_in, without_unit
+from crowdbot.core.trajectories.table_columns import (
+    FRAMES,
+    not_used,
+    refuse_exchanged,
+    unit_in,
+    whole_numbers,
+    without_unit,
+)
 from crowdbot.core.trajectories.text_table import split
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, UnknownNameError
@@ -21,8 +30,6 @@ _PLAIN = ("frame", "id", "x", "y")
 #: Names of columns in comments, in lower case -> ours.
 _OURS = {**dict.fromkeys(FRAMES, "frame"), **{n: n for n in ("id", "x", "y", "vx", "vy")},
          **dict.fromkeys(("persid", "personid", "ped_id"), "id")}  # fmt: skip
-#: Frames and ids are exchanged if people then move this much less from row to row.
-_EXCHANGED = 0.5
 
 
 def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> RawTable:
@@ -85,7 +92,9 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
     found = split(path, input_text(path, LARGEST_TABLE))
     width = len(found.rows[0])
     names = [_OURS.get(without_unit(name).lower(), "") for name in found.header]
+    assumed = found.assumed
     if not {"frame", "id", "x", "y"} <= set(names):
+        assumed = True
         if found.header or width not in (4, 8):
             seen = f"columns {', '.join(found.header)}" if found.header else f"{width} columns"
             raise InputError(
@@ -101,35 +110,34 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
     for name in ("x", "y"):
         header = found.header[names.index(name)] if found.header else ""
         columns[name] = columns[name] * (unit_in(header) or found.unit)
-    told = [] if found.header else _exchanged(columns)
+    if assumed:
+        whole_numbers(raw, "frame", "id")
+    told = _exchanged(columns, names) if assumed else []
+    told += not_used(c for c, ours in zip(found.header, names, strict=False) if not ours)
     rate = found.frame_rate if frame_rate is None else frame_rate
     frames = columns.pop("frame")
     t = _seconds(frames, 0.4) if rate is None else (frames - frames.min()) / rate
-    return RawTable(str(path), {"t": t, **columns}, found.lines), told
+    table = RawTable(str(path), {"t": t, **columns}, found.lines)
+    if not assumed:
+        refuse_exchanged(table, frames)
+    return table, told
 
 
-def _exchanged(columns: dict[str, Array]) -> list[str]:
+def _exchanged(columns: dict[str, Array], names: Sequence[str]) -> list[str]:
     """Exchange frames and ids if people then move less from row to row; return what was found.
 
     Files of PeTrack have the columns of ETH and UCY in another order: id, frame, x, y.
     """
-    read, other = _step(columns, "id", "frame"), _step(columns, "frame", "id")
-    if other is None or (read is not None and other >= _EXCHANGED * read):
+    found = exchanged.steps(columns)
+    if found is None:
         return []
+    read, other = found
     columns["id"], columns["frame"] = columns["frame"], columns["id"]
     seen = "no one is there twice" if read is None else f"steps of {read:.3g} m (median)"
     return [
-        f"the first column is read as the id, the second as the frame: the other way round there "
-        f"are {seen}, instead of {other:.3g} m"
+        f"the first column is read as the {names[1]}, the second as the {names[0]}: the other way "
+        f"round there are {seen}, instead of {other:.3g} m"
     ]
-
-
-def _step(columns: dict[str, Array], person: str, frame: str) -> float | None:
-    """Return the median distance between successive rows of a person, m; None without any."""
-    order = np.lexsort((columns[frame], columns[person]))
-    same = np.diff(columns[person][order]) == 0
-    x, y = (np.diff(columns[n][order])[same] for n in ("x", "y"))
-    return float(np.median(np.hypot(x, y))) if len(x) else None
 
 
 def split_robot(table: RawTable, robot: int | str | None) -> tuple[RawTable | None, RawTable]:

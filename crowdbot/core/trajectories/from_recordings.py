@@ -16,7 +16,7 @@ import crowdbot.core.trajectories.own_recordings as own
 from crowdbot.core.support.arguments import mapping_of, number_of, path_of, point_of
 from crowdbot.core.trajectories.bag.tables import bag_tables
 from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
-from crowdbot.core.trajectories.plausibility import implausible
+from crowdbot.core.trajectories.plausibility.findings import implausible
 from crowdbot.core.trajectories.raw_table import ColumnNames, RawTable
 from crowdbot.core.trajectories.recording_options import (
     DEFAULTS,
@@ -332,6 +332,7 @@ def _made(
         raise InputError("a robot needs robot_radius (m) and robot_mass (kg), which tables lack")
     arrays = {"contacts": contacts, **given, **columns, "robot_goal_time": arrived}
     run: _Run = cast(Any, cls).from_arrays(**arrays)
-    for text in run.implausible():
+    notes = (note for table in tables.values() if table is not None for note in table.notes)
+    for text in (*notes, *run.implausible()):
         warnings.warn(text, RecordingWarning, stacklevel=4)
     return run

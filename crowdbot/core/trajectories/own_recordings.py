@@ -59,9 +59,8 @@ def columns_of(
     Raises:
         InputError: tables are inconsistent, or there is no table.
     """
-    for what, given, columns in (("robot", robot, ROBOT[:3]), ("agents", agents, AGENT[:4])):
-        if given is not None:
-            given.require(what, *columns)
+    _require("robot", robot, ROBOT[:3])
+    _require("agents", agents, AGENT[:4])
     stamps = [t.stamps() for t in (robot, agents) if t is not None]
     if not stamps:
         raise InputError("trajectories: neither a robot nor agents")
@@ -95,6 +94,14 @@ def columns_of(
     return made
 
 
+def _require(role: str, table: RawTable | None, columns: tuple[str, ...]) -> None:
+    """Require columns, and velocities in both directions or none."""
+    if table is not None:
+        table.require(role, *columns)
+        if ("vx" in table) != ("vy" in table):
+            table.require(role, "vx", "vy")
+
+
 def _seconds(table: RawTable, column: str, origin: int | None) -> Array:
     """Return times (K,), s; stamps are counted from ``origin``, ns since 1970."""
     times, stamped = table.times(column, origin or 0)
@@ -111,8 +118,6 @@ def _zero(rows: Mapping[str, Array] | None, people: Mapping[str, Array] | None) 
 
 
 def _robot_rows(robot: RawTable, origin: int | None) -> dict[str, Array]:
-    if ("vx" in robot) != ("vy" in robot):
-        robot.require("robot", "vx", "vy")
     rows = {n: robot.numbers(n) for n in ROBOT[1:] if n in robot}
     rows["t"] = _seconds(robot, "t", origin)
     if not len(rows["t"]):

@@ -35,6 +35,7 @@ class RawTable:
         header: names of all columns in the file, including unused ones.
         frame_rate: frames per second that the file states; None if it does not.
         counts_frames: True if its column of times is called one of frames.
+        notes: sentences on what is not read, or not as it stands.
     """
 
     name: str
@@ -43,6 +44,7 @@ class RawTable:
     header: Sequence[str] = ()
     frame_rate: float | None = None
     counts_frames: bool = False
+    notes: Sequence[str] = ()
 
     def __contains__(self, column: str) -> bool:
         return column in self.columns
@@ -96,9 +98,11 @@ class RawTable:
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
             self._all_there(column, ~np.isnat(cells))
             return cells.astype("datetime64[ns]").astype(np.int64)
-        unit = next((_unit_since_1970(cell) for cell in cells[:1]), None)
+        unit = _unit_of_stamps(cells)
         if unit is not None:
-            return np.array([self._ticks(column, i, cell) * unit for i, cell in enumerate(cells)])
+            least = next(size for size, ns in _SINCE_1970 if ns == unit)
+            ticks = [self._ticks(column, i, cell, least) for i, cell in enumerate(cells)]
+            return np.array(ticks) * unit
         if not any(_is_stamp(cell) for cell in cells[:1]):
             return None
         return np.array([self._stamp(column, i, cell) for i, cell in enumerate(cells)], np.int64)
@@ -137,12 +141,18 @@ class RawTable:
             raise InputError(f"{self.where(row)}: {column} is infinite; leave unknown cells empty")
         return number
 
-    def _ticks(self, column: str, row: int, cell: Any) -> int:
+    def _ticks(self, column: str, row: int, cell: Any, least: float) -> int:
         try:
             text = str(cell).strip()
-            return int(text) if text.isdigit() else int(float(text.replace(",", ".")))
+            ticks = int(text) if text.isdigit() else int(float(text.replace(",", ".")))
         except (ValueError, OverflowError) as error:
             raise InputError(f"{self.where(row)}: {column}: not a stamp: {cell!r}") from error
+        if not least <= ticks < 100 * least:
+            raise InputError(
+                f"{self.where(row)}: {column}: {cell} is not a time since 1970, as the others are: "
+                "not filled in? Leave out such rows"
+            )
+        return ticks
 
     def _stamp(self, column: str, row: int, cell: Any) -> int:
         try:
@@ -216,6 +226,13 @@ def _unit_since_1970(cell: Any) -> int | None:
     except (TypeError, ValueError):
         return None
     return next((unit for least, unit in _SINCE_1970 if least <= number < 100 * least), None)
+
+
+def _unit_of_stamps(cells: Cells) -> int | None:
+    """Return the unit of a column of times since 1970, ns, by three of its cells; None without."""
+    few = [cells[k] for k in (0, len(cells) // 2, len(cells) - 1)] if len(cells) else []
+    units = [_unit_since_1970(cell) for cell in few]
+    return next((unit for unit in units if unit is not None and units.count(unit) > 1), None)
 
 
 def _is_stamp(cell: Any) -> bool:

@@ -4,23 +4,30 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+import crowdbot.core.trajectories.plausibility.exchanged as exchanged
 from crowdbot.core.support.arguments import expect, number_of
-from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, RawTable, as_number
+from crowdbot.core.trajectories.plausibility.times import PERSON_SPEED
+from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, Ids, RawTable, as_number
+from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
 
 #: Names of a column with numbers of frames, in lower case.
 FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
 #: Our name -> other names that are usual, in lower case; taken if ours is not there.
 _USUAL: Mapping[str, Sequence[str]] = {
-    "t": ("time", "timestamp", "simsec", "simtime", *FRAMES),
-    "x": ("coordcentx", "startx"),
-    "y": ("coordcenty", "starty"),
+    "t": ("time", "timestamp", "time_stamp", "stamp", "simsec", "simtime", *FRAMES),
+    "x": ("coordcentx", "startx", "pos_x", "position_x"),
+    "y": ("coordcenty", "starty", "pos_y", "position_y"),
+    "vx": ("vel_x", "velocity_x", "v_x"),
+    "vy": ("vel_y", "velocity_y", "v_y"),
+    "theta": ("yaw", "heading"),
+    "w": ("omega", "yaw_rate"),
     "id": (
         "persid", "personid", "person_id", "ped_id", "pedestrian_id", "agent_id", "track_id",
         "pers", "person", "pedestrian", "pedestrianid", "agent", "agentid", "trackid", "human_id",
@@ -52,6 +59,19 @@ _WIDE = (
     re.compile(r"^(?P<axis>[xy])_(?P<who>\w+)$", re.IGNORECASE),
     re.compile(r"^(?P<who>\w+)[_. ](?P<axis>[xy])$", re.IGNORECASE),
 )
+#: What has x and y, and is not a person of a wide table.
+_NO_PERSON = re.compile(
+    r"^(?:pos(?:ition)?|loc(?:ation)?|(?:v|vel(?:ocity)?|speed|acc(?:el(?:eration)?)?|force)"
+    r"|goal|target|orientation|q|quat(?:ernion)?|dir(?:ection)?|size|offset|gaze|head)s?\d*$",
+    re.IGNORECASE,
+)
+#: A unit at the end of a name of times or angles: ``t_ms``, ``yaw_deg``.
+_ENDING = re.compile(
+    r"^(t|time|timestamp|time_stamp|stamp|theta|yaw|heading)_(s|sec|ms|us|ns|rad|deg)$",
+    re.IGNORECASE,
+)
+#: Columns that say nothing about the plane, or number the rows.
+_NEEDLESS = ("z", "point", "geometry", "", "index", "unnamed: 0")
 #: Prefixes of numbers of people.
 _PERSON = re.compile(r"^(?:p|ped|pedestrian|person|agent|id|human)_?(\d+)$", re.IGNORECASE)
 
@@ -112,13 +132,13 @@ def _refuse_twins(name: str, header: Sequence[str], wanted: Iterable[int]) -> No
 def without_unit(column: str) -> str:
     """Return the name of a column without its unit: ``x/cm``, ``x [cm]``, ``x(cm)``."""
     column = _PROCESSOR.sub("", column)
-    match = _UNIT.match(column)
+    match = _UNIT.match(column) or _ENDING.match(column)
     return match[1] if match is not None and match[1] else column
 
 
 def unit_in(column: str) -> float | None:
     """Return the unit that a column's name states, in m, s or rad; None if it states none."""
-    match = _UNIT.match(column)
+    match = _UNIT.match(column) or _ENDING.match(column)
     if match is None:
         return length_unit(column)
     word = match[2].lower()
@@ -141,7 +161,7 @@ def unit_of(ours: str, column: str, of_lengths: float) -> float:
     return own if own is not None else of_lengths if ours in _LENGTHS else 1.0
 
 
-def scaled(name: str, ours: str, cells: Sequence[str], unit: float, lines: Sequence[int]) -> Cells:
+def scaled(name: str, ours: str, cells: Cells, unit: float, lines: Sequence[int]) -> Cells:
     """Return a column in metres, seconds or rad, if it is in another unit."""
     if unit == 1.0 or ours not in (*_LENGTHS, *_OTHERS):
         return cells
@@ -156,7 +176,7 @@ def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str])
         name: name for messages.
         frame: object with columns by name; or with such ``data`` and a ``frame_rate``.
         names: our name -> the frame's name, if different.
-        known: our names; other columns are ignored.
+        known: our names; other columns are named in the table's notes.
 
     Raises:
         InputError: it is not a frame, or lacks a named column.
@@ -164,19 +184,25 @@ def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str])
     rate = getattr(frame, "frame_rate", None) if hasattr(frame, "data") else None
     frame = frame.data if rate is not None else frame
     try:
-        header = [str(c) for c in frame]
-        made = chosen(name, header, names, known)
-        keys = list(frame)
-        columns = {ours: np.asarray(_plain(frame[keys[i]])) for ours, i in made.items()}
+        spelled = [str(c) for c in frame]
+        header = [without_unit(column) for column in spelled]
+        made = chosen(name, header, names, known, spelled)
+        keys = dict(zip(header, frame, strict=True))
+
+        def cells(column: str) -> Cells:
+            return np.asarray(_plain(frame[keys[column]]))
+
+        columns = {
+            ours: scaled(name, ours, cells(header[i]), unit_of(ours, spelled[i], 1.0), ())
+            for ours, i in made.items()
+        }
     except (TypeError, KeyError) as error:
         raise InputError(f"{name}: a data frame is wanted, not {kind_of(frame)}") from error
     if len({len(c) for c in columns.values()}) > 1:
         raise InputError(f"{name}: its columns differ in length")
     counts = "t" in made and header[made["t"]].lower() in FRAMES
-    raw = RawTable(name, columns, header=header, frame_rate=rate, counts_frames=counts)
-    if "id" not in known:
-        return raw
-    return from_wide(raw, header, {str(k): np.asarray(_plain(frame[k])) for k in keys}, 1.0)
+    raw = RawTable(name, columns, header=spelled, frame_rate=rate, counts_frames=counts)
+    return completed(raw, header, cells, 1.0, made.values(), wide="id" in known)
 
 
 def _plain(series: Any) -> Any:
@@ -186,36 +212,72 @@ def _plain(series: Any) -> Any:
     return series
 
 
-def from_wide(
-    table: RawTable, header: Sequence[str], cells: Mapping[str, Cells], unit: float
+def not_used(columns: Iterable[str]) -> list[str]:
+    """Return a sentence that names columns which are not read, if they could matter."""
+    left = [column for column in columns if without_unit(column).lower() not in _NEEDLESS]
+    if not left:
+        return []
+    return [
+        f"the column{'s' if len(left) > 1 else ''} {', '.join(left)} "
+        f"{'are' if len(left) > 1 else 'is'} not used"
+    ]
+
+
+def completed(
+    table: RawTable,
+    header: Sequence[str],
+    cells: Callable[[str], Cells],
+    unit: float,
+    used: Iterable[int],
+    *,
+    wide: bool,
 ) -> RawTable:
-    """Return one row for each person and time, if the table has two columns for each person.
+    """Return a table in rows, whose notes name the columns that are not used.
 
     Args:
         table: what was found under our names.
         header: names of its columns, without units.
-        cells: all columns by name.
+        cells: returns a column by name.
         unit: metres in the unit of lengths.
+        used: places of the columns that were found.
+        wide: True if it may have two columns for each person.
 
     Raises:
         InputError: a person has two columns of one name, or a number has x without y.
     """
+    people = _columns_of_people(table, header) if wide else {}
+    read = {*used, *(header.index(c) for axes in people.values() for c in axes.values())}
+    notes = not_used(table.header[i] for i in range(len(header)) if i not in read)
+    table = replace(table, notes=[f"{table.name}: {note}" for note in notes])
+    return _in_rows(table, people, cells, unit) if people else table
+
+
+def _columns_of_people(table: RawTable, header: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Return x and y of each person, if the table of people has two columns for each."""
     if any(name in table for name in ("id", "x", "y")) or "t" not in table:
-        return table
+        return {}
     people: dict[str, dict[str, str]] = {}
     for column in header:
         match = next((m for pattern in _WIDE if (m := pattern.match(column))), None)
-        if match is not None:
+        if match is not None and not _NO_PERSON.match(match["who"]):
             people.setdefault(match["who"], {})[match["axis"].lower()] = column
     _refuse_halves(table.name, header, people)
-    people = {who: axes for who, axes in people.items() if len(axes) == 2}
-    if not people:
-        return table
+    return {who: axes for who, axes in people.items() if len(axes) == 2}
+
+
+def _in_rows(
+    table: RawTable,
+    people: Mapping[str, Mapping[str, str]],
+    cells: Callable[[str], Cells],
+    unit: float,
+) -> RawTable:
+    """Return one row for each person and time."""
+    tracks = [(_number(who), cells(axes["x"]), cells(axes["y"])) for who, axes in people.items()]
     rows = [
-        (k, _number(who), cells[axes["x"]][k], cells[axes["y"]][k])
+        (k, who, x[k], y[k])
         for k in range(len(table))
-        for who, axes in people.items()
-        if _is_there(cells[axes["x"]][k]) and _is_there(cells[axes["y"]][k])
+        for who, x, y in tracks
+        if _is_there(x[k]) and _is_there(y[k])
     ]
     times = table.columns["t"]
     places = {"x": [row[2] for row in rows], "y": [row[3] for row in rows]}
@@ -255,6 +317,47 @@ def _is_there(cell: Any) -> bool:
         return True  # its line is named when it is read
 
 
+def whole_numbers(table: RawTable, *columns: str) -> None:
+    """Require columns of whole numbers, where the order of columns is assumed.
+
+    Raises:
+        InputError: a frame or an id is not a whole number, so the columns have another order.
+    """
+    for name in columns:
+        numbers = table.numbers(name)
+        odd = np.flatnonzero(numbers != np.round(numbers))
+        if len(odd):
+            raise InputError(
+                f"{table.where(int(odd[0]))}: nothing names the columns, and {numbers[odd[0]]:g} "
+                f"cannot be {'an id' if name == 'id' else 'the number of a frame'}: write their "
+                "names above them, such as '# id frame x/m y/m z/m'"
+            )
+
+
+def refuse_exchanged(table: RawTable, frames: Array) -> None:
+    """Require that people would not move far less if ids were frames, and frames ids.
+
+    Args:
+        table: t in s, id, x, y.
+        frames: (K,).
+
+    Raises:
+        InputError: that is so, and they move faster than anyone.
+    """
+    columns = {name: table.numbers(name) for name in ("id", "x", "y")}
+    found = exchanged.steps({**columns, "frame": frames})
+    times = np.unique(table.numbers("t"))
+    if found is None or found[0] is None or len(times) < 2:
+        return
+    speeds = [step / float(np.median(np.diff(times))) for step in found if step is not None]
+    if speeds[0] > PERSON_SPEED:
+        raise InputError(
+            f"{table.name}: people move at {speeds[0]:.3g} m/s (median), and by {found[1]:.2g} m "
+            f"from row to row instead of {found[0]:.2g} if columns of ids and frames are "
+            "exchanged: exchange their names"
+        )
+
+
 def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapping[str, RawTable]:
     """Convert times in tables from frame numbers to s.
 
@@ -279,6 +382,10 @@ def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapp
                     "are in a second"
                 )
         made[name] = table if rate is None else _without_frames(table, rate)
+        if table.counts_frames and name == "agents" and {"id", "x", "y"} <= set(table.columns):
+            ids = Ids(table).rows.astype(float)
+            seconds = replace(made[name], columns={**made[name].columns, "id": ids})
+            refuse_exchanged(seconds, table.times()[0])
     return made
 
 

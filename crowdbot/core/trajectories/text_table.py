@@ -14,10 +14,11 @@ from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, RawTable, a
 from crowdbot.core.trajectories.table_columns import (
     FRAMES,
     chosen,
-    from_wide,
+    completed,
     length_unit,
     scaled,
     unit_of,
+    whole_numbers,
     without_unit,
 )
 from crowdbot.errors import InputError
@@ -39,6 +40,7 @@ class TextTable:
 
     Attributes:
         header: names of the columns, from the first row or a comment; empty without either.
+        assumed: True if nothing names them: they are those of PeTrack and JuPedSim.
         frame_rate: frames per second that a comment states; None if none does.
         unit: metres in the unit of lengths that a comment states; 1 if none does.
     """
@@ -48,6 +50,7 @@ class TextTable:
     lines: list[int]
     frame_rate: float | None
     unit: float
+    assumed: bool = False
 
 
 def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable:
@@ -56,7 +59,7 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     Args:
         path: the file; UTF-8.
         names: our name -> the file's name, if different.
-        known: our names; other columns are ignored.
+        known: our names; other columns are named in the table's notes.
 
     Raises:
         InputError: it cannot be read, is not a table, or lacks a named column.
@@ -87,7 +90,9 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     raw = RawTable(
         str(path), columns, table.lines, table.header, table.frame_rate, counts_frames=counts
     )
-    return from_wide(raw, header, cells, table.unit) if "id" in known else raw
+    if table.assumed and {"t", "id"} <= set(made):
+        whole_numbers(raw, "t", "id")
+    return completed(raw, header, cells.__getitem__, table.unit, made.values(), wide="id" in known)
 
 
 def split(path: Path, text: str) -> TextTable:
@@ -113,9 +118,12 @@ def split(path: Path, text: str) -> TextTable:
         rows, numbers = rows[1:], numbers[1:]
     else:
         header = _header_of_comments(comments, len(rows[0]))
+    assumed = not header and _of_petrack(comments, len(rows[0]))
+    if assumed:
+        header = list(_TRAJECTORY[: len(rows[0])])
     told = " ".join(comments)
     rate = _frame_rate(path, comments)
-    return TextTable(header, rows, numbers, rate, length_unit(told) or 1.0)
+    return TextTable(header, rows, numbers, rate, length_unit(told) or 1.0, assumed)
 
 
 def _plain_viswalk(lines: list[str]) -> list[str]:
@@ -150,13 +158,17 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
         words = re.split(r"[\s,;]+", re.sub(r"\s*[\[(]", "[", comment.lstrip("#%/ \t")).strip())
         names = [without_unit(word.strip("\"':")).lower() for word in words if word]
         if "x" in names and "y" in names:
-            start = min(names.index(name) for name in names if name in _STARTS or name == "x")
-            words = words[start:]
+            starts = (names.index(name) for name in names if name in (*_STARTS, *"xyz"))
+            words = words if len(words) == width else words[min(starts) :]
             if len(words) >= width:
                 return [word.strip("\"':") for word in words[:width]]
-    if any(_RATE.search(c) or "petrack" in c.lower() for c in comments) and 4 <= width <= 5:
-        return list(_TRAJECTORY[:width])
     return []
+
+
+def _of_petrack(comments: Sequence[str], width: int) -> bool:
+    """Return True for a table of PeTrack or JuPedSim, whose columns no comment needs to name."""
+    known = any(_RATE.search(c) or "petrack" in c.lower() for c in comments)
+    return known and 4 <= width <= 5
 
 
 _VISWALK = "$PEDESTRIAN:"

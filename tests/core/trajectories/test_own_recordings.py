@@ -235,7 +235,7 @@ def _wrong() -> dict[str, tuple[dict[str, Any], dict[str, Any] | None, str]]:
         "people mm": (good, _people(1000 * x, 1000 * y, t), "people: median speed 600 m/s.*milli"),
         "ms": ({**good, "t": 1000 * t}, None, "median time between samples 100 s: milliseconds"),
         "ns": ({**good, "t": 1e9 * t}, None, "nanoseconds"),
-        "frames": (_frames(), None, "whole numbers.*frame_rate=25 it would be 0.6 m/s"),
+        "frames": (_frames(), None, "whole numbers.*frame_rate=25 reads these, with .* 0.6 m/s"),
         "degrees": ({**good, "theta": np.degrees(theta)}, None, "taken as degrees, in 100 %"),
         "y first": ({**good, "theta": 0.5 * np.pi - theta}, None, "x and y exchanged, in 100 %"),
         "winding": (

@@ -44,7 +44,6 @@ def _check(run: crowdbot.Trajectories, rate: float = 25.0) -> None:
         ("# PeTrack\n# all lengths in cm\n# PersID Frame X Y Z\n# 25 fps\n", 100.0),
         ("# frame rate: 25,0\n", 1.0),
         ("# x and y in m\n# framerate=25\n#pers frame x y z\n", 1.0),
-        ("# framerate: 25 fps\n# id frame x/m y/m angle/deg\n", 1.0),
         ("% fps: 25\nid frame x[mm] y[mm] z[mm]\n", 1000.0),
     ],
 )
@@ -173,7 +172,8 @@ def test_viswalk(tmp_path: Path) -> None:
 def test_footsteps_of_vadere(tmp_path: Path) -> None:
     head = "pedestrianId simTime endTime-PID1 startX-PID1 startY-PID1 endX-PID1 endY-PID1\n"
     rows = (f"{i} {f / 25} {f / 25 + 0.4} {x:.4f} {y:.4f} 0 0\n" for i, f, x, y, _ in ROWS)
-    _check(_people(tmp_path / "postvis.traj", head + "".join(rows)))
+    with pytest.warns(RecordingWarning, match="columns endTime-PID1, endX-PID1, endY-PID1 are not"):
+        _check(_people(tmp_path / "postvis.traj", head + "".join(rows)))
 
 
 @pytest.mark.parametrize("word", ["NULL", "N/A", "None", "nan", "-", ""])
@@ -224,3 +224,147 @@ def test_zeros_for_people_who_are_not_there_are_told(tmp_path: Path) -> None:
     file.write_text("t,x1,y1,x2,y2\n" + "\n".join(rows), encoding="utf-8")
     with pytest.warns(RecordingWarning, match=r"in 15 samples 1 of them \(2\) stand at exactly"):
         crowdbot.Trajectories.from_csv(agents=file)
+
+
+# ------------------------------------------------------------------ order and use of columns
+def _in_order(path: Path, order: str, head: str) -> Path:
+    rows = (dict(zip(("id", "frame", "x", "y", "z"), row, strict=True)) for row in ROWS)
+    path.write_text(
+        head + "".join(" ".join(str(row[n]) for n in order.split()) + "\n" for row in rows)
+    )
+    return path
+
+
+@pytest.mark.parametrize(
+    "order", ["id x y z frame", "frame id y x", "y x frame id", "z y x frame id", "frame x y id"]
+)
+def test_columns_are_read_by_their_names(tmp_path: Path, order: str) -> None:
+    path = _in_order(tmp_path / "a.txt", order, f"# framerate: 25\n# {order}\n")
+    _check(READ.from_csv(agents=path))
+    _check(READ.from_eth_ucy(path))
+
+
+def test_columns_with_wrong_or_no_names_are_refused(tmp_path: Path) -> None:
+    lies = _in_order(tmp_path / "a.txt", "frame id x y", "# framerate: 25\n# id frame x y\n")
+    with pytest.raises(InputError, match=r"28 m/s .* by 0.05 m .* ids and frames are exchanged"):
+        READ.from_csv(agents=lies)
+    with pytest.raises(InputError, match="ids and frames are exchanged"):
+        READ.from_eth_ucy(lies)
+    bare = _in_order(tmp_path / "b.txt", "id x y z frame", "# framerate: 25\n")
+    message = r"b.txt:3: .* 1.05 cannot be the number of a frame"
+    with pytest.raises(InputError, match=message):
+        READ.from_csv(agents=bare)
+    with pytest.raises(InputError, match=message):
+        READ.from_eth_ucy(bare)
+    swapped = _in_order(tmp_path / "c.txt", "frame id x y z", "# framerate: 25\n")
+    with pytest.warns(RecordingWarning, match="the first column is read as the frame"):
+        _check(READ.from_eth_ucy(swapped))
+
+
+def _robot(path: Path, head: str, *columns: Any) -> crowdbot.Trajectories:
+    rows = (",".join(str(c(k) if callable(c) else c) for c in columns) for k in range(30))
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return READ.from_csv(path, **BODY)
+
+
+@pytest.mark.parametrize(
+    ("head", "heading"),
+    [("yaw", 0.3), ("heading", 0.3), ("heading_deg", math.degrees(0.3)), ("YAW[deg]", 17.188734)],
+)
+def test_other_names_of_the_heading(tmp_path: Path, head: str, heading: float) -> None:
+    run = _robot(
+        tmp_path / "r.csv", f"t,x,y,{head}", lambda k: k / 10,
+        lambda k: 0.05 * k * math.cos(0.2), lambda k: 0.05 * k * math.sin(0.2), heading,
+    )  # fmt: skip
+    assert run.robot is not None
+    np.testing.assert_allclose(run.robot.theta, 0.3, atol=1e-6)
+    frame = {"t": run.t, "x": run.robot.x, "y": run.robot.y, head: np.full(30, heading)}
+    same = READ.from_pandas(frame, **BODY).robot
+    assert same is not None
+    np.testing.assert_allclose(same.theta, 0.3, atol=1e-6)
+
+
+def test_columns_that_are_not_used_are_told(tmp_path: Path) -> None:
+    with pytest.warns(RecordingWarning, match=r"r.csv: the columns speed, battery are not used"):
+        _robot(tmp_path / "r.csv", "t,x,y,z,speed,battery", lambda k: k, lambda k: 0.5 * k, *"0015")
+    head = "# framerate: 25 fps\n# id frame x/m y/m angle/deg\n"
+    with pytest.warns(RecordingWarning, match="the column angle/deg is not used"):
+        _check(READ.from_csv(agents=_written(tmp_path / "a.txt", head)))
+    with pytest.warns(RecordingWarning, match="the column angle/deg is not used"):
+        _check(READ.from_eth_ucy(tmp_path / "a.txt"))
+    people = {"t": [0.0, 0.1], "id": [1, 1], "x": [0.0, 0.1], "y": [0.0, 0.0]}
+    with pytest.warns(RecordingWarning, match="frame 'agents': the column yaw_deg is not used"):
+        READ.from_pandas(agents={**people, "yaw_deg": [90, 90]})
+    with pytest.raises(InputError, match="the column vy is missing"):
+        READ.from_pandas(agents={**people, "vx": [1.0, 1.0]})
+    wide = {"t": [0.0, 0.1], "pos_x": [0.0, 0.1], "pos_y": [0, 0], "vel_x": [1, 1], "vel_y": [0, 0]}
+    with pytest.raises(InputError, match="the column id is missing"):
+        READ.from_pandas(agents=wide)
+
+
+# -------------------------------------------------------------------------- units of times
+@pytest.mark.parametrize("first", [0, 7, 5_000])
+@pytest.mark.parametrize(
+    ("unit", "per"), [("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9)]
+)
+@pytest.mark.parametrize("rate", [1, 10, 25, 100])
+def test_units_of_times_from_a_small_first_one(
+    tmp_path: Path, unit: str, per: float, rate: int, first: int
+) -> None:
+    def of(name: str) -> crowdbot.Trajectories:
+        return _robot(
+            tmp_path / "r.csv", f"{name},x,y", lambda k: first + round(k * per / rate),
+            lambda k: 0.7 * k / rate, 0,
+        )  # fmt: skip
+
+    with pytest.warns(RecordingWarning, match=rf"{unit}\? .*frame_rate={per:.0f} reads these"):
+        of("t")
+    counted = READ.from_csv(tmp_path / "r.csv", frame_rate=per, **BODY)
+    np.testing.assert_allclose(counted.t - counted.t[0], np.arange(30) / rate)
+    short = {1e3: "ms", 1e6: "us", 1e9: "ns"}[per]
+    run = of(f"t_{short}")
+    np.testing.assert_allclose(run.t - run.t[0], np.arange(30) / rate)
+
+
+def test_stamps_that_are_not_filled_in_are_refused(tmp_path: Path) -> None:
+    for lost in (0, 9, 29):
+        with pytest.raises(InputError, match=rf"r.csv:{lost + 2}: t: 0 is not a time since 1970"):
+            _robot(
+                tmp_path / "r.csv", "t,x,y",
+                lambda k, lost=lost: 0 if k == lost else 1_760_000_000 * 10**9 + k * 10**8,
+                lambda k: 0.1 * k, 0,
+            )  # fmt: skip
+
+
+# ----------------------------------------------------------------------------------- jumps
+def test_jumps_are_told_and_what_metrics_do(tmp_path: Path) -> None:
+    def at(rate: float, jump: float) -> crowdbot.Trajectories:
+        return _robot(
+            tmp_path / "r.csv", "t,x,y", lambda k: k / rate,
+            lambda k: 0.5 * k / rate + (jump if k > 12 else 0.0), 0,
+        )  # fmt: skip
+
+    teleport = r"1 jump, of 4.05 m at t = 1.3 s: .*faster than 10 m/s .* leave them out"
+    with pytest.warns(RecordingWarning, match=teleport):
+        run = at(10.0, 4.0)
+    assert _top_speed(run) == pytest.approx(0.5)
+    with pytest.warns(RecordingWarning, match=r"1 jump, of 4.5 m at t = 13 s: .*as motion"):
+        run = at(1.0, 4.0)
+    assert _top_speed(run) > 2.0
+    assert at(10.0, 0.0).implausible() == at(10.0, 0.2).implausible() == []
+
+
+def _top_speed(run: crowdbot.Trajectories) -> float:
+    scores = {s.variant: s.value for s in crowdbot.score(run, metrics=["speed"])}
+    assert scores["max"] is not None
+    return float(scores["max"])
+
+
+def test_an_id_that_is_used_again_is_told() -> None:
+    t = np.tile(0.1 * np.arange(40), 2)
+    x = np.where(t > 2.0, t + 6.0, t) + np.repeat([0.0, 0.5], 40) * (t > 2.0)
+    people = {"t": t, "id": np.repeat([1, 2], 40), "x": x, "y": np.repeat([0.0, 1.0], 40)}
+    with pytest.warns(RecordingWarning, match=r"people: 2 jumps, the longest of 6.6 m at t = 2.1"):
+        READ.from_pandas(agents=people)
+    jump = np.isclose(t, 2.1).astype(float)
+    assert READ.from_pandas(agents={**people, "jump": jump}).implausible() == []

@@ -10,20 +10,22 @@ from typing import Any
 
 import numpy as np
 
+import crowdbot.core.trajectories.plausibility.jumps as jumps
+import crowdbot.core.trajectories.plausibility.times as times
+from crowdbot.core.trajectories.plausibility.times import PERSON_SPEED, USUAL
 from crowdbot.core.types.arrays import Array
 
 #: `crowdbot.core.trajectories.trajectories`, which imports an importer of this file.
 Trajectories = Any
 
-#: Median speed of moving bodies that no crowd exceeds, m/s.
-ROBOT_SPEED, PERSON_SPEED = 20.0, 5.0
+#: Median speed that no robot exceeds, m/s.
+ROBOT_SPEED = 20.0
 #: Below this speed a body has no direction of motion, m/s.
 _MOVING = 0.05
 #: Number of samples needed for a finding, and number that is enough where all are compared.
 _FEW, _ENOUGH = 5, 500
-_STEPS = (1e-4, 5.0)  # s; a median time step outside is not in seconds
-_UNITS, _USUAL = {"millimetres": 1000, "centimetres": 100}, 0.8  # m/s, of robots and people
-_CREEPING, _FRAMES = 0.15, 25  # m/s, slower than anyone walks or drives; usual frames per second
+_UNITS = {"positions in millimetres": 1000, "positions in centimetres": 100}
+_MINUTES, _FASTEST = {"times in minutes": 60}, 0.005  # s between samples, rarely less
 _AGREED, _NEARLY_ALL = 0.8, 0.95  # shares of samples in which headings agree with the motion
 _HEADINGS = 0.7  # rad; largest deviation of an agreeing heading
 _LEAP = 0.5  # m; a step from exactly (0, 0) that is longer began elsewhere
@@ -35,30 +37,26 @@ _INEXACT = 0.1  # rad; usual deviation of a measured heading from the motion
 
 def implausible(run: Trajectories) -> list[str]:
     """Return findings with evidence, as sentences; empty for a plausible run."""
-    found = list(_times(run.t))
     tracks: list[tuple[str, Array, Array, float]] = []
     if run.robot is not None:
         tracks.append(("the robot", run.robot.x, run.robot.y, ROBOT_SPEED))
     if run.agents is not None:
         tracks.append(("people", run.agents.x, run.agents.y, PERSON_SPEED))
+    found = list(_times(run.t, tracks))
     for who, x, y, limit in tracks:
         found += _speeds(who, run.t, x, y, limit)
-    found += _frames(run.t, tracks)
     found += _headings(run)
     found += _placeholders(run)
+    found += _jumps(run)
     found += list(_recorded_velocities(run)) or list(_recorded_speeds(run))
     return found or list(_apart(run))
 
 
-def _times(t: Array) -> Iterator[str]:
+def _times(t: Array, tracks: list[tuple[str, Array, Array, float]]) -> Iterator[str]:
     if len(t) < _FEW:
         return
-    step = float(np.median(np.diff(t)))
-    if step > _STEPS[1]:
-        unit = "nanoseconds" if step > 1e5 else "milliseconds"
-        yield f"median time between samples {step:.3g} s: {unit}? Times are in seconds"
-    elif step < _STEPS[0]:
-        yield f"median time between samples {step:.3g} s: minutes or hours? Times are in seconds"
+    medians = {who: _median_speed(t, x, y) for who, x, y, _ in tracks}
+    yield from times.findings(t, {w: v for w, v in medians.items() if v is not None})
 
 
 def _speeds(who: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[str]:
@@ -72,9 +70,10 @@ def _speeds(who: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[st
             "nearest to the place of the sample before: ids that change from sample to sample?"
         )
         return
-    unit, factor = min(_UNITS.items(), key=lambda item: abs(np.log(median / item[1] / _USUAL)))
+    units = {**_UNITS, **(_MINUTES if np.median(np.diff(t)) < _FASTEST else {})}
+    unit, factor = min(units.items(), key=lambda item: abs(np.log(median / item[1] / USUAL)))
     yield (
-        f"{who}: median speed {median:.3g} m/s: positions in {unit}? "
+        f"{who}: median speed {median:.3g} m/s: {unit}? "
         f"Divided by {factor} it would be {median / factor:.3g} m/s"
     )
 
@@ -99,19 +98,11 @@ def _speed_by_nearness(t: Array, x: Array, y: Array) -> float | None:
     return float(np.median(speeds)) if len(speeds) >= _FEW else None
 
 
-def _frames(t: Array, tracks: list[tuple[str, Array, Array, float]]) -> Iterator[str]:
-    """Check for times that look like frame numbers: whole, and almost no motion in a second."""
-    if len(t) < _FEW or np.any(t != np.round(t)) or np.median(np.diff(t)) > _STEPS[1]:
-        return
-    medians = {who: _median_speed(t, x, y) for who, x, y, _ in tracks}
-    speeds = {who: speed for who, speed in medians.items() if speed is not None}
-    if not speeds or max(speeds.values()) >= _CREEPING:
-        return
-    who, speed = max(speeds.items(), key=lambda item: item[1])
-    yield (
-        f"{who}: median speed {speed:.3g} m/s, and all times are whole numbers: numbers of frames? "
-        f"With frame_rate={_FRAMES} it would be {speed * _FRAMES:.3g} m/s"
-    )
+def _jumps(run: Trajectories) -> Iterator[str]:
+    if run.robot is not None:
+        yield from jumps.findings("the robot", run.t, run.robot.x, run.robot.y)
+    if run.agents is not None:
+        yield from jumps.findings("people", run.t, run.agents.x, run.agents.y, run.agents.jump)
 
 
 def _placeholders(run: Trajectories) -> Iterator[str]:

@@ -1,0 +1,1 @@
+"""Implausible recordings: units, headings, frames, times and jumps."""

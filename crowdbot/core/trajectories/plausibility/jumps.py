@@ -1,0 +1,68 @@
+"""Jumps: steps so much faster than the others that a place was corrected, or an id reused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Array, Mask
+
+#: A jump is longer than this, m, and this many times faster than nearly all steps, at least m/s.
+_LEAP, _TIMES, _LEAST = 0.5, 3.0, 1.5
+_NEARLY_ALL = 95.0  # %
+#: Steps that are needed to know how fast a body is.
+_FEW = 5
+#: A faster step is a teleport, unless a metric's `jump_speed` says otherwise, m/s.
+_TELEPORT = 10.0
+
+
+def findings(who: str, t: Array, x: Array, y: Array, recorded: Mask | None = None) -> Iterator[str]:
+    """Yield a sentence on the steps in which bodies jump.
+
+    Args:
+        who: the robot or people, for the sentence.
+        t: times (N,), s.
+        x, y: places (N,) or (N, M), m; NaN where absent.
+        recorded: steps (N-1, M) that were recorded as teleports, which are none of these.
+    """
+    with np.errstate(invalid="ignore"):
+        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+        speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
+    zero = (x == 0.0) & (y == 0.0)
+    known = np.isfinite(speeds) & (zero[1:] == zero[:-1])  # places left out are told by others
+    if recorded is not None:
+        known &= ~recorded
+    moving = speeds[known & (steps > 0.0)]
+    if len(moving) < _FEW:
+        return
+    usual = float(np.percentile(moving, _NEARLY_ALL)) if len(moving) > 40 else _second(moving)
+    jumps = known & (steps > _LEAP) & (speeds > max(_TIMES * usual, _LEAST))
+    if not jumps.any():
+        return
+    k = np.unravel_index(np.argmax(np.where(jumps, steps, 0.0)), jumps.shape)
+    count = np.count_nonzero(jumps)
+    seen = f"{who}: {count} jump{'s' if count > 1 else ''}"
+    where = f"{'the longest ' if count > 1 else ''}of {steps[k]:.3g} m at t = {t[k[0] + 1]:.6g} s"
+    yield f"{seen}, {where}: {_meaning(who)} {_scored(speeds[jumps])}"
+
+
+def _second(moving: Array) -> float:
+    """Return the speed of the fastest of a few steps but one."""
+    return float(np.sort(moving)[-2])
+
+
+def _meaning(who: str) -> str:
+    return "a corrected place?" if who == "the robot" else "an id that was used again?"
+
+
+def _scored(speeds: Array) -> str:
+    """Say what metrics do with jumps of such speeds, m/s."""
+    slow = np.count_nonzero(speeds <= _TELEPORT)
+    if not slow:
+        return "Metrics take steps faster than 10 m/s (jump_speed) for teleports and leave them out"
+    told = "Metrics count it" if len(speeds) == 1 else f"Metrics count {slow} of them"
+    return (
+        f"{told} as motion, since only steps faster than 10 m/s (jump_speed) are teleports: "
+        "a smaller jump_speed leaves out more"
+    )

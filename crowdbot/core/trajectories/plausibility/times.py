@@ -1,0 +1,61 @@
+"""Times of a recording that are not in seconds, and the unit that fits the motion best."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from crowdbot.core.types.arrays import Array
+
+#: A median time step outside is not in seconds, s.
+STEPS = (1e-4, 5.0)
+#: The usual speed of robots and people, m/s, and time step, s: the unit nearest to it is told.
+USUAL, _USUAL_STEP = 0.8, 0.05
+#: Median speed of people that no crowd exceeds, m/s.
+PERSON_SPEED = 5.0
+#: Slower than anyone walks or drives, m/s.
+_CREEPING = 0.15
+#: What whole numbers may count -> how many there are in a second.
+_TICKS = {"numbers of frames": 25.0, "milliseconds": 1e3, "microseconds": 1e6, "nanoseconds": 1e9}
+
+
+def findings(t: Array, speeds: dict[str, float]) -> Iterator[str]:
+    """Yield a sentence if times (N,) are in another unit than seconds.
+
+    Args:
+        t: times as they were read.
+        speeds: median speed of moving bodies by name, m/s, if times were seconds.
+    """
+    step = float(np.median(np.diff(t)))
+    fastest = max(speeds.values(), default=None)
+    if step < STEPS[0]:
+        yield f"median time between samples {step:.3g} s: minutes or hours? Times are in seconds"
+    elif step > STEPS[1]:
+        yield f"median time between samples {step:.3g} s: {_told(step, fastest)}"
+    elif fastest is not None and fastest < _CREEPING and np.all(t == np.round(t)):
+        who = max(speeds, key=lambda name: speeds[name])
+        yield (
+            f"{who}: median speed {fastest:.3g} m/s, and all times are whole numbers: "
+            f"{_told(step, fastest)}"
+        )
+
+
+def _told(step: float, speed: float | None) -> str:
+    unit, rate = _ticks(step, speed)
+    told = f"{unit}? Times are in seconds; frame_rate={rate:.0f} reads these"
+    return told if speed is None else f"{told}, with a median speed of {speed * rate:.3g} m/s"
+
+
+def _ticks(step: float, speed: float | None) -> tuple[str, float]:
+    """Return what times count, and how many there are in a second."""
+
+    def off(rate: float) -> float:
+        of_step = abs(math.log(step / rate / _USUAL_STEP))
+        if speed is None:
+            return of_step
+        within = STEPS[0] <= step / rate <= STEPS[1]
+        return abs(math.log(speed * rate / USUAL)) + (0.0 if within else 100.0)
+
+    return min(_TICKS.items(), key=lambda item: off(item[1]))
