@@ -38,7 +38,7 @@ class GridMap:
 
     def to_yaml(self, image: str) -> str:
         """The file beside the image."""
-        x, y = self.origin
+        x, y = (round(value, 9) for value in self.origin)  # no -1.4000000000000001
         return (
             f"image: {image}\nmode: trinary\nresolution: {self.resolution!r}\n"
             f"origin: [{x!r}, {y!r}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"

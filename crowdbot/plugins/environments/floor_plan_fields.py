@@ -25,6 +25,7 @@ _SUFFIXES: dict[str, Format] = {
     ".yaml": "ros_map", ".yml": "ros_map", ".dxf": "dxf",
 }  # fmt: skip
 
+_IMAGES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".gif", ".tif", ".tiff")
 
 #: Smallest pieces of a plan in GeoJSON or WKT that are kept, m^2.
 _LEAST_AREA = 0.02
@@ -107,7 +108,10 @@ class FloorPlanFields(EnvironmentSpec):
             raise ValueError("'layers' is for DXF files only: leave it out")
         if self.file is not None and self.format == "auto" and self._suffix not in _SUFFIXES:
             known = ", ".join(sorted(_SUFFIXES))
-            raise ValueError(f"the name of file ends in none of {known}; write its 'format'")
+            hint = "write its 'format'"
+            if self._suffix in _IMAGES:
+                hint = "for an image, name the map.yaml beside it, which says where it lies"
+            raise ValueError(f"the name of file ends in none of {known}; {hint}")
         return self
 
     @property

@@ -11,6 +11,7 @@ import shapely  # type: ignore[import-untyped,unused-ignore]
 from numpy.typing import NDArray
 
 from crowdbot.cli import main
+from crowdbot.core.environments.grid_map import GridMap
 from crowdbot.plugin import EnvironmentParts
 from crowdbot.plugins.environments.floor_plan import FloorPlanSpec
 from crowdbot.plugins.environments.halls import ShedSpec
@@ -118,3 +119,9 @@ def test_too_many_cells(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     argv = ["export-map", SHED, "--out", str(tmp_path), "--resolution", "0.001"]
     assert main(argv) == 1
     assert "write a larger --resolution" in capsys.readouterr().err
+
+
+def test_a_corner_is_written_without_rounding_errors() -> None:
+    cells = np.zeros((1, 1), np.uint8)
+    made = GridMap(cells=cells, origin=(-28 * 0.05, -1.0), resolution=0.05)
+    assert "origin: [-1.4, -1.0, 0.0]" in made.to_yaml("map.pgm")

@@ -236,6 +236,7 @@ def test_a_refused_plan_is_read_once_and_one_that_could_not_be_opened_again(
         ({"file": "x.geojson", "wkt": L_SHAPE}, "write one of"),
         ({"wkt": L_SHAPE, "format": "ros_map"}, "needs a .file."),
         ({"file": "x.dwg"}, "write its 'format'"),
+        ({"file": "x.PGM"}, "name the map.yaml beside it"),
     ],
 )
 def test_words_that_make_no_sense(fields: dict[str, Any], message: str) -> None:
