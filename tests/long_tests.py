@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
-#: The longest tests, 13 minutes of processor time together.
+#: The longest tests, 15 minutes of processor time together.
 LONG = (
+    "tests/core/report/test_page.py::test_a_page_of_three_planners_and_162_scenarios_is_small",
+    "tests/core/report/test_same_numbers.py::test_every_page_says_the_same_of_every_metric",
+    "tests/core/report/test_browser.py::test_axe_finds_nothing[360-dark]",
+    "tests/core/sensing/test_hidden_walls.py::test_no_point_sees_what_joined_walls_hide",
+    "tests/cli/test_study.py::test_a_study_runs_without_a_person",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[realism]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[why]",
+    "tests/docs/test_site.py::test_pages_are_understood",
+    "tests/testing/test_builtin.py::test_conformance[mpc]",
     "tests/rl/test_teachers.py::test_teachers_drive_towards_the_goals_of_their_worlds",
     "tests/core/campaign/test_judge.py::test_nothing_is_run_where_it_would_not_be_contained",
     "tests/plugins/crowd/test_named_policies.py::test_people_walk_through_a_corridor",
