@@ -129,8 +129,21 @@ LONG = (
     "tests/core/support/test_compile_cache.py::test_a_class_that_was_renamed_is_compiled_again",
 )
 
-#: More cases of what `make test` tries with a few: 55 s of processor time.
+#: More cases of what `make test` tries with a few: 110 s of processor time.
 VARIANTS = (
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[comparison]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[drive]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[editor]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[leaderboard]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[near_robots]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[scenario]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[study_report]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[sweep]",
+    "tests/cli/test_accessible_pages.py::test_axe_finds_nothing[walk]",
+    "tests/plugins/planners/dwa/test_dwa.py::test_standing_crowd[1-100]",
+    "tests/plugins/planners/dwa/test_dwa.py::test_it_does_not_flee_from_those_who_come_towards_it[0]",
+    "tests/plugins/planners/dwa/test_dwa.py::test_through_fifty_who_avoid_nobody[0]",
+    "tests/plugins/planners/dwa/test_dwa.py::test_static_obstacles_without_any_contact[cup]",
     "tests/core/planning/test_host.py::test_a_hanging_step_is_interrupted[spin]",
     "tests/plugins/planners/dwa/test_dwa.py::test_static_obstacles_without_any_contact[slalom]",
     "tests/cli/test_failing_components.py::test_the_message_names_the_component[metric is not",
