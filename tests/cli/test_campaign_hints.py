@@ -16,7 +16,11 @@ from crowdbot.core.registry.registry import discover
 
 def planned(out: Path, scenario: str, **changes: object) -> Plan:
     request = CampaignRequest(
-        suites=["challenge-2026"], only=[scenario], planners=["dwa", "mppi"], floors=True, out=out
+        suites=["challenge-2026"],
+        only=[scenario],
+        planners=["dwa", "follow_the_gap"],
+        floors=True,
+        out=out,
     )
     return make_plan(replace(request, **changes), discover())  # type: ignore[arg-type]
 
@@ -39,7 +43,7 @@ def test_floors_come_last_with_what_only_they_need(plan: Plan) -> None:
     added = [job.added for job in plan.jobs]
     assert added == sorted(added)
     own = {(job.kind, job.label) for job in plan.jobs if not job.added}
-    assert {label for _, label in own} == {"dwa", "mppi"}
+    assert {label for _, label in own} == {"dwa", "follow_the_gap"}
     assert {kind for kind, _ in own} == {"crowd_alone", "robot_alone", "run"}
     done: set[str] = set()
     for job in plan.jobs:
