@@ -31,6 +31,7 @@ import matplotlib
 import numpy as np
 import torch
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 
@@ -56,6 +57,8 @@ WORLDS: dict[str, Any] = {
 COLUMNS = ("processor_s", "steps", "level", "episodes", "reward", "arrived", "touched", "seconds")
 #: Costs that options set.
 COSTS = ("touch", "forced", "aside", "advance", "time")
+#: Episodes whose mean the curve shows.
+LATELY = 30
 #: Share of the time after which each level ends at the latest.
 ENDS = (0.15, 0.4, 1.0)
 READY = 0.9
@@ -153,14 +156,23 @@ def draw(curve: Path, out: Path) -> None:
     axes = figure.add_subplot(xlabel="processor time, min", ylabel="share of episodes")
     axes.set_ylim(0.0, 1.0)
     minutes = rows["processor_s"] / 60.0
-    axes.plot(minutes, rows["arrived"], color="#117733", label="arrived")
-    axes.plot(minutes, rows["touched"], color="#cc3311", label="touched a person")
+    axes.plot(minutes, lately(rows, "arrived"), color="#117733", label="arrived")
+    axes.plot(minutes, lately(rows, "touched"), color="#cc3311", label="touched a person")
     for level in np.unique(rows["level"])[1:]:
         begin = minutes[np.argmax(rows["level"] == level)]
+        what = f"level {level:.0f}" if level < len(ENDS) else "goes on from a policy"
         axes.axvline(begin, color="#999999", linewidth=0.8)
-        axes.text(begin, 1.0, f" level {level:.0f}", va="bottom", fontsize=8)
+        axes.text(begin, 1.0, f" {what}", va="bottom", fontsize=8)
     axes.legend(loc="center right")
     figure.savefig(out, metadata={"Date": None})
+
+
+def lately(rows: Any, name: str) -> NDArray[np.float64]:
+    """Return a share at each row: of the last 30 episodes or somewhat more, at first of fewer."""
+    total = np.concatenate([[0.0], np.cumsum(rows["episodes"])])
+    hits = np.concatenate([[0.0], np.cumsum(rows["episodes"] * rows[name])])
+    since = np.maximum(np.searchsorted(total, total[1:] - LATELY, side="right") - 1, 0)
+    return (hits[1:] - hits[since]) / np.maximum(total[1:] - total[since], 1e-9)
 
 
 def train(given: argparse.Namespace) -> None:
