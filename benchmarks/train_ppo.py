@@ -172,7 +172,10 @@ def lately(rows: Any, name: str) -> NDArray[np.float64]:
     total = np.concatenate([[0.0], np.cumsum(rows["episodes"])])
     hits = np.concatenate([[0.0], np.cumsum(rows["episodes"] * rows[name])])
     since = np.maximum(np.searchsorted(total, total[1:] - LATELY, side="right") - 1, 0)
-    return (hits[1:] - hits[since]) / np.maximum(total[1:] - total[since], 1e-9)
+    shares: NDArray[np.float64] = (hits[1:] - hits[since]) / np.maximum(
+        total[1:] - total[since], 1e-9
+    )
+    return shares
 
 
 def train(given: argparse.Namespace) -> None:
