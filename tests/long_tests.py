@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
-#: The longest tests, 15 minutes of processor time together.
+#: The longest tests, 16 minutes of processor time together.
 LONG = (
+    "tests/core/report/test_browser.py::test_the_address_keeps_the_view",
+    "tests/core/report/test_browser.py::test_pictures_are_saved_as_svg_png_and_csv",
+    "tests/core/report/test_browser.py::test_print_has_the_filters_and_whole_tables",
+    "tests/core/results/test_reference_file.py::test_other_platforms_and_changed_runs_are_told_apart",
+    "tests/plugins/planners/test_compiling.py::test_no_step_compiles[stop_and_go]",
+    "tests/dsl/test_spawning_words.py::test_what_is_written_is_read",
+    "tests/core/realism/test_planted_faults.py::test_two_draws_are_close_and_one_is_repeatable",
+    "tests/core/replay/test_browser.py::test_axe_finds_nothing[light]",
     "tests/core/report/test_page.py::test_a_page_of_three_planners_and_162_scenarios_is_small",
     "tests/core/report/test_same_numbers.py::test_every_page_says_the_same_of_every_metric",
     "tests/core/report/test_browser.py::test_axe_finds_nothing[360-dark]",
