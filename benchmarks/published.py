@@ -181,7 +181,8 @@ def numbers(run: crowdbot.Run) -> dict[str, float]:
     assert goal is not None
     aside = robot.y - robot.y[0]
     # A point that goes straight to where the goal begins, at the robot's largest speed.
-    speed = run.trajectories.robot_speed_limit or 0.0
+    speed = run.trajectories.robot_speed_limit
+    assert speed is not None
     there = np.minimum(speed * t, goal[:, 0].min() - robot.x[0])
     effect = run.scores.find("effect_on_velocity").value
     return {
@@ -265,7 +266,7 @@ BESIDE, LOOK = 3.0, 0.25
 
 
 def acceleration_beside(run: crowdbot.Run) -> float:
-    """Return the mean acceleration of people beside the robot, m/s^2; nan if nobody is."""
+    """Return the mean acceleration of people beside the robot, m/s^2; nan if no one is."""
     found = run.trajectories
     assert found.robot is not None
     assert found.agents is not None

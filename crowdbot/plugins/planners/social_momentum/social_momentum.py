@@ -25,7 +25,10 @@ class SocialMomentumSpec(RungSpec):
         default=5.0, description="People ahead who are farther away play no part, m."
     )
     directions: int = Field(
-        default=31, ge=5, le=181, description="Directions to choose from, over the circle ahead."
+        default=31,
+        ge=5,
+        le=181,
+        description="Directions to choose from, over the half circle ahead.",
     )
     safety: NonNegativeLength = Field(
         default=0.05, description="Least distance between robot and obstacle, m."
