@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,6 @@ from crowdbot.plugin import (
     Array,
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     duration,
     truncate_at_arrival,
@@ -28,6 +26,7 @@ from crowdbot.plugin.for_metrics import (
 )
 from crowdbot.plugins.metrics.acceptance import ACCEPTANCE, AcceptanceSpec
 from crowdbot.plugins.metrics.common_reference_build import missed_goal
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.walls_build import wall_contacts
 
 #: Rating of the distance d (m) between the centres of a robot and the nearest person, of 100:
@@ -39,27 +38,25 @@ _CLOSE, _AT_SPEED = 0.25, 0.5
 _CREEPS = 0.05
 
 
-@dataclass(frozen=True, slots=True)
-class Acceptance:
-    """Scores ``acceptance``. Needs no reference run; without a goal arrival does not count."""
+class Acceptance(DeclaredMetric[AcceptanceSpec], declared=ACCEPTANCE):
+    """Scores ``acceptance``: exp(-sum of weighted faults of the drive).
 
-    spec: AcceptanceSpec
+    Each fault can only lower it; without a goal, arrival does not count.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score exp(-sum of weighted faults of the drive); each fault can only lower it."""
-        del refs
-        factory, spec = ScoreFactory(ACCEPTANCE), self.spec
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        spec = self.spec
         if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
+            raise UndefinedError("invalid_no_robot")
         missed = missed_goal(run)
         arrived = run.robot.goal_time
         if arrived is None or arrived > run.t[0]:  # else it starts in its goal, and drives on
             run = truncate_at_arrival(run)
         gap = encounter(run, spec.jump_speed).gap
         if not np.isfinite(gap).any():
-            return factory.all_undefined("no_agents")
+            raise UndefinedError("no_agents")
         if duration(run.t) <= 0:
-            return factory.all_undefined("too_few_samples")
+            raise UndefinedError("too_few_samples")
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
         faults = {
             "not_arrived": float(missed),
@@ -72,7 +69,7 @@ class Acceptance:
             "forcing": self._forcing(run),
         }  # fmt: skip
         cost = sum(getattr(spec, name) * amount for name, amount in faults.items())
-        return [factory.ok("corrected", math.exp(-cost), faults)]
+        return [self.factory.ok("corrected", math.exp(-cost), faults)]
 
     def _rating(self, run: Trajectories) -> float:
         """Return the rating of the smallest distance between centres, 0 to 1."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,6 +30,7 @@ from crowdbot.plugins.metrics.burden import (
     PushWorkSpec,
 )
 from crowdbot.plugins.metrics.common_reference_build import rate_and_way
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 
 #: Share of the people met whose peak is not higher than the 95th percentile.
 PERCENTILE = 0.95
@@ -38,27 +38,23 @@ PERCENTILE = 0.95
 _Spec = PushWorkSpec | EvasiveAccelerationSpec
 
 
-@dataclass(frozen=True, slots=True)
-class PushWork:
-    """Scores ``push_work``. ``excess`` needs ``crowd_alone``, sampled at the same times."""
+class PushWork(DeclaredMetric[PushWorkSpec], declared=PUSH_WORK):
+    """Scores ``push_work``: push work per progress, per person met, and in total.
 
-    spec: PushWorkSpec
+    ``excess``, less that of the run without a robot, needs ``crowd_alone`` at the same times.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score push work per progress, per person met, in total, and less that without a robot."""
-        factory = ScoreFactory(PUSH_WORK)
-        found = _near(factory, run, self.spec)
-        if isinstance(found, list):
-            return found
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        found = _near(run, self.spec)
         work, met = found.work(people(run).mass), float(found.met.sum())
         extras = {"people_met": met}
-        rate, way = rate_and_way(factory, run, self._demanded(run), self.spec.least_way)
+        rate, way = rate_and_way(self.factory, run, self._demanded(run), self.spec.least_way)
         return [
             rate,
-            rate_and_way(factory, run, self._forced(run), self.spec.least_way, "forced")[0],
-            factory.ok("corrected", work / met, extras),
-            factory.ok("total", work, extras),
-            _excess(factory, run, refs, self.spec, self._difference),
+            rate_and_way(self.factory, run, self._forced(run), self.spec.least_way, "forced")[0],
+            self.factory.ok("corrected", work / met, extras),
+            self.factory.ok("total", work, extras),
+            _excess(self.factory, run, refs, self.spec, self._difference),
             way,
         ]
 
@@ -88,39 +84,34 @@ class PushWork:
         return found.work(people(run).mass) / max(float(found.met.sum()), 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class EvasiveAcceleration:
-    """Scores ``evasive_acceleration``.
+class EvasiveAcceleration(DeclaredMetric[EvasiveAccelerationSpec], declared=EVASIVE_ACCELERATION):
+    """Scores ``evasive_acceleration``: percentile, maximum and mean square of people's peaks.
 
-    ``excess`` needs ``crowd_alone``, sampled at the same times.
+    ``excess``, less that of the run without a robot, needs ``crowd_alone`` at the same times.
     """
 
-    spec: EvasiveAccelerationSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the 95th percentile of peaks (desired and total), largest, mean square, excess."""
-        factory = ScoreFactory(EVASIVE_ACCELERATION)
-        found = _near(factory, run, self.spec)
-        if isinstance(found, list):
-            return found
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        found = _near(run, self.spec)
         peaks = found.size.max(axis=0)[found.met]
         return [
-            self._by_own_legs(factory, run, found),
-            factory.ok("all", np.quantile(peaks, PERCENTILE), {"people_met": float(len(peaks))}),
-            factory.ok("peak", peaks.max()),
-            factory.ok("rms", found.rms()),
-            _excess(factory, run, refs, self.spec, self._difference),
+            self._by_own_legs(run, found),
+            self.factory.ok(
+                "all", np.quantile(peaks, PERCENTILE), {"people_met": float(len(peaks))}
+            ),
+            self.factory.ok("peak", peaks.max()),
+            self.factory.ok("rms", found.rms()),
+            _excess(self.factory, run, refs, self.spec, self._difference),
         ]
 
-    def _by_own_legs(self, factory: ScoreFactory, run: Trajectories, found: Evasion) -> Score:
+    def _by_own_legs(self, run: Trajectories, found: Evasion) -> Score:
         """Score only people who are met without any contact, by their desired acceleration."""
         run = truncate_at_arrival(run)
         own = own_legs(run, self.spec.evasion_reach, self.spec.jump_speed)
         if not own.any():
-            return factory.undefined("corrected", "no_neighbours")
+            return self.factory.undefined("corrected", "no_neighbours")
         peaks = np.where(own, found.size, 0.0).max(axis=0)[own.any(axis=0)]
         extras = {"people_met": float(len(peaks))}
-        return factory.ok("corrected", np.quantile(peaks, PERCENTILE), extras)
+        return self.factory.ok("corrected", np.quantile(peaks, PERCENTILE), extras)
 
     def _difference(self, run: Trajectories, ghost: Trajectories) -> float:
         own, other = (
@@ -129,14 +120,16 @@ class EvasiveAcceleration:
         return float(np.sqrt(max(0.0, own**2 - other**2)))
 
 
-def _near(factory: ScoreFactory, run: Trajectories, spec: _Spec) -> Evasion | list[Score]:
-    """Return the people near the robot until it arrives, or scores that say why there are none."""
+def _near(run: Trajectories, spec: _Spec) -> Evasion:
+    """Return the people near the robot until it arrives; raise `UndefinedError` without any."""
     if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
+        raise UndefinedError("invalid_no_robot")
     if not people(run).x.size or not np.isfinite(people(run).x).any():
-        return factory.all_undefined("no_agents")
+        raise UndefinedError("no_agents")
     found = evasion(truncate_at_arrival(run), spec.evasion_reach, spec.jump_speed)
-    return found if found.met.any() else factory.all_undefined("no_neighbours")
+    if not found.met.any():
+        raise UndefinedError("no_neighbours")
+    return found
 
 
 def _excess(

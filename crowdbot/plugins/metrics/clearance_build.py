@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from crowdbot.plugin import (
     Trajectories,
     duration,
     time_weights,
-    truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import as_disc, encounter
 from crowdbot.plugins.metrics.clearance import (
@@ -32,118 +30,82 @@ from crowdbot.plugins.metrics.clearance import (
     SocialTimeFractionSpec,
     SpaceComplianceSpec,
 )
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 
 #: Tolerance at the edges of zones, m: a person on an edge is outside, despite rounding.
 EDGE = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class MinClearance:
-    """Scores ``min_clearance``. Needs no reference run; negative where bodies overlap."""
+class MinClearance(RobotMetric[MinClearanceSpec], declared=MIN_CLEARANCE):
+    """Scores ``min_clearance``: the smallest gap, for the outline and for the disc around it.
 
-    spec: MinClearanceSpec
+    Negative where bodies overlap.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the smallest gap over all samples, for the outline and for the disc around it."""
-        del refs
-        factory = ScoreFactory(MIN_CLEARANCE)
-        gap, of_disc = nearest_gap(factory, run), nearest_gap(factory, as_disc(run))
-        if isinstance(gap, list):
-            return gap
-        assert not isinstance(of_disc, list), "the same people, the same time"
-        return [factory.ok("corrected", gap.min()), factory.ok("disc", of_disc.min())]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        gap, of_disc = nearest_gap(run), nearest_gap(as_disc(run))
+        return [self.factory.ok("corrected", gap.min()), self.factory.ok("disc", of_disc.min())]
 
 
-@dataclass(frozen=True, slots=True)
-class AvgClearance:
-    """Scores ``avg_clearance``. Needs no reference run."""
+class AvgClearance(RobotMetric[AvgClearanceSpec], declared=AVG_CLEARANCE):
+    """Scores ``avg_clearance``: the mean gap over the time at which a person is present."""
 
-    spec: AvgClearanceSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the mean gap over the time at which a person is present."""
-        del refs
-        factory = ScoreFactory(AVG_CLEARANCE)
-        gap = nearest_gap(factory, run)
-        if isinstance(gap, list):
-            return gap
-        t, some = truncate_at_arrival(run).t, np.isfinite(gap)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        gap = nearest_gap(run)
+        t, some = run.t, np.isfinite(gap)
         weights = time_weights(t)[some]
         if weights.sum() <= 0:
-            return factory.all_undefined("too_few_samples")
+            raise UndefinedError("too_few_samples")
         coverage = float(weights.sum()) / duration(t)
         mean = float(weights @ gap[some] / weights.sum())
-        return [factory.ok("corrected", mean, {"coverage": coverage})]
+        return [self.factory.ok("corrected", mean, {"coverage": coverage})]
 
 
-@dataclass(frozen=True, slots=True)
-class IntimateTimeFraction:
-    """Scores ``intimate_time_fraction``. Needs no reference run."""
+class IntimateTimeFraction(RobotMetric[IntimateTimeFractionSpec], declared=INTIMATE_TIME_FRACTION):
+    """Scores ``intimate_time_fraction``: the share of time inside the intimate zone."""
 
-    spec: IntimateTimeFractionSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the share of time inside the intimate zone."""
-        del refs
-        return time_within(ScoreFactory(INTIMATE_TIME_FRACTION), run, -np.inf, self.spec.intimate)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return time_within(self.factory, run, -np.inf, self.spec.intimate)
 
 
-@dataclass(frozen=True, slots=True)
-class PersonalTimeFraction:
-    """Scores ``personal_time_fraction``. Needs no reference run."""
+class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec], declared=PERSONAL_TIME_FRACTION):
+    """Scores ``personal_time_fraction``: the share of time between its two edges."""
 
-    spec: PersonalTimeFractionSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the share of time between the edges of the intimate and the personal zone."""
-        del refs
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         zone = self.spec.intimate, self.spec.personal
-        return time_within(ScoreFactory(PERSONAL_TIME_FRACTION), run, *zone)
+        return time_within(self.factory, run, *zone)
 
 
-@dataclass(frozen=True, slots=True)
-class SocialTimeFraction:
-    """Scores ``social_time_fraction``. Needs no reference run."""
+class SocialTimeFraction(RobotMetric[SocialTimeFractionSpec], declared=SOCIAL_TIME_FRACTION):
+    """Scores ``social_time_fraction``: the share of time between its two edges."""
 
-    spec: SocialTimeFractionSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the share of time between the edges of the personal and the social zone."""
-        del refs
-        return time_within(
-            ScoreFactory(SOCIAL_TIME_FRACTION), run, self.spec.personal, self.spec.social
-        )
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return time_within(self.factory, run, self.spec.personal, self.spec.social)
 
 
-@dataclass(frozen=True, slots=True)
-class SpaceCompliance:
-    """Scores ``space_compliance``. Needs no reference run."""
+class SpaceCompliance(RobotMetric[SpaceComplianceSpec], declared=SPACE_COMPLIANCE):
+    """Scores ``space_compliance``: the share of time beyond the required gap.
 
-    spec: SpaceComplianceSpec
+    Time without people counts as compliant.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the share of time beyond the required gap.
-
-        Time without people counts as compliant.
-        """
-        del refs
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         # The comparison is strict, so the edge plus its tolerance is the smallest gap that
         # complies.
-        return time_within(
-            ScoreFactory(SPACE_COMPLIANCE), run, self.spec.compliance + 2.0 * EDGE, None
-        )
+        return time_within(self.factory, run, self.spec.compliance + 2.0 * EDGE, None)
 
 
-def nearest_gap(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
-    """Return the gap to the nearest person (N,), m; or scores that say why not.
+def nearest_gap(run: Trajectories) -> Array:
+    """Return the gap to the nearest person (N,), m; inf while there is none.
 
-    Inf without people.
+    Raises:
+        UndefinedError: there is none at any time.
     """
-    if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
-    gap = encounter(truncate_at_arrival(run), np.inf).gap
+    gap = encounter(run, np.inf).gap
     nearest: Array = np.where(np.isfinite(gap), gap, np.inf).min(axis=1, initial=np.inf)
-    return nearest if np.isfinite(nearest).any() else factory.all_undefined("no_agents")
+    if not np.isfinite(nearest).any():
+        raise UndefinedError("no_agents")
+    return nearest
 
 
 def time_within(
@@ -153,12 +115,10 @@ def time_within(
 
     Without ``high``: no limit.
     """
-    gap = nearest_gap(factory, run)
-    if isinstance(gap, list):
-        return gap
-    t = truncate_at_arrival(run).t
+    gap = nearest_gap(run)
+    t = run.t
     if duration(t) <= 0:
-        return factory.all_undefined("too_few_samples")
+        raise UndefinedError("too_few_samples")
     inside = gap >= low - EDGE
     if high is not None:
         inside &= gap < high - EDGE

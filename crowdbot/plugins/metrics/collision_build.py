@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,11 +10,9 @@ from crowdbot.plugin import (
     Array,
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     duration,
     path_length,
-    truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import (
     PersonContacts,
@@ -39,6 +36,7 @@ from crowdbot.plugins.metrics.collision import (
     CollisionsAtFaultSpec,
     CollisionSeveritySpec,
 )
+from crowdbot.plugins.metrics.declared_build import RobotMetric
 from crowdbot.plugins.metrics.task import SuccessNoCollisionSpec
 
 #: Tolerance of the fault rule, m/s and m²/s, so that rounding does not decide.
@@ -53,50 +51,30 @@ _Spec = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class CollisionCount:
-    """Scores ``collision_count``. Needs no reference run."""
+class CollisionCount(RobotMetric[CollisionCountSpec], declared=COLLISION_COUNT):
+    """Scores ``collision_count``: ``literal``: runs of samples in contact.
 
-    spec: CollisionCountSpec
+    ``corrected``: all contacts, however short.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: runs of samples in contact.
-
-        ``corrected``: all contacts, however short.
-        """
-        del refs
-        factory = ScoreFactory(COLLISION_COUNT)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         found = events(run, self.spec)
         first = {"first_time": float(found.time[0])} if len(found.time) else {}
         pair = encounter(run, self.spec.jump_speed)
         return [
-            factory.ok("literal", contact_runs(pair, self.spec.contact_tol)),
-            factory.ok("corrected", len(found), first),
+            self.factory.ok("literal", contact_runs(pair, self.spec.contact_tol)),
+            self.factory.ok("corrected", len(found), first),
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class CollisionSeverity:
-    """Scores ``collision_severity``. Needs no reference run.
+class CollisionSeverity(RobotMetric[CollisionSeveritySpec], declared=COLLISION_SEVERITY):
+    """Scores ``collision_severity``: ``literal``: each sample in contact.
 
-    Contacts of unknown speed or with an unknown person count as 0.
+    The other variants: each contact, just before it. Contacts of unknown speed or with an
+    unknown person count as 0.
     """
 
-    spec: CollisionSeveritySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: each sample in contact.
-
-        The other variants: each contact, just before it.
-        """
-        del refs
-        factory = ScoreFactory(COLLISION_SEVERITY)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         vx, vy = relative_velocity(run, self.spec.jump_speed)
         square = vx**2 + vy**2
         square = np.where(np.isfinite(square), square, 0.0)
@@ -106,10 +84,10 @@ class CollisionSeverity:
         half_sum, reduced = self._masses(run)
         touch = touching(encounter(run, self.spec.jump_speed), self.spec.contact_tol)
         return [
-            factory.ok("literal", (np.where(touch, square, 0.0) * half_sum).sum()),
-            factory.ok("per_event", half_sum[who] @ speed**2),
-            factory.ok("corrected", 0.5 * reduced[who] @ speed**2),
-            factory.ok("impulse", reduced[who] @ speed),
+            self.factory.ok("literal", (np.where(touch, square, 0.0) * half_sum).sum()),
+            self.factory.ok("per_event", half_sum[who] @ speed**2),
+            self.factory.ok("corrected", 0.5 * reduced[who] @ speed**2),
+            self.factory.ok("impulse", reduced[who] @ speed),
         ]
 
     def _masses(self, run: Trajectories) -> tuple[Array, Array]:
@@ -120,43 +98,25 @@ class CollisionSeverity:
         return total / 2.0, reduced
 
 
-@dataclass(frozen=True, slots=True)
-class CollisionRate:
-    """Scores ``collision_rate``. Needs no reference run."""
+class CollisionRate(RobotMetric[CollisionRateSpec], declared=COLLISION_RATE):
+    """Scores ``collision_rate``: contacts per second, and per metre that the robot drove."""
 
-    spec: CollisionRateSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score contacts per second, and per metre that the robot drove."""
-        del refs
-        factory = ScoreFactory(COLLISION_RATE)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         count = len(events(run, self.spec))
         length = path_length(run.t, robot_of(run), self.spec.jump_speed)
         return [
-            factory.ratio("per_time", count, duration(run.t), self.spec.zero_tol),
-            factory.ratio("per_length", count, length, self.spec.zero_tol),
+            self.factory.ratio("per_time", count, duration(run.t), self.spec.zero_tol),
+            self.factory.ratio("per_length", count, length, self.spec.zero_tol),
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class CollisionsAtFault:
-    """Scores ``collisions_at_fault``. Needs no reference run."""
+class CollisionsAtFault(RobotMetric[CollisionsAtFaultSpec], declared=COLLISIONS_AT_FAULT):
+    """Scores ``collisions_at_fault``: contacts by fault.
 
-    spec: CollisionsAtFaultSpec
+    The robot's if it is faster and the person is in front of it, else the person's.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score contacts by fault.
-
-        The robot's if it is faster and the person is in front of it, else the person's.
-        """
-        del refs
-        factory = ScoreFactory(COLLISIONS_AT_FAULT)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         found = events(run, self.spec)
         pair = encounter(run, self.spec.jump_speed)
         rx, ry = robot_velocities(run, self.spec.jump_speed)
@@ -165,7 +125,7 @@ class CollisionsAtFault:
         lead = np.hypot(rx, ry)[k] - people_speeds(run, self.spec.jump_speed)[k, i]
         before = pair.px[k, i] * rx[k] + pair.py[k, i] * ry[k] > TOLERANCE
         robot = int(((lead > TOLERANCE) & before).sum())
-        return [factory.ok("robot", robot), factory.ok("person", len(found) - robot)]
+        return [self.factory.ok("robot", robot), self.factory.ok("person", len(found) - robot)]
 
 
 def events(run: Trajectories, spec: _Spec) -> PersonContacts:

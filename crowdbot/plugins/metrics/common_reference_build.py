@@ -6,8 +6,6 @@ nothing in the crowd. No planner beats the shortest path at full speed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from crowdbot.plugin import (
@@ -19,6 +17,7 @@ from crowdbot.plugin import (
     truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import present, robot_of
+from crowdbot.plugins.metrics.declared_build import UndefinedError
 
 #: Smaller values are rounding errors, m or J.
 _NOTHING = 1e-9
@@ -37,35 +36,34 @@ def missed_goal(run: Trajectories) -> bool:
     return not without_task(run) and robot_of(run).goal_time is None
 
 
-def goal_distance(
-    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
-) -> tuple[Array, Array] | list[Score]:
-    """Return times and distances (K,), (K,) of the robot's centre to its goal, s and m; or why not.
+def goal_distance(run: Trajectories) -> tuple[Array, Array]:
+    """Return times (K,), s, and distances of the robot's centre to its goal (K,), m.
 
     Distances are to the goal zone, in which the robot arrives, or to the goal point if there is no
     zone.
+
+    Raises:
+        UndefinedError: there is no robot, no goal, or no sample.
     """
     if run.robot is None:
-        return factory.all_undefined("invalid_no_robot", variants)
+        raise UndefinedError("invalid_no_robot")
     run = truncate_at_arrival(run)
     robot = robot_of(run)
     known = present(robot.x, robot.y)
     if not known.any():
-        return factory.all_undefined("too_few_samples", variants)
+        raise UndefinedError("too_few_samples")
     x, y = robot.x[known], robot.y[known]
     if run.goal_zone is not None:
         return run.t[known], np.maximum(Footprint(run.goal_zone, 0.0).gap(x, y), 0.0)
     if robot.goal is not None:
         return run.t[known], np.hypot(x - robot.goal[0], y - robot.goal[1])
-    return factory.all_undefined("invalid_no_goal", variants)
+    raise UndefinedError("invalid_no_goal")
 
 
-def way_made_good(
-    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
-) -> float | list[Score]:
-    """Return the largest approach to the goal so far, m; or scores that say why it is unknown."""
-    found = goal_distance(factory, run, variants)
-    return found if isinstance(found, list) else float(found[1][0] - found[1].min())
+def way_made_good(run: Trajectories) -> float:
+    """Return the largest approach to the goal so far, m."""
+    _, distance = goal_distance(run)
+    return float(distance[0] - distance.min())
 
 
 def rate_and_way(
@@ -75,37 +73,30 @@ def rate_and_way(
 
     A robot that comes nearer by less than ``least`` (m) has no rate, whatever its cost.
     """
-    way = way_made_good(factory, run, (variant, "way"))
-    if isinstance(way, list):
-        return way[0], way[1]
+    try:
+        way = way_made_good(run)
+    except UndefinedError as error:
+        return factory.undefined(variant, str(error)), factory.undefined("way", str(error))
     over = factory.ok("way", max(way, least))
     if way < least - _NOTHING:
         return factory.undefined(variant, "zero_denominator"), over
     return factory.ok(variant, amount / way, {"amount": amount, "way": way}), over
 
 
-def shortest_way(
-    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
-) -> float | list[Score]:
-    """Return the straight distance from start to goal zone or goal disc, m; or why it is unknown.
+def shortest_way(run: Trajectories) -> float:
+    """Return the straight distance from start to goal zone or goal disc, m.
 
     Walls are ignored: the true shortest path is at least as long, for every planner.
     """
-    found = goal_distance(factory, run, variants)
-    if isinstance(found, list):
-        return found
+    _, distance = goal_distance(run)
     radius = robot_of(run).goal_radius if run.goal_zone is None else 0.0
-    return max(0.0, float(found[1][0]) - radius)
+    return max(0.0, float(distance[0]) - radius)
 
 
-def shortest_time(
-    factory: ScoreFactory, run: Trajectories, variants: Iterable[str] | None = None
-) -> float | list[Score]:
-    """Return the time of the shortest path at the robot's top speed, s; or why there is none."""
-    way = shortest_way(factory, run, variants)
-    if isinstance(way, list):
-        return way
+def shortest_time(run: Trajectories) -> float:
+    """Return the time of the shortest path at the robot's top speed, s."""
+    way = shortest_way(run)
     fastest = run.robot_speed_limit
     if fastest is None:
-        return factory.all_undefined("invalid_no_speed_limit", variants)
+        raise UndefinedError("invalid_no_speed_limit")
     return way / fastest

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from crowdbot.plugin import (
     ContactEvents,
     Mask,
     References,
     Score,
-    ScoreFactory,
     Trajectories,
-    truncate_at_arrival,
 )
 from crowdbot.plugins.metrics.contact import (
     CONTACT_IMPULSE,
@@ -22,68 +19,47 @@ from crowdbot.plugins.metrics.contact import (
     ContactTimeSpec,
     MaxContactForceSpec,
 )
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 
 
-@dataclass(frozen=True, slots=True)
-class MaxContactForce:
-    """Scores ``max_contact_force``. Needs a table of contacts; 0 without contact."""
+class MaxContactForce(RobotMetric[MaxContactForceSpec], declared=MAX_CONTACT_FORCE):
+    """Scores ``max_contact_force``: the largest force peak of all contacts with people.
 
-    spec: MaxContactForceSpec
+    Needs a table of contacts; 0 without contact.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the largest force peak of all contacts with people."""
-        del refs
-        factory = ScoreFactory(MAX_CONTACT_FORCE)
-        found = _with_people(factory, run)
-        if isinstance(found, list):
-            return found
-        contacts, rows = found
-        return [factory.ok("corrected", contacts.peak_force[rows].max(initial=0.0))]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        contacts, rows = _with_people(run)
+        return [self.factory.ok("corrected", contacts.peak_force[rows].max(initial=0.0))]
 
 
-@dataclass(frozen=True, slots=True)
-class ContactImpulse:
-    """Scores ``contact_impulse``. Needs a table of contacts; 0 without contact."""
+class ContactImpulse(RobotMetric[ContactImpulseSpec], declared=CONTACT_IMPULSE):
+    """Scores ``contact_impulse``: the sum over contacts with people, and the ``largest``.
 
-    spec: ContactImpulseSpec
+    Needs a table of contacts; 0 without contact.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the sum over all contacts with people, and the ``largest`` impulse."""
-        del refs
-        factory = ScoreFactory(CONTACT_IMPULSE)
-        found = _with_people(factory, run)
-        if isinstance(found, list):
-            return found
-        contacts, rows = found
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        contacts, rows = _with_people(run)
         impulses = contacts.impulse[rows]
         largest = {"largest": float(impulses.max(initial=0.0))}
-        return [factory.ok("corrected", impulses.sum(), largest)]
+        return [self.factory.ok("corrected", impulses.sum(), largest)]
 
 
-@dataclass(frozen=True, slots=True)
-class ContactTime:
-    """Scores ``contact_time``. Needs a table of contacts; 0 without contact."""
+class ContactTime(RobotMetric[ContactTimeSpec], declared=CONTACT_TIME):
+    """Scores ``contact_time``: total contact time; two simultaneous contacts count twice.
 
-    spec: ContactTimeSpec
+    Needs a table of contacts; 0 without contact.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the total contact time with people; two simultaneous contacts count twice."""
-        del refs
-        factory = ScoreFactory(CONTACT_TIME)
-        found = _with_people(factory, run)
-        if isinstance(found, list):
-            return found
-        contacts, rows = found
-        return [factory.ok("corrected", (contacts.t1 - contacts.t0)[rows].sum())]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        contacts, rows = _with_people(run)
+        return [self.factory.ok("corrected", (contacts.t1 - contacts.t0)[rows].sum())]
 
 
-def _with_people(
-    factory: ScoreFactory, run: Trajectories
-) -> tuple[ContactEvents, Mask] | list[Score]:
-    """Return contacts up to the arrival and a mask of those with people; or why there are none."""
-    if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
-    contacts = truncate_at_arrival(run).contacts
+def _with_people(run: Trajectories) -> tuple[ContactEvents, Mask]:
+    """Return contacts and a mask of those with people; raise `UndefinedError` without a table."""
+    contacts = run.contacts
     if contacts is None:
-        return factory.all_undefined("invalid_no_contacts")
+        raise UndefinedError("invalid_no_contacts")
     return contacts, contacts.agent >= 0

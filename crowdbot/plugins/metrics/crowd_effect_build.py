@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -43,36 +42,34 @@ from crowdbot.plugins.metrics.crowd_effect import (
     NeighboursTimeToGoalSpec,
     NeighboursVelocitySpec,
 )
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 
 
-@dataclass(frozen=True, slots=True)
-class EffectOnTime:
-    """Scores ``effect_on_time``. Needs ``crowd_alone``."""
+class EffectOnTime(DeclaredMetric[EffectOnTimeSpec], declared=EFFECT_ON_TIME):
+    """Scores ``effect_on_time``: ``literal``: completed trips.
 
-    spec: EffectOnTimeSpec
+    Other variants: all trips, in the common time window. Needs ``crowd_alone``.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: completed trips.
-
-        Other variants: all trips, in the common time window.
-        """
-        factory = ScoreFactory(EFFECT_ON_TIME)
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
         if refs.crowd_alone is None:
-            return factory.all_undefined("no_reference")
+            raise UndefinedError("no_reference")
         alone, run = truncate_at_arrival(refs.crowd_alone), truncate_at_arrival(run)
-        literal = completed_ratio(factory, durations(alone), durations(run), self.spec.zero_tol)
+        literal = completed_ratio(
+            self.factory, durations(alone), durations(run), self.spec.zero_tol
+        )
         alone, run = truncate_to_shorter(alone, run)
         a, b = durations(alone), durations(run)
         if not len(a) or not len(b):
-            return [literal, *factory.all_undefined("no_trips", factory.variants[1:])]
-        mean = mean_ratio(factory, a, b, self.spec.zero_tol)
+            return [literal, *self.factory.all_undefined("no_trips", self.factory.variants[1:])]
+        mean = mean_ratio(self.factory, a, b, self.spec.zero_tol)
         paces = mean_pace(alone, self.spec.jump_speed), mean_pace(run, self.spec.jump_speed)
         return [
             literal,
             mean,
             self._restricted(a, b),
-            pace_ratio(factory, *paces, self.spec.zero_tol),
+            pace_ratio(self.factory, *paces, self.spec.zero_tol),
         ]
 
     def _restricted(self, alone: Durations, crowded: Durations) -> Score:
@@ -80,121 +77,97 @@ class EffectOnTime:
         tau = min(alone.longest, crowded.longest)
         means = alone.restricted_mean(tau), crowded.restricted_mean(tau)
         extras = {"tau": tau, **_both(alone, crowded, means)}
-        return ScoreFactory(EFFECT_ON_TIME).ratio("restricted", *means, self.spec.zero_tol, extras)
+        return self.factory.ratio("restricted", *means, self.spec.zero_tol, extras)
 
 
-@dataclass(frozen=True, slots=True)
-class NeighboursTimeToGoal:
-    """Scores ``neighbours_time_to_goal``. Needs trips, and no reference run."""
+class NeighboursTimeToGoal(RobotMetric[NeighboursTimeToGoalSpec], declared=NEIGHBOURS_TIME_TO_GOAL):
+    """Scores ``neighbours_time_to_goal``: people who meet the robot against all people.
 
-    spec: NeighboursTimeToGoalSpec
+    Needs trips, and no reference run.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score people who meet the robot against all people, including them."""
-        del refs
-        factory = ScoreFactory(NEIGHBOURS_TIME_TO_GOAL)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         everybody = durations(run)
         if not len(everybody):
-            return factory.all_undefined("no_trips")
+            raise UndefinedError("no_trips")
         met = meets_robot(run, self.spec.neighbour_radius)
         if not met.any():
-            return factory.all_undefined("no_neighbours")
+            raise UndefinedError("no_neighbours")
         both = everybody.select(met), everybody
         jump = self.spec.jump_speed
         paces = mean_pace(run, jump, met), mean_pace(run, jump)
         return [
-            completed_ratio(factory, *both, self.spec.zero_tol),
-            mean_ratio(factory, *both, self.spec.zero_tol),
-            pace_ratio(factory, *paces, self.spec.zero_tol),
+            completed_ratio(self.factory, *both, self.spec.zero_tol),
+            mean_ratio(self.factory, *both, self.spec.zero_tol),
+            pace_ratio(self.factory, *paces, self.spec.zero_tol),
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class EffectOnVelocity:
-    """Scores ``effect_on_velocity``. Needs ``crowd_alone``."""
+class EffectOnVelocity(DeclaredMetric[EffectOnVelocitySpec], declared=EFFECT_ON_VELOCITY):
+    """Scores ``effect_on_velocity``: ``literal``: all samples of both records.
 
-    spec: EffectOnVelocitySpec
+    ``corrected``: time in the common window. Needs ``crowd_alone``.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: all samples of both records.
-
-        ``corrected``: time in the common window.
-        """
-        factory = ScoreFactory(EFFECT_ON_VELOCITY)
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
         if refs.crowd_alone is None:
-            return factory.all_undefined("no_reference")
+            raise UndefinedError("no_reference")
         alone, run = truncate_at_arrival(refs.crowd_alone), truncate_at_arrival(run)
         literal = self._ratio("literal", alone, run, np.ones(len(alone.t)), np.ones(len(run.t)))
         alone, run = samples_of_shorter(alone, run)
         if min(duration(alone.t), duration(run.t)) <= 0:
-            return [literal, factory.undefined("corrected", "too_few_samples")]
+            return [literal, self.factory.undefined("corrected", "too_few_samples")]
         weights = time_weights(alone.t), time_weights(run.t)
         return [literal, self._ratio("corrected", alone, run, *weights)]
 
     def _ratio(
         self, variant: str, alone: Trajectories, run: Trajectories, w_alone: Array, w_run: Array
     ) -> Score:
-        factory = ScoreFactory(EFFECT_ON_VELOCITY)
         jump = self.spec.jump_speed
         v_alone = pooled_mean(people_speeds(alone, jump), w_alone)
         v_run = pooled_mean(people_speeds(run, jump), w_run)
         if v_alone is None or v_run is None:
-            return factory.undefined(variant, "no_agents")
+            return self.factory.undefined(variant, "no_agents")
         both = {"alone": v_alone, "crowded": v_run}
-        return factory.ratio(variant, v_alone, v_run, self.spec.zero_tol, both)
+        return self.factory.ratio(variant, v_alone, v_run, self.spec.zero_tol, both)
 
 
-@dataclass(frozen=True, slots=True)
-class NeighboursVelocity:
-    """Scores ``neighbours_velocity``. Needs no reference run."""
+class NeighboursVelocity(RobotMetric[NeighboursVelocitySpec], declared=NEIGHBOURS_VELOCITY):
+    """Scores ``neighbours_velocity``: speeds near the robot against all speeds."""
 
-    spec: NeighboursVelocitySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score speeds near the robot against all speeds, including those near it."""
-        del refs
-        factory = ScoreFactory(NEIGHBOURS_VELOCITY)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         weights = {"literal": np.ones(len(run.t)), "corrected": time_weights(run.t)}
         return [self._ratio(v, run, w) for v, w in weights.items()]
 
     def _ratio(self, variant: str, run: Trajectories, weights: Array) -> Score:
-        factory = ScoreFactory(NEIGHBOURS_VELOCITY)
         speed = people_speeds(run, self.spec.jump_speed)
         if not np.isfinite(speed).any():
-            return factory.undefined(variant, "no_agents")
+            return self.factory.undefined(variant, "no_agents")
         if not weights.any():
-            return factory.undefined(variant, "too_few_samples")
+            return self.factory.undefined(variant, "too_few_samples")
         distance = encounter(run, self.spec.jump_speed).distance
         near = distance <= self.spec.neighbour_radius + DISTANCE_TOLERANCE
         v_near = pooled_mean(np.where(near, speed, np.nan), weights)
         v_all = pooled_mean(speed, weights)
         if v_near is None or v_all is None:
-            return factory.undefined(variant, "no_neighbours")
+            return self.factory.undefined(variant, "no_neighbours")
         both = {"neighbours": v_near, "crowd": v_all}
-        return factory.ratio(variant, v_near, v_all, self.spec.zero_tol, both)
+        return self.factory.ratio(variant, v_near, v_all, self.spec.zero_tol, both)
 
 
-@dataclass(frozen=True, slots=True)
-class CrowdDeviation:
-    """Scores ``crowd_deviation``. Needs ``crowd_alone`` with the same people at the same times."""
+class CrowdDeviation(DeclaredMetric[CrowdDeviationSpec], declared=CROWD_DEVIATION):
+    """Scores ``crowd_deviation``: the mean over samples with a person present in both runs.
 
-    spec: CrowdDeviationSpec
+    Needs ``crowd_alone`` with the same people at the same times.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the mean over all samples at which a person is present in both runs."""
-        factory = ScoreFactory(CROWD_DEVIATION)
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
         if refs.crowd_alone is None or refs.crowd_alone.agents is None:
-            return factory.all_undefined("no_reference")
+            raise UndefinedError("no_reference")
         alone, run = truncate_at_arrival(refs.crowd_alone), truncate_at_arrival(run)
         samples = paired_samples(alone.t, run.t)
         if not len(samples[0]):
-            return factory.all_undefined("sampling_mismatch")
+            raise UndefinedError("sampling_mismatch")
         a, b = people(alone), people(run)
         columns = np.intersect1d(a.id, b.id, return_indices=True)[1:]
         at_alone, at_run = (np.ix_(r, c) for r, c in zip(samples, columns, strict=True))
@@ -204,8 +177,8 @@ class CrowdDeviation:
         apart = np.hypot(*rows)
         known = np.isfinite(apart)
         if not known.any():
-            return factory.all_undefined("no_agents")
-        return [factory.ok("corrected", float(apart[known].mean()))]
+            raise UndefinedError("no_agents")
+        return [self.factory.ok("corrected", float(apart[known].mean()))]
 
 
 # ---------------------------------------------------------------------- ratios

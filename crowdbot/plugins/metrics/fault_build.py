@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from crowdbot.plugin import (
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     path_length,
-    truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import FaultRule, at_fault, person_contacts, robot_of
 from crowdbot.plugins.metrics.common_reference_build import way_made_good
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.fault import (
     CONTACTS_AT_FAULT,
     CONTACTS_PER_KM,
@@ -38,50 +36,39 @@ def fault_rule(spec: ContactsAtFaultSpec | ContactsPerKmSpec | SafeEfficiencySpe
     )
 
 
-@dataclass(frozen=True, slots=True)
-class ContactsAtFault:
-    """Scores ``contacts_at_fault``. Needs no reference run."""
+class ContactsAtFault(RobotMetric[ContactsAtFaultSpec], declared=CONTACTS_AT_FAULT):
+    """Scores ``contacts_at_fault``: contacts by fault.
 
-    spec: ContactsAtFaultSpec
+    The robot's if it moves towards the person it touches and did not brake in time.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score contacts by fault.
-
-        The robot's if it moves towards the person it touches and did not brake in time.
-        """
-        del refs
-        factory, spec = ScoreFactory(CONTACTS_AT_FAULT), self.spec
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        spec = self.spec
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
         robot = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
-        return [factory.ok("corrected", robot), factory.ok("person", len(found) - robot)]
+        return [self.factory.ok("corrected", robot), self.factory.ok("person", len(found) - robot)]
 
 
-@dataclass(frozen=True, slots=True)
-class ContactsPerKm:
-    """Scores ``contacts_per_km``. Needs a goal, except for ``driven``."""
+class ContactsPerKm(RobotMetric[ContactsPerKmSpec], declared=CONTACTS_PER_KM):
+    """Scores ``contacts_per_km``: contacts per progress and per driven km.
 
-    spec: ContactsPerKmSpec
+    All contacts and those at fault per progress, all per driven distance; and both distances.
+    Needs a goal, except for ``driven``.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score contacts per progress and per driven km.
-
-        All contacts and those at fault per progress, all per driven distance; and both distances.
-        """
-        del refs
-        factory, spec = ScoreFactory(CONTACTS_PER_KM), self.spec
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        spec = self.spec
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
         fault = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
         driven = path_length(run.t, robot_of(run), spec.jump_speed)
         of_path = self._rate("driven", len(found), driven), self._way("driven_way", driven)
-        good = way_made_good(factory, run, ("corrected", "at_fault", "way"))
-        if isinstance(good, list):
-            return [*good[:2], of_path[0], good[2], of_path[1]]
+        try:
+            good = way_made_good(run)
+        except UndefinedError as error:
+            first, second, way = self.factory.all_undefined(
+                str(error), ("corrected", "at_fault", "way")
+            )
+            return [first, second, of_path[0], way, of_path[1]]
         return [
             self._rate("corrected", len(found), good),
             self._rate("at_fault", fault, good),
@@ -92,13 +79,12 @@ class ContactsPerKm:
 
     def _way(self, variant: str, way: float) -> Score:
         """Score the distance by which the rates are divided."""
-        factory = ScoreFactory(CONTACTS_PER_KM)
-        return factory.ok(variant, max(way, self.spec.least_way) / KILOMETRE)
+        return self.factory.ok(variant, max(way, self.spec.least_way) / KILOMETRE)
 
     def _rate(self, variant: str, count: int, way: float) -> Score:
         """Score contacts per kilometre; undefined without progress, unless there was contact."""
-        factory, least = ScoreFactory(CONTACTS_PER_KM), self.spec.least_way
+        least = self.spec.least_way
         if not count and way < least - TOLERANCE:
-            return factory.undefined(variant, "zero_denominator")
+            return self.factory.undefined(variant, "zero_denominator")
         extras = {"contacts": float(count), "way": way}
-        return factory.ok(variant, KILOMETRE * count / max(way, least), extras)
+        return self.factory.ok(variant, KILOMETRE * count / max(way, least), extras)

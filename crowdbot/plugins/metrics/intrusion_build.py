@@ -3,44 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from crowdbot.plugin import (
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import DISTANCE_TOLERANCE, encounter, evasion, people, share_below
 from crowdbot.plugins.metrics.common_reference_build import rate_and_way
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.intrusion import INTRUSION, IntrusionSpec
 
 
-@dataclass(frozen=True, slots=True)
-class Intrusion:
-    """Scores ``intrusion``. Needs no reference run."""
+class Intrusion(DeclaredMetric[IntrusionSpec], declared=INTRUSION):
+    """Scores ``intrusion``: advances on people with little room or little time left.
 
-    spec: IntrusionSpec
+    Per progress, per person, and in total.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score advances on people with little room, per progress, per person and in total.
-
-        And advances with little time left.
-        """
-        del refs
-        factory, spec = ScoreFactory(INTRUSION), self.spec
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        spec = self.spec
         if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
+            raise UndefinedError("invalid_no_robot")
         if not people(run).x.size:
-            return factory.all_undefined("no_agents")
+            raise UndefinedError("no_agents")
         run = truncate_at_arrival(run)
         found = evasion(run, spec.evasion_reach, spec.jump_speed)
         met = float(found.met.sum())
         if not met:
-            return factory.all_undefined("no_neighbours")
+            raise UndefinedError("no_neighbours")
         gap = encounter(run, spec.jump_speed).gap
         room = (gap[1:] + gap[:-1]) / 2.0
         close = found.near & (room < spec.compliance - DISTANCE_TOLERANCE)
@@ -51,11 +45,11 @@ class Intrusion:
         lacking = np.clip(1.0 - room / spec.room, 0.0, 1.0)
         lacking = np.where(found.near & np.isfinite(room), lacking, 0.0)
         narrow = float(found.dt @ (found.approach * lacking).sum(axis=1))
-        rate, over = rate_and_way(factory, run, narrow, spec.least_way)
+        rate, over = rate_and_way(self.factory, run, narrow, spec.least_way)
         return [
             rate,
-            rate_and_way(factory, run, hurried, spec.least_way, "hurried")[0],
-            factory.ok("corrected", way / met, extras),
-            factory.ok("total", way, extras),
+            rate_and_way(self.factory, run, hurried, spec.least_way, "hurried")[0],
+            self.factory.ok("corrected", way / met, extras),
+            self.factory.ok("total", way, extras),
             over,
         ]

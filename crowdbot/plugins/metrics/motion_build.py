@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,10 +16,10 @@ from crowdbot.plugin import (
     forward_speed,
     path_length,
     time_weights,
-    truncate_at_arrival,
     yaw_rate,
 )
 from crowdbot.plugin.for_metrics import heading_changes, robot_of, robot_velocities, wrap
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.motion import (
     ACCELERATION,
     CUMULATIVE_HEADING_CHANGE,
@@ -41,152 +40,85 @@ from crowdbot.plugins.metrics.motion import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class TimeNotMoving:
-    """Scores ``time_not_moving``. Needs no reference run."""
+class TimeNotMoving(RobotMetric[TimeNotMovingSpec], declared=TIME_NOT_MOVING):
+    """Scores ``time_not_moving``: the time in which the robot neither drives nor turns."""
 
-    spec: TimeNotMovingSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the time in which the robot neither drives nor turns."""
-        del refs
-        factory = ScoreFactory(TIME_NOT_MOVING)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         speed = np.hypot(*robot_velocities(run, self.spec.jump_speed))
         turning = np.abs(yaw_rate(run.t, robot_of(run), self.spec.jump_speed))
         still = (speed < self.spec.still_speed) & (turning < self.spec.still_turn)
-        return [factory.ok("corrected", time_weights(run.t) @ still)]
+        return [self.factory.ok("corrected", time_weights(run.t) @ still)]
 
 
-@dataclass(frozen=True, slots=True)
-class StalledTime:
-    """Scores ``stalled_time``. Needs no reference run."""
+class StalledTime(RobotMetric[StalledTimeSpec], declared=STALLED_TIME):
+    """Scores ``stalled_time``: the time in which the robot hardly drives, turning or not."""
 
-    spec: StalledTimeSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the time in which the robot hardly drives, turning or not."""
-        del refs
-        factory = ScoreFactory(STALLED_TIME)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         speed = np.hypot(*robot_velocities(run, self.spec.jump_speed))
-        return [factory.ok("corrected", time_weights(run.t) @ (speed < self.spec.stall_speed))]
+        return [self.factory.ok("corrected", time_weights(run.t) @ (speed < self.spec.stall_speed))]
 
 
-@dataclass(frozen=True, slots=True)
-class CumulativeHeadingChange:
-    """Scores ``cumulative_heading_change``. Needs no reference run."""
+class CumulativeHeadingChange(
+    RobotMetric[CumulativeHeadingChangeSpec], declared=CUMULATIVE_HEADING_CHANGE
+):
+    """Scores ``cumulative_heading_change``: the sum of heading changes over the valid steps."""
 
-    spec: CumulativeHeadingChangeSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the sum of heading changes over the valid steps."""
-        del refs
-        factory = ScoreFactory(CUMULATIVE_HEADING_CHANGE)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        return [
-            factory.ok("corrected", _all_turning(truncate_at_arrival(run), self.spec.jump_speed))
-        ]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", _all_turning(run, self.spec.jump_speed))]
 
 
-@dataclass(frozen=True, slots=True)
-class PathIrregularity:
-    """Scores ``path_irregularity``. Needs no reference run."""
+class PathIrregularity(RobotMetric[PathIrregularitySpec], declared=PATH_IRREGULARITY):
+    """Scores ``path_irregularity``: turning per metre, beyond that from first to last heading."""
 
-    spec: PathIrregularitySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the turning beyond the turn from the first heading to the last, per metre."""
-        del refs
-        factory, jump = ScoreFactory(PATH_IRREGULARITY), self.spec.jump_speed
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        jump = self.spec.jump_speed
         robot = robot_of(run)
         theta = robot.theta[np.isfinite(robot.theta)]
         needed = float(np.abs(wrap(theta[-1:] - theta[:1])).sum())
         extra = max(0.0, _all_turning(run, jump) - needed)
         length = path_length(run.t, robot, jump)
-        return [factory.ratio("corrected", extra, length, self.spec.zero_tol)]
+        return [self.factory.ratio("corrected", extra, length, self.spec.zero_tol)]
 
 
-@dataclass(frozen=True, slots=True)
-class Speed:
-    """Scores ``speed``. Needs no reference run."""
+class Speed(RobotMetric[SpeedSpec], declared=SPEED):
+    """Scores ``speed``: the magnitude of the velocity; ``avg`` is the mean over time."""
 
-    spec: SpeedSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the magnitude of the velocity; ``avg`` is the mean over time."""
-        del refs
-        if run.robot is None:
-            return ScoreFactory(SPEED).all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         speed = np.hypot(*robot_velocities(run, self.spec.jump_speed))
-        return _spread(ScoreFactory(SPEED), speed, time_weights(run.t))
+        return _spread(self.factory, speed, time_weights(run.t))
 
 
-@dataclass(frozen=True, slots=True)
-class Acceleration:
-    """Scores ``acceleration``. Needs no reference run."""
+class Acceleration(RobotMetric[AccelerationSpec], declared=ACCELERATION):
+    """Scores ``acceleration``: the change of forward speed from step to step."""
 
-    spec: AccelerationSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the change of forward speed from step to step."""
-        del refs
-        if run.robot is None:
-            return ScoreFactory(ACCELERATION).all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         dt = np.diff(run.t)
         v = forward_speed(run.t, robot_of(run), self.spec.jump_speed)
-        return _spread(ScoreFactory(ACCELERATION), np.abs(np.diff(v) / dt), dt)
+        return _spread(self.factory, np.abs(np.diff(v) / dt), dt)
 
 
-@dataclass(frozen=True, slots=True)
-class Jerk:
-    """Scores ``jerk``. Needs no reference run."""
+class Jerk(RobotMetric[JerkSpec], declared=JERK):
+    """Scores ``jerk``: the change of acceleration between neighbouring steps."""
 
-    spec: JerkSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the change of acceleration between neighbouring steps."""
-        del refs
-        if run.robot is None:
-            return ScoreFactory(JERK).all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
-        return _spread(ScoreFactory(JERK), *_jerk(run, self.spec.jump_speed))
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return _spread(self.factory, *_jerk(run, self.spec.jump_speed))
 
 
-@dataclass(frozen=True, slots=True)
-class DimensionlessJerk:
-    """Scores ``dimensionless_jerk``. Needs no reference run.
+class DimensionlessJerk(RobotMetric[DimensionlessJerkSpec], declared=DIMENSIONLESS_JERK):
+    """Scores ``dimensionless_jerk``: T³/v_peak² times the integral of the squared jerk.
 
     Balasubramanian et al. 2015, without logarithm and sign.
     """
 
-    spec: DimensionlessJerkSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score T³/v_peak² times the integral of the squared jerk."""
-        del refs
-        factory = ScoreFactory(DIMENSIONLESS_JERK)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         jerk, dt = _jerk(run, self.spec.jump_speed)
         if not np.isfinite(jerk).any():
-            return factory.all_undefined("too_few_samples")
+            raise UndefinedError("too_few_samples")
         v = forward_speed(run.t, robot_of(run), self.spec.jump_speed)
         peak = float(np.nanmax(np.abs(v)))
         total = float(np.where(np.isfinite(jerk), jerk, 0.0) ** 2 @ dt)
         scale = duration(run.t) ** 3
-        return [factory.ratio("corrected", total * scale, peak**2, self.spec.zero_tol**2)]
+        return [self.factory.ratio("corrected", total * scale, peak**2, self.spec.zero_tol**2)]
 
 
 def _all_turning(run: Trajectories, jump_speed: float) -> float:
@@ -207,7 +139,7 @@ def _spread(factory: ScoreFactory, values: Array, weights: Array) -> list[Score]
     known = np.isfinite(values)
     values, weights = values[known], weights[known]
     if not len(values):
-        return factory.all_undefined("too_few_samples")
+        raise UndefinedError("too_few_samples")
     least, most = factory.ok("min", values.min()), factory.ok("max", values.max())
     if weights.sum() <= 0:
         return [least, factory.undefined("avg", "too_few_samples"), most]

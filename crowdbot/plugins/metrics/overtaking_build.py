@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +17,6 @@ from crowdbot.plugin import (
     Mask,
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     inline_kernel,
     kernel,
@@ -33,6 +31,7 @@ from crowdbot.plugin.for_metrics import (
     valid_agent_steps,
     valid_robot_steps,
 )
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCountSpec
 
 #: Tolerances for speed (m/s), angle (rad) and side (m), so that rounding does not decide.
@@ -43,25 +42,19 @@ _SLACK = 1e-3
 Index = NDArray[np.intp]
 
 
-@dataclass(frozen=True, slots=True)
-class OvertakingCount:
-    """Scores ``overtaking_count``. Needs no reference run; without people the count is 0."""
+class OvertakingCount(DeclaredMetric[OvertakingCountSpec], declared=OVERTAKING_COUNT):
+    """Scores ``overtaking_count``: ``literal``: people overtaken by the robot.
 
-    spec: OvertakingCountSpec
+    ``corrected``: minus those who overtook it. without people the count is 0.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: people overtaken by the robot.
-
-        ``corrected``: minus those who overtook it.
-        """
-        del refs
-        factory = ScoreFactory(OVERTAKING_COUNT)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
+            raise UndefinedError("invalid_no_robot")
         counts = overtakes(OvertakingBodies.of(truncate_at_arrival(run), self.spec), self.spec)
         net = np.maximum(0, counts - counts.T)
         return [
-            factory.ok(variant, n[0].sum(), _extras(n, counts))
+            self.factory.ok(variant, n[0].sum(), _extras(n, counts))
             for variant, n in (("literal", counts), ("corrected", net))
         ]
 

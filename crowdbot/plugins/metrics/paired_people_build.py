@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from crowdbot.plugin import (
     truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import Effects, Pairing, meeting_effects, whole_effects
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.paired_people import (
     DELAY,
     DISPLACEMENT,
@@ -35,36 +35,28 @@ TOLERANCE = 1e-9
 _Spec = DisplacementSpec | DelaySpec
 
 
-@dataclass(frozen=True, slots=True)
-class Displacement:
-    """Scores ``displacement``. Needs ``crowd_alone`` with the same people."""
+class Displacement(DeclaredMetric[DisplacementSpec], declared=DISPLACEMENT):
+    """Scores ``displacement``: the cost to people met.
 
-    spec: DisplacementSpec
+    Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
+    everyone. Needs ``crowd_alone`` with the same people.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the cost to people met.
-
-        Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
-        everyone.
-        """
-        factory, much = ScoreFactory(DISPLACEMENT), self.spec.much_displacement
-        return _scores(factory, run, refs, self.spec, lambda found: found.displacement, much)
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        much = self.spec.much_displacement
+        return _scores(self.factory, run, refs, self.spec, lambda found: found.displacement, much)
 
 
-@dataclass(frozen=True, slots=True)
-class Delay:
-    """Scores ``delay``. Needs ``crowd_alone`` with the same people."""
+class Delay(DeclaredMetric[DelaySpec], declared=DELAY):
+    """Scores ``delay``: the cost to people met.
 
-    spec: DelaySpec
+    Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
+    everyone. Needs ``crowd_alone`` with the same people.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the cost to people met.
-
-        Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
-        everyone.
-        """
-        factory, much = ScoreFactory(DELAY), self.spec.much_delay
-        return _scores(factory, run, refs, self.spec, lambda found: found.delay, much)
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        much = self.spec.much_delay
+        return _scores(self.factory, run, refs, self.spec, lambda found: found.delay, much)
 
 
 def _scores(
@@ -78,9 +70,9 @@ def _scores(
     """Return all variants for the cost to each person (P,)."""
     alone = refs.crowd_alone
     if alone is None or alone.agents is None:
-        return factory.all_undefined("no_reference")
+        raise UndefinedError("no_reference")
     if run.trips is None or alone.trips is None:
-        return factory.all_undefined("no_trips")
+        raise UndefinedError("no_trips")
     run, alone = truncate_at_arrival(run), truncate_at_arrival(alone)
     pairing = Pairing(
         same_start=spec.same_start,

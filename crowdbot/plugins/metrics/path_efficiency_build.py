@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import heading_changes, inf_to_nan, robot_of, valid_robot_steps
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.path_efficiency import (
     RELATIVE_JERK,
     RELATIVE_PATH_LENGTH,
@@ -36,85 +36,72 @@ _OWN = ("literal", "corrected")
 RATE_TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class RelativeTimeToGoal:
-    """Scores ``relative_time_to_goal``. Needs ``robot_alone``."""
+class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec], declared=RELATIVE_TIME_TO_GOAL):
+    """Scores ``relative_time_to_goal``: ``literal`` and ``corrected`` against the planner alone.
 
-    spec: RelativeTimeToGoalSpec
+    ``common``: against full speed. Needs ``robot_alone``.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal`` and ``corrected`` against the planner alone.
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        scores = _alone_over_crowded(self.factory, self._time, run, refs, self.spec, _OWN)
+        return [*scores, self._common(run)]
 
-        ``common``: against full speed.
-        """
-        factory = ScoreFactory(RELATIVE_TIME_TO_GOAL)
-        scores = _alone_over_crowded(factory, self._time, run, refs, self.spec, _OWN)
-        return [*scores, self._common(factory, run)]
-
-    def _common(self, factory: ScoreFactory, run: Trajectories) -> Score:
+    def _common(self, run: Trajectories) -> Score:
         """Score the time of the shortest path at full speed over the time taken."""
-        shortest = shortest_time(factory, run, ("common",))
-        if isinstance(shortest, list):
-            return shortest[0]
+        try:
+            shortest = shortest_time(run)
+        except UndefinedError as error:
+            return self.factory.undefined("common", str(error))
         run = truncate_at_arrival(run)
-        return _grows(factory, "common", shortest, self._time(run), run, self.spec.zero_tol)
+        return _grows(self.factory, "common", shortest, self._time(run), run, self.spec.zero_tol)
 
     def _time(self, run: Trajectories) -> float:
         return travel_time(run, robot_of(run))
 
 
-@dataclass(frozen=True, slots=True)
-class RelativePathLength:
-    """Scores ``relative_path_length``. Needs ``robot_alone``."""
+class RelativePathLength(DeclaredMetric[RelativePathLengthSpec], declared=RELATIVE_PATH_LENGTH):
+    """Scores ``relative_path_length``: ``literal`` and ``corrected``. Needs ``robot_alone``."""
 
-    spec: RelativePathLengthSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal`` and ``corrected``."""
-        return _alone_over_crowded(
-            ScoreFactory(RELATIVE_PATH_LENGTH), self._length, run, refs, self.spec, _OWN
-        )
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        return _alone_over_crowded(self.factory, self._length, run, refs, self.spec, _OWN)
 
     def _length(self, run: Trajectories) -> float:
         return path_length(run.t, robot_of(run), self.spec.jump_speed)
 
 
-@dataclass(frozen=True, slots=True)
-class RelativeJerk:
-    """Scores ``relative_jerk``. Needs ``robot_alone``, sampled as often as the run."""
+class RelativeJerk(DeclaredMetric[RelativeJerkSpec], declared=RELATIVE_JERK):
+    """Scores ``relative_jerk``: ``literal`` with its sign, and total variations.
 
-    spec: RelativeJerkSpec
+    Needs ``robot_alone``, sampled as often as the run.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``, which telescopes and has a sign, and the total variations."""
-        factory = ScoreFactory(RELATIVE_JERK)
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
         if reason := obstacle(run, refs):
-            return factory.all_undefined(reason)
+            raise UndefinedError(reason)
         assert refs.robot_alone is not None
         alone, run = truncate_at_arrival(refs.robot_alone), truncate_at_arrival(run)
         if min(len(alone.t), len(run.t)) < 3:
-            return factory.all_undefined("too_few_samples")
+            raise UndefinedError("too_few_samples")
         j_alone, j_run = self._jerk(alone), self._jerk(run)
         scores = [self._literal(j_alone["literal"], j_run["literal"], run)]
-        others = factory.variants[1:]
+        others = self.factory.variants[1:]
         if self._mismatch(alone.t, run.t):
-            return scores + factory.all_undefined("sampling_mismatch", others)
+            return scores + self.factory.all_undefined("sampling_mismatch", others)
         return scores + [self._ratio(v, j_alone[v], j_run[v], run) for v in others]
 
     def _ratio(self, variant: str, alone: float, crowded: float, run: Trajectories) -> Score:
         """Score alone over crowded; undefined for turning if the reference does not turn."""
-        factory, zero_tol = ScoreFactory(RELATIVE_JERK), self.spec.jerk_zero_tol
+        zero_tol = self.spec.jerk_zero_tol
         if variant == "angular" and alone <= zero_tol:
-            return factory.undefined(variant, "reference_does_not_turn")
-        return _grows(factory, variant, alone, crowded, run, zero_tol)
+            return self.factory.undefined(variant, "reference_does_not_turn")
+        return _grows(self.factory, variant, alone, crowded, run, zero_tol)
 
     def _literal(self, alone: float, crowded: float, run: Trajectories) -> Score:
-        factory = ScoreFactory(RELATIVE_JERK)
         if robot_of(run).goal_time is None:
-            return factory.undefined("literal", "goal_not_reached")
+            return self.factory.undefined("literal", "goal_not_reached")
         if abs(crowded) <= self.spec.jerk_zero_tol:
-            return factory.undefined("literal", "zero_denominator")
-        return factory.ok("literal", alone / crowded, {"alone": alone, "crowded": crowded})
+            return self.factory.undefined("literal", "zero_denominator")
+        return self.factory.ok("literal", alone / crowded, {"alone": alone, "crowded": crowded})
 
     def _mismatch(self, a: Array, b: Array) -> bool:
         """Return True if the median time steps differ by more than the tolerance of the larger."""

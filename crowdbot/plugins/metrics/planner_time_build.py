@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.plugin import Array, References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin import Array, References, Score, Trajectories
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.planner_time import (
     MAX_PLANNER_TIME,
     MEAN_PLANNER_TIME,
@@ -16,38 +16,32 @@ from crowdbot.plugins.metrics.planner_time import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class MeanPlannerTime:
-    """Scores ``mean_planner_time``. Needs the times of the planner's steps."""
+class MeanPlannerTime(DeclaredMetric[MeanPlannerTimeSpec], declared=MEAN_PLANNER_TIME):
+    """Scores ``mean_planner_time``: the mean over all steps of the record.
 
-    spec: MeanPlannerTimeSpec
+    Needs the times of the planner's steps.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the mean over all steps of the record."""
-        del refs
-        factory = ScoreFactory(MEAN_PLANNER_TIME)
-        steps = _steps(factory, run)
-        return steps if isinstance(steps, list) else [factory.ok("corrected", steps.mean())]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", _steps(run).mean())]
 
 
-@dataclass(frozen=True, slots=True)
-class MaxPlannerTime:
-    """Scores ``max_planner_time``. Needs the times of the planner's steps."""
+class MaxPlannerTime(DeclaredMetric[MaxPlannerTimeSpec], declared=MAX_PLANNER_TIME):
+    """Scores ``max_planner_time``: the maximum over all steps of the record.
 
-    spec: MaxPlannerTimeSpec
+    Needs the times of the planner's steps.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the maximum over all steps of the record."""
-        del refs
-        factory = ScoreFactory(MAX_PLANNER_TIME)
-        steps = _steps(factory, run)
-        return steps if isinstance(steps, list) else [factory.ok("corrected", steps.max())]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", _steps(run).max())]
 
 
-def _steps(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
-    """Return known step durations, s; or scores that say why there are none."""
+def _steps(run: Trajectories) -> Array:
+    """Return known durations of steps, s; raise `UndefinedError` if there are none."""
     if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
+        raise UndefinedError("invalid_no_robot")
     steps = run.planner_step_time
     known = np.empty(0) if steps is None else steps[np.isfinite(steps)]
-    return known if len(known) else factory.all_undefined("invalid_no_planner_time")
+    if not len(known):
+        raise UndefinedError("invalid_no_planner_time")
+    return known

@@ -3,40 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.plugin import References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin import References, Score, Trajectories
 from crowdbot.plugins.metrics.common_reference_build import goal_distance
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.progress import REGRESS, RegressSpec
 
 #: Tolerance of the rule for a receding goal, m/s, so that rounding does not decide.
 TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class Regress:
-    """Scores ``regress``. Needs a goal point or zone."""
+class Regress(DeclaredMetric[RegressSpec], declared=REGRESS):
+    """Scores ``regress``: the sum of all increases of the goal distance.
 
-    spec: RegressSpec
+    And the share of time with a marked one. Needs a goal point or zone.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the sum of all increases of the goal distance.
-
-        And the share of time with a marked one.
-        """
-        del refs
-        factory = ScoreFactory(REGRESS)
-        found = goal_distance(factory, run)
-        if isinstance(found, list):
-            return found
-        t, distance = found
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        t, distance = goal_distance(run)
         if len(t) < 2:
-            return factory.all_undefined("too_few_samples")
+            raise UndefinedError("too_few_samples")
         steps, dt = np.diff(distance), np.diff(t)
         away = steps / dt > self.spec.away_speed + TOLERANCE
         return [
-            factory.ok("corrected", np.maximum(steps, 0.0).sum()),
-            factory.ok("time_share", min(1.0, float(dt[away].sum() / dt.sum()))),
+            self.factory.ok("corrected", np.maximum(steps, 0.0).sum()),
+            self.factory.ok("time_share", min(1.0, float(dt[away].sum() / dt.sum()))),
         ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +10,6 @@ from crowdbot.plugin import (
     Array,
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     truncate_at_arrival,
 )
@@ -22,6 +20,7 @@ from crowdbot.plugin.for_metrics import (
     spaced,
     valid_robot_steps,
 )
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 from crowdbot.plugins.metrics.reference_path import (
     ADE_TO_REFERENCE,
@@ -35,79 +34,61 @@ from crowdbot.plugins.metrics.reference_path import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class AdeToReference:
-    """Scores ``ade_to_reference``.
+class AdeToReference(RobotMetric[AdeToReferenceSpec], declared=ADE_TO_REFERENCE):
+    """Scores ``ade_to_reference``: unweighted mean distance over the common samples.
+
+    Up to the earlier arrival. Needs ``robot_alone``, sampled at the same times after the start.
+    """
+
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", _apart(run, refs).mean())]
+
+
+class FdeToReference(RobotMetric[FdeToReferenceSpec], declared=FDE_TO_REFERENCE):
+    """Scores ``fde_to_reference``: the distance at the last common sample.
 
     Needs ``robot_alone``, sampled at the same times after the start.
     """
 
-    spec: AdeToReferenceSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the unweighted mean over the common samples, up to the earlier arrival."""
-        apart = _apart(ScoreFactory(ADE_TO_REFERENCE), run, refs)
-        if isinstance(apart, list):
-            return apart
-        return [ScoreFactory(ADE_TO_REFERENCE).ok("corrected", apart.mean())]
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", _apart(run, refs)[-1])]
 
 
-@dataclass(frozen=True, slots=True)
-class FdeToReference:
-    """Scores ``fde_to_reference``.
+class Ndtw(RobotMetric[NdtwSpec], declared=NDTW):
+    """Scores ``ndtw``: ``exp(-DTW / (points of the reference x threshold))``.
 
-    Needs ``robot_alone``, sampled at the same times after the start.
+    Needs ``robot_alone``. Ilharco et al. 2019.
     """
 
-    spec: FdeToReferenceSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the distance at the last common sample."""
-        apart = _apart(ScoreFactory(FDE_TO_REFERENCE), run, refs)
-        if isinstance(apart, list):
-            return apart
-        return [ScoreFactory(FDE_TO_REFERENCE).ok("corrected", apart[-1])]
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", _likeness(run, refs, self.spec))]
 
 
-@dataclass(frozen=True, slots=True)
-class Ndtw:
-    """Scores ``ndtw``. Needs ``robot_alone``. Ilharco et al. 2019."""
+class Sdtw(RobotMetric[SdtwSpec], declared=SDTW):
+    """Scores ``sdtw``: 0 without arrival, else ``ndtw``.
 
-    spec: NdtwSpec
+    Needs ``robot_alone``. Ilharco et al. 2019.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``exp(-DTW / (points of the reference x threshold))``."""
-        return _likeness(ScoreFactory(NDTW), run, refs, self.spec)
-
-
-@dataclass(frozen=True, slots=True)
-class Sdtw:
-    """Scores ``sdtw``. Needs ``robot_alone``. Ilharco et al. 2019."""
-
-    spec: SdtwSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score 0 without arrival, else ``ndtw``."""
-        factory = ScoreFactory(SDTW)
-        found = _likeness(factory, run, refs, self.spec)
-        if found[0].value is None or robot_of(run).goal_time is not None:
-            return found
-        return [factory.ok("corrected", 0.0)]
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        arrived = robot_of(run).goal_time is not None
+        return [self.factory.ok("corrected", _likeness(run, refs, self.spec) * arrived)]
 
 
-def _likeness(
-    factory: ScoreFactory, run: Trajectories, refs: References, spec: NdtwSpec | SdtwSpec
-) -> list[Score]:
+def _likeness(run: Trajectories, refs: References, spec: NdtwSpec | SdtwSpec) -> float:
     """Compare both paths up to the arrival, at equal spacing, so that time has no effect."""
-    if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
-    if refs.robot_alone is None or refs.robot_alone.robot is None:
-        return factory.all_undefined("no_reference")
-    paths = [_path(truncate_at_arrival(r), spec) for r in (refs.robot_alone, run)]
+    paths = [_path(one, spec) for one in (_alone(refs), run)]
     if not all(len(path) for path in paths):
-        return factory.all_undefined("too_few_samples")
+        raise UndefinedError("too_few_samples")
     cost = least_warping(*paths) / (len(paths[0]) * spec.dtw_threshold)
-    return [factory.ok("corrected", np.exp(-cost))]
+    return float(np.exp(-cost))
+
+
+def _alone(refs: References) -> Trajectories:
+    """Return the robot's run without people, up to its arrival."""
+    if refs.robot_alone is None or refs.robot_alone.robot is None:
+        raise UndefinedError("no_reference")
+    return truncate_at_arrival(refs.robot_alone)
 
 
 def _path(run: Trajectories, spec: NdtwSpec | SdtwSpec) -> Array:
@@ -116,17 +97,15 @@ def _path(run: Trajectories, spec: NdtwSpec | SdtwSpec) -> Array:
     return spaced(inf_to_nan(robot.x), inf_to_nan(robot.y), valid, spec.dtw_spacing)
 
 
-def _apart(factory: ScoreFactory, run: Trajectories, refs: References) -> Array | list[Score]:
-    """Return the distance between both positions at each common sample (K,), m; or why not."""
-    if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
-    if refs.robot_alone is None or refs.robot_alone.robot is None:
-        return factory.all_undefined("no_reference")
-    run, alone = truncate_at_arrival(run), truncate_at_arrival(refs.robot_alone)
+def _apart(run: Trajectories, refs: References) -> Array:
+    """Return the distance between both positions at each common sample (K,), m."""
+    alone = _alone(refs)
     i, j = paired_samples(run.t, alone.t)
     one, two = robot_of(run), robot_of(alone)
     apart = np.hypot(
         *(inf_to_nan(a)[i] - inf_to_nan(b)[j] for a, b in ((one.x, two.x), (one.y, two.y)))
     )
     apart = apart[np.isfinite(apart)]
-    return apart if len(apart) else factory.all_undefined("sampling_mismatch")
+    if not len(apart):
+        raise UndefinedError("sampling_mismatch")
+    return apart

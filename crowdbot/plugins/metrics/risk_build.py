@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,9 +14,9 @@ from crowdbot.plugin import (
     Trajectories,
     duration,
     time_weights,
-    truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import approach, as_disc
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.risk import (
     EXPECTED_SEVERITY,
     INTEGRATED_TIME_TO_COLLISION,
@@ -35,26 +34,20 @@ from crowdbot.plugins.metrics.risk import (
 TIE = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class Risk:
-    """Scores ``risk``. Needs no reference run."""
+class Risk(RobotMetric[RiskSpec], declared=RISK):
+    """Scores ``risk``: ``literal``, ``corrected``, ``exposed_time``, ``rate`` and ``disc``.
 
-    spec: RiskSpec
+    The first three grow with the length of the run.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``, ``corrected``, ``exposed_time``, ``rate`` and ``disc``.
-
-        The first three grow with the length of the run.
-        """
-        del refs
-        factory = ScoreFactory(RISK)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         tau = first_contact(run, self.spec)
-        literal = factory.ok("literal", tau[np.isfinite(tau)].sum())
+        literal = self.factory.ok("literal", tau[np.isfinite(tau)].sum())
         if (span := duration(run.t)) <= 0:
-            return [literal, *factory.all_undefined("too_few_samples", factory.variants[1:])]
+            return [
+                literal,
+                *self.factory.all_undefined("too_few_samples", self.factory.variants[1:]),
+            ]
         weights, horizon = time_weights(run.t), self.spec.risk_horizon
         of_disc = first_contact(as_disc(run), self.spec)
         imminence, round_one = (
@@ -62,37 +55,31 @@ class Risk:
         )
         return [
             literal,
-            factory.ok("corrected", imminence, {"mean": imminence / span}),
-            factory.ok("exposed_time", weights @ (tau < horizon)),
-            factory.ok("rate", min(1.0, imminence / span)),
-            factory.ok("disc", min(1.0, round_one / span)),
+            self.factory.ok("corrected", imminence, {"mean": imminence / span}),
+            self.factory.ok("exposed_time", weights @ (tau < horizon)),
+            self.factory.ok("rate", min(1.0, imminence / span)),
+            self.factory.ok("disc", min(1.0, round_one / span)),
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class ExpectedSeverity:
-    """Scores ``expected_severity``. Needs no reference run."""
+class ExpectedSeverity(RobotMetric[ExpectedSeveritySpec], declared=EXPECTED_SEVERITY):
+    """Scores ``expected_severity`` by the speed of the person touched first, or the fastest."""
 
-    spec: ExpectedSeveritySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score by the speed of the person touched first; of several, the fastest."""
-        del refs
-        factory = ScoreFactory(EXPECTED_SEVERITY)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         tau, square = self._first_and_speed(run)
         ahead = np.isfinite(tau)
-        literal = factory.ok("literal", square[ahead] @ tau[ahead])
+        literal = self.factory.ok("literal", square[ahead] @ tau[ahead])
         if (span := duration(run.t)) <= 0:
-            return [literal, *factory.all_undefined("too_few_samples", factory.variants[1:])]
+            return [
+                literal,
+                *self.factory.all_undefined("too_few_samples", self.factory.variants[1:]),
+            ]
         imminence = np.maximum(0.0, 1.0 - tau / self.spec.risk_horizon)
         total = float(time_weights(run.t) @ (square * imminence))
         return [
             literal,
-            factory.ok("corrected", total, {"mean": total / span}),
-            factory.ok("rate", total / span),
+            self.factory.ok("corrected", total, {"mean": total / span}),
+            self.factory.ok("rate", total / span),
         ]
 
     def _first_and_speed(self, run: Trajectories) -> tuple[Array, Array]:
@@ -105,51 +92,40 @@ class ExpectedSeverity:
         return first, np.where(is_first, speed, 0.0).max(axis=1, initial=0.0) ** 2
 
 
-@dataclass(frozen=True, slots=True)
-class TimeExposed:
-    """Scores ``time_exposed``, the variant ``exposed_time`` of ``risk``."""
+class TimeExposed(RobotMetric[TimeExposedSpec], declared=TIME_EXPOSED):
+    """Scores ``time_exposed``: the time, and its share, with a person nearer than the horizon.
 
-    spec: TimeExposedSpec
+    the variant ``exposed_time`` of ``risk``.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the time, and its share, with a person nearer than the horizon."""
-        del refs
-        return _over_time(ScoreFactory(TIME_EXPOSED), run, self.spec, exposed=True)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return _over_time(self.factory, run, self.spec, exposed=True)
 
 
-@dataclass(frozen=True, slots=True)
-class IntegratedTimeToCollision:
-    """Scores ``integrated_time_to_collision``: ``risk`` times its horizon."""
+class IntegratedTimeToCollision(
+    RobotMetric[IntegratedTimeToCollisionSpec], declared=INTEGRATED_TIME_TO_COLLISION
+):
+    """Scores ``integrated_time_to_collision``: horizon minus time to contact, where positive.
 
-    spec: IntegratedTimeToCollisionSpec
+    Its integral, which is ``risk`` times the horizon, and its mean.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the integral and mean of horizon minus time to contact, where positive."""
-        del refs
-        return _over_time(ScoreFactory(INTEGRATED_TIME_TO_COLLISION), run, self.spec, exposed=False)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return _over_time(self.factory, run, self.spec, exposed=False)
 
 
-@dataclass(frozen=True, slots=True)
-class MinTimeToCollision:
-    """Scores ``min_time_to_collision``. Needs no reference run."""
+class MinTimeToCollision(RobotMetric[MinTimeToCollisionSpec], declared=MIN_TIME_TO_COLLISION):
+    """Scores ``min_time_to_collision``: 0 after contact, undefined if none was predicted."""
 
-    spec: MinTimeToCollisionSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the minimum: 0 after contact, undefined if no collision was ever predicted."""
-        del refs
-        factory = ScoreFactory(MIN_TIME_TO_COLLISION)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         read = {"corrected": run, "disc": as_disc(run)}
-        return [self._least(factory, variant, one) for variant, one in read.items()]
+        return [self._least(variant, one) for variant, one in read.items()]
 
-    def _least(self, factory: ScoreFactory, variant: str, run: Trajectories) -> Score:
+    def _least(self, variant: str, run: Trajectories) -> Score:
         least = float(first_contact(run, self.spec).min())
         if not np.isfinite(least):
-            return factory.undefined(variant, "no_neighbours")
-        return factory.ok(variant, least)
+            return self.factory.undefined(variant, "no_neighbours")
+        return self.factory.ok(variant, least)
 
 
 _Spec = (
@@ -175,11 +151,8 @@ def _over_time(
     *,
     exposed: bool,
 ) -> list[Score]:
-    if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
-    run = truncate_at_arrival(run)
     if duration(run.t) <= 0:
-        return factory.all_undefined("too_few_samples")
+        raise UndefinedError("too_few_samples")
     tau = first_contact(run, spec)
     short = np.maximum(0.0, spec.risk_horizon - tau)
     values = (tau < spec.risk_horizon) if exposed else short

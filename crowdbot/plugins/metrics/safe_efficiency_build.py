@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from crowdbot.plugin import (
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     travel_time,
     truncate_at_arrival,
@@ -22,27 +20,22 @@ from crowdbot.plugin.for_metrics import (
     robot_of,
 )
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.fault_build import fault_rule
 from crowdbot.plugins.metrics.safe_efficiency import SAFE_EFFICIENCY, SafeEfficiencySpec
 from crowdbot.plugins.metrics.walls_build import wall_contacts
 
 
-@dataclass(frozen=True, slots=True)
-class SafeEfficiency:
-    """Scores ``safe_efficiency``. Needs a goal and the robot's top speed; no reference run."""
+class SafeEfficiency(DeclaredMetric[SafeEfficiencySpec], declared=SAFE_EFFICIENCY):
+    """Scores ``safe_efficiency``: shortest time over time taken; 0 without arrival.
 
-    spec: SafeEfficiencySpec
+    0 after a contact at fault; each person driven aside and each contact with a wall takes off a
+    share. Needs a goal and the robot's top speed.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score 0 without arrival or with a contact at fault, else shortest time over time taken.
-
-        Each person driven aside and each contact with a wall takes off a share.
-        """
-        del refs
-        factory, spec = ScoreFactory(SAFE_EFFICIENCY), self.spec
-        shortest = shortest_time(factory, run)
-        if isinstance(shortest, list):
-            return shortest
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        spec = self.spec
+        shortest = shortest_time(run)
         run = truncate_at_arrival(run)
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
         faults = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
@@ -57,8 +50,8 @@ class SafeEfficiency:
             "wall_contacts": float(walls), "shortest_time": shortest, "time": taken,
         }  # fmt: skip
         if shortest <= spec.zero_tol:
-            return factory.all_undefined("zero_denominator")
+            raise UndefinedError("zero_denominator")
         if faults or robot_of(run).goal_time is None:
-            return [factory.ok("corrected", 0.0, extras)]
+            return [self.factory.ok("corrected", 0.0, extras)]
         share = spec.forced_factor ** int(aside) * spec.wall_factor**walls
-        return [factory.ok("corrected", share * shortest / max(taken, shortest), extras)]
+        return [self.factory.ok("corrected", share * shortest / max(taken, shortest), extras)]

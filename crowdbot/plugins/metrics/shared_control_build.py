@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.plugin import Array, Commands, References, Score, ScoreFactory, Trajectories
+from crowdbot.plugin import Array, Commands, References, Score, Trajectories
 from crowdbot.plugin.for_metrics import wrap
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.shared_control import (
     AGREEMENT,
     FLUENCY,
@@ -28,36 +28,29 @@ TOLERANCE = 1e-9
 REGULAR = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class AgreementMetric:
-    """Scores ``agreement``. Needs commands.
+class AgreementMetric(DeclaredMetric[AgreementSpec], declared=AGREEMENT):
+    """Scores ``agreement``: ``literal``: angles of arctan(v/w).
 
-    Each counts for as long as it holds; standstill has no direction.
+    ``corrected``: full angles of scaled commands. Needs commands. Each counts for as long as it
+    holds; standstill has no direction.
     """
 
-    spec: AgreementSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: angles of arctan(v/w).
-
-        ``corrected``: full angles of scaled commands.
-        """
-        del run
-        factory, c = ScoreFactory(AGREEMENT), refs.commands
+    def _scores(self, _: Trajectories, refs: References) -> Sequence[Score]:
+        c = refs.commands
         if c is None:
-            return factory.all_undefined("no_command")
+            raise UndefinedError("no_command")
         moves = [
             (np.abs(v) > self.spec.zero_tol) | (np.abs(w) > self.spec.zero_tol)
             for v, w in ((c.v_user, c.w_user), (c.v_sc, c.w_sc))
         ]
         used = np.where(moves[0] & moves[1], c.durations, 0.0)
         if used.sum() <= 0:
-            return factory.all_undefined("no_command")
+            raise UndefinedError("no_command")
         extras = {"coverage": float(used.sum() / c.durations.sum())}
         literal = self._principal(c.v_user, c.w_user) - self._principal(c.v_sc, c.w_sc)
         corrected = wrap(direction(c, c.v_user, c.w_user) - direction(c, c.v_sc, c.w_sc))
         return [
-            factory.ok(variant, used @ (1.0 - np.abs(off) / np.pi) / used.sum(), extras)
+            self.factory.ok(variant, used @ (1.0 - np.abs(off) / np.pi) / used.sum(), extras)
             for variant, off in (("literal", literal), ("corrected", corrected))
         ]
 
@@ -67,36 +60,31 @@ class AgreementMetric:
         return np.where(turns, np.arctan(v / np.where(turns, w, 1.0)), np.sign(v) * (np.pi / 2.0))
 
 
-@dataclass(frozen=True, slots=True)
-class UserInputEntropy:
-    """Steering entropy of the user's direction; needs commands and a baseline.
+class UserInputEntropy(DeclaredMetric[UserInputEntropySpec], declared=USER_INPUT_ENTROPY):
+    """Scores ``user_input_entropy``: steering entropy of the user's direction.
 
-    The baseline gives the scale of the errors. On the scale of the drive itself the steadiest hand
-    would have the largest entropy, so without a baseline there is none.
+    Needs commands, and a baseline for the scale of the errors: on the scale of the drive itself
+    the steadiest hand would have the largest entropy. ``literal`` is undefined, since the source
+    gives no formula.
     """
 
-    spec: UserInputEntropySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the entropy; there is no ``literal`` variant, since the source gives no formula."""
-        del run
-        factory = ScoreFactory(USER_INPUT_ENTROPY)
-        literal = factory.undefined("literal", "no_formula_in_seed")
+    def _scores(self, _: Trajectories, refs: References) -> Sequence[Score]:
+        literal = self.factory.undefined("literal", "no_formula_in_seed")
         if refs.commands is None:
-            return [literal, factory.undefined("corrected", "no_command")]
+            return [literal, self.factory.undefined("corrected", "no_command")]
         baseline = refs.commands_baseline
         if baseline is None:
-            return [literal, factory.undefined("corrected", "no_baseline")]
+            return [literal, self.factory.undefined("corrected", "no_baseline")]
         errors = [self._errors(c) for c in (refs.commands, baseline)]
         if errors[0] is None or errors[1] is None:
-            return [literal, factory.undefined("corrected", "too_few_samples")]
+            return [literal, self.factory.undefined("corrected", "too_few_samples")]
         alpha = float(np.percentile(np.abs(errors[1]), PERCENTILE))
         extras = {"alpha": alpha}
         if alpha > self.spec.zero_tol:
-            return [literal, factory.ok("corrected", entropy(errors[0], alpha), extras)]
+            return [literal, self.factory.ok("corrected", entropy(errors[0], alpha), extras)]
         if np.all(np.abs(errors[0]) <= self.spec.zero_tol):
-            return [literal, factory.ok("corrected", 0.0, extras)]
-        return [literal, factory.undefined("corrected", "zero_alpha")]
+            return [literal, self.factory.ok("corrected", 0.0, extras)]
+        return [literal, self.factory.undefined("corrected", "zero_alpha")]
 
     def _errors(self, c: Commands) -> Array | None:
         """Return errors of a second-order Taylor prediction, rad; None with too few angles."""
@@ -128,23 +116,18 @@ class UserInputEntropy:
         return np.asarray(theta[held], dtype=np.float64)
 
 
-@dataclass(frozen=True, slots=True)
-class Fluency:
-    """Scores ``fluency``.
+class Fluency(DeclaredMetric[FluencySpec], declared=FLUENCY):
+    """Scores ``fluency``: ``literal``, raw differences; ``corrected``, scaled, the worse channel.
 
     Needs commands; compare only at the same command rate, except ``variation_rate``.
     """
 
-    spec: FluencySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: raw differences; ``corrected``: the worse of both scaled channels."""
-        del run
-        factory, c = ScoreFactory(FLUENCY), refs.commands
+    def _scores(self, _: Trajectories, refs: References) -> Sequence[Score]:
+        c = refs.commands
         if c is None:
-            return factory.all_undefined("no_command")
+            raise UndefinedError("no_command")
         if len(c.t) < 2:
-            return factory.all_undefined("too_few_samples")
+            raise UndefinedError("too_few_samples")
         dv, dw = np.diff(c.v_user), np.diff(c.w_user)
         channels = {
             "linear": float((1.0 - np.abs(dv) / c.v_max).mean()),
@@ -152,9 +135,9 @@ class Fluency:
         }
         change = float(np.hypot(dv / c.v_max, dw / c.w_max).sum())
         return [
-            factory.ok("literal", (1.0 - np.hypot(dv, dw)).mean()),
-            factory.ok("corrected", min(channels.values()), channels),
-            factory.ok("variation_rate", change / (c.t_end - float(c.t[0]))),
+            self.factory.ok("literal", (1.0 - np.hypot(dv, dw)).mean()),
+            self.factory.ok("corrected", min(channels.values()), channels),
+            self.factory.ok("variation_rate", change / (c.t_end - float(c.t[0]))),
         ]
 
 

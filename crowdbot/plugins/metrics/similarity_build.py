@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from crowdbot.plugin import (
     path_length,
     time_weights,
     travel_time,
-    truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import (
     DISTANCE_TOLERANCE,
@@ -34,6 +32,7 @@ from crowdbot.plugin.for_metrics import (
     wrap,
 )
 from crowdbot.plugins.metrics.common_reference_build import missed_goal
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.similarity import (
     HEADING_SIMILARITY,
     NEIGHBOUR_VELOCITY_SIMILARITY,
@@ -51,71 +50,53 @@ from crowdbot.plugins.metrics.similarity import (
 SPEED_TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class TimeToGoalSimilarity:
-    """Scores ``time_to_goal_similarity``. Needs trips, and no reference run."""
+class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec], declared=TIME_TO_GOAL_SIMILARITY):
+    """Scores ``time_to_goal_similarity``: times; ``corrected`` per straight distance.
 
-    spec: TimeToGoalSimilaritySpec
+    Needs trips, and no reference run.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: times; ``corrected``: times per straight distance."""
-        del refs
-        factory = ScoreFactory(TIME_TO_GOAL_SIMILARITY)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         trips = durations(run)
         if not len(trips):
-            return factory.all_undefined("no_trips")
+            raise UndefinedError("no_trips")
         time, zero_tol = travel_time(run, robot_of(run)), self.spec.zero_tol
-        _, straight = walked_distances(run, self.spec.jump_speed)
+        straight = walked_distances(run, self.spec.jump_speed)[1]
         return [
-            _against_mean(factory, run, time, trips.seconds, zero_tol),
-            _per_distance(factory, run, (time, float(trips.seconds.sum())), straight, self.spec),
+            _against_mean(self.factory, run, time, trips.seconds, zero_tol),
+            _per_distance(
+                self.factory, run, (time, float(trips.seconds.sum())), straight, self.spec
+            ),
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class PathLengthSimilarity:
-    """Scores ``path_length_similarity``. Needs trips, and no reference run."""
+class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec], declared=PATH_LENGTH_SIMILARITY):
+    """Scores ``path_length_similarity``: lengths; ``corrected`` per straight distance.
 
-    spec: PathLengthSimilaritySpec
+    Needs trips, and no reference run.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: lengths; ``corrected``: lengths per straight distance."""
-        del refs
-        factory, jump = ScoreFactory(PATH_LENGTH_SIMILARITY), self.spec.jump_speed
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        jump = self.spec.jump_speed
         if not len(durations(run)):
-            return factory.all_undefined("no_trips")
+            raise UndefinedError("no_trips")
         length, zero_tol = path_length(run.t, robot_of(run), jump), self.spec.zero_tol
         lengths, straight = walked_distances(run, jump)
         return [
-            _against_mean(factory, run, length, lengths, zero_tol),
-            _per_distance(factory, run, (length, float(lengths.sum())), straight, self.spec),
+            _against_mean(self.factory, run, length, lengths, zero_tol),
+            _per_distance(self.factory, run, (length, float(lengths.sum())), straight, self.spec),
         ]
 
 
-@dataclass(frozen=True, slots=True)
-class HeadingSimilarity:
-    """Scores ``heading_similarity``. Needs no reference run."""
+class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec], declared=HEADING_SIMILARITY):
+    """Scores ``heading_similarity``: ``literal``: mean ratio of signed rates.
 
-    spec: HeadingSimilaritySpec
+    ``corrected``: ratio of mean absolute rates.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score ``literal``: mean ratio of signed rates.
-
-        ``corrected``: ratio of mean absolute rates.
-        """
-        del refs
-        factory = ScoreFactory(HEADING_SIMILARITY)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         if len(run.t) < 2:
-            return factory.all_undefined("too_few_samples")
+            raise UndefinedError("too_few_samples")
         dt = np.diff(run.t)
         robot = heading_changes(run.t, robot_of(run), self.spec.jump_speed) / dt
         rates = self._rates(run)
@@ -123,14 +104,14 @@ class HeadingSimilarity:
         count = known.sum(axis=1)
         some = (count > 0) & np.isfinite(robot)
         if not some.any():
-            return factory.all_undefined("no_heading" if people(run).x.size else "no_agents")
+            raise UndefinedError("no_heading" if people(run).x.size else "no_agents")
         rates, count = np.where(known, rates, 0.0)[some], count[some]
         signed, absolute = rates.sum(axis=1) / count, np.abs(rates).sum(axis=1) / count
         robot, dt = robot[some], dt[some]
-        literal = mean_ratio(factory, robot, signed, len(run.t) - 1, self.spec.zero_tol)
+        literal = mean_ratio(self.factory, robot, signed, len(run.t) - 1, self.spec.zero_tol)
         means = float(dt @ np.abs(robot)), float(dt @ absolute)
-        corrected = factory.ratio("corrected", *means, self.spec.zero_tol)
-        return [literal, of_arrival(factory, run, corrected)]
+        corrected = self.factory.ratio("corrected", *means, self.spec.zero_tol)
+        return [literal, of_arrival(self.factory, run, corrected)]
 
     def _rates(self, run: Trajectories) -> Array:
         """Return the turning rates of people (N-1, M), rad/s; NaN unless walking at both ends."""
@@ -142,43 +123,27 @@ class HeadingSimilarity:
         return np.where(valid, turn, np.nan) / np.diff(run.t)[:, None]
 
 
-@dataclass(frozen=True, slots=True)
-class VelocitySimilarity:
-    """Scores ``velocity_similarity``. Needs no reference run."""
+class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec], declared=VELOCITY_SIMILARITY):
+    """Scores ``velocity_similarity``: the robot's speed against the mean speed of all people."""
 
-    spec: VelocitySimilaritySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the robot's speed against the mean speed of all people."""
-        del refs
-        factory = ScoreFactory(VELOCITY_SIMILARITY)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         speeds = people_speeds(run, self.spec.jump_speed)
-        return _speed_scores(factory, run, speeds, self.spec, "no_agents")
+        return _speed_scores(self.factory, run, speeds, self.spec, "no_agents")
 
 
-@dataclass(frozen=True, slots=True)
-class NeighbourVelocitySimilarity:
-    """Scores ``neighbour_velocity_similarity``. Needs no reference run."""
+class NeighbourVelocitySimilarity(
+    RobotMetric[NeighbourVelocitySimilaritySpec], declared=NEIGHBOUR_VELOCITY_SIMILARITY
+):
+    """Scores ``neighbour_velocity_similarity``: speed against the mean of people near it."""
 
-    spec: NeighbourVelocitySimilaritySpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the robot's speed against the mean speed of people near it."""
-        del refs
-        factory = ScoreFactory(NEIGHBOUR_VELOCITY_SIMILARITY)
-        if run.robot is None:
-            return factory.all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         speeds, distance = (
             people_speeds(run, self.spec.jump_speed),
             encounter(run, self.spec.jump_speed).distance,
         )
         near = distance <= self.spec.neighbour_radius + DISTANCE_TOLERANCE
         nobody = "no_neighbours" if np.isfinite(speeds).any() else "no_agents"
-        return _speed_scores(factory, run, np.where(near, speeds, np.nan), self.spec, nobody)
+        return _speed_scores(self.factory, run, np.where(near, speeds, np.nan), self.spec, nobody)
 
 
 def of_arrival(factory: ScoreFactory, run: Trajectories, score: Score) -> Score:
@@ -250,7 +215,7 @@ def _speed_scores(
     robot = np.hypot(*robot_velocities(run, spec.jump_speed))
     some = (count > 0) & np.isfinite(robot)
     if not some.any():
-        return factory.all_undefined(nobody)
+        raise UndefinedError(nobody)
     mean = np.where(known, speeds, 0.0)[some].sum(axis=1) / count[some]
     robot, weights = robot[some], time_weights(run.t)[some]
     literal = mean_ratio(factory, robot, mean, len(run.t), spec.zero_tol)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from crowdbot.plugin import (
     References,
     Score,
-    ScoreFactory,
     Trajectories,
     duration,
     path_length,
@@ -24,6 +22,7 @@ from crowdbot.plugins.metrics.common_reference_build import (
     shortest_way,
     without_task,
 )
+from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.path_efficiency_build import obstacle
 from crowdbot.plugins.metrics.task import (
     AGGREGATED_TIME,
@@ -52,186 +51,139 @@ from crowdbot.plugins.metrics.task import (
 TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class Success:
-    """Scores ``success``. Needs no reference run."""
+class Success(DeclaredMetric[SuccessSpec], declared=SUCCESS):
+    """Scores ``success``: 1 if there is an arrival time, else 0."""
 
-    spec: SuccessSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score 1 if there is an arrival time, else 0."""
-        del refs
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         if reason := without_task(run):
-            return ScoreFactory(SUCCESS).all_undefined(reason)
+            raise UndefinedError(reason)
         assert run.robot is not None
-        return [ScoreFactory(SUCCESS).ok("corrected", run.robot.goal_time is not None)]
+        return [self.factory.ok("corrected", run.robot.goal_time is not None)]
 
 
-@dataclass(frozen=True, slots=True)
-class SuccessNoCollision:
-    """Scores ``success_no_collision``. Needs no reference run."""
+class SuccessNoCollision(DeclaredMetric[SuccessNoCollisionSpec], declared=SUCCESS_NO_COLLISION):
+    """Scores ``success_no_collision``: 1 for arrival without any contact in the motion, else 0."""
 
-    spec: SuccessNoCollisionSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score 1 for arrival without any contact in the motion, else 0."""
-        del refs
-        factory = ScoreFactory(SUCCESS_NO_COLLISION)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         if reason := without_task(run):
-            return factory.all_undefined(reason)
+            raise UndefinedError(reason)
         assert run.robot is not None
         free = not len(events(truncate_at_arrival(run), self.spec))
-        return [factory.ok("corrected", run.robot.goal_time is not None and free)]
+        return [self.factory.ok("corrected", run.robot.goal_time is not None and free)]
 
 
-@dataclass(frozen=True, slots=True)
-class Timeout:
-    """Scores ``timeout``. Needs no reference run."""
+class Timeout(DeclaredMetric[TimeoutSpec], declared=TIMEOUT):
+    """Scores ``timeout``: the opposite of ``success``."""
 
-    spec: TimeoutSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the opposite of ``success``."""
-        del refs
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         if reason := without_task(run):
-            return ScoreFactory(TIMEOUT).all_undefined(reason)
+            raise UndefinedError(reason)
         assert run.robot is not None
-        return [ScoreFactory(TIMEOUT).ok("corrected", run.robot.goal_time is None)]
+        return [self.factory.ok("corrected", run.robot.goal_time is None)]
 
 
-@dataclass(frozen=True, slots=True)
-class Spl:
-    """Scores ``spl``. Needs a goal. Anderson et al. 2018."""
+class Spl(DeclaredMetric[SplSpec], declared=SPL):
+    """Scores ``spl``: shortest path over the longer of it and the driven path.
 
-    spec: SplSpec
+    0 without arrival. Needs a goal. Anderson et al. 2018.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score 0 without arrival, else shortest path over the longer of it and the driven path."""
-        del refs
-        factory = ScoreFactory(SPL)
-        lengths = _shortest_and_driven(factory, run, self.spec)
-        if isinstance(lengths, list):
-            return lengths
-        shortest, driven = lengths
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        shortest, driven = _shortest_and_driven(run, self.spec)
         if robot_of(run).goal_time is None:
-            return [factory.ok("corrected", 0.0)]
-        return [factory.ratio("corrected", shortest, max(driven, shortest), self.spec.zero_tol)]
+            return [self.factory.ok("corrected", 0.0)]
+        return [
+            self.factory.ratio("corrected", shortest, max(driven, shortest), self.spec.zero_tol)
+        ]
 
 
-@dataclass(frozen=True, slots=True)
-class PathEfficiency:
-    """Scores ``path_efficiency``. Needs a goal, and an arrival."""
+class PathEfficiency(DeclaredMetric[PathEfficiencySpec], declared=PATH_EFFICIENCY):
+    """Scores ``path_efficiency``: shortest over driven path; an upper bound without arrival.
 
-    spec: PathEfficiencySpec
+    Needs a goal, and an arrival.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score shortest over driven path; an upper bound without arrival."""
-        del refs
-        factory = ScoreFactory(PATH_EFFICIENCY)
-        lengths = _shortest_and_driven(factory, run, self.spec)
-        if isinstance(lengths, list):
-            return lengths
-        ratio = factory.ratio("corrected", *lengths, self.spec.zero_tol)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        lengths = _shortest_and_driven(run, self.spec)
+        ratio = self.factory.ratio("corrected", *lengths, self.spec.zero_tol)
         if robot_of(run).goal_time is not None:
             return [ratio]
-        return [factory.censored("corrected", "goal_not_reached", lower=0.0, upper=ratio.value)]
+        return [
+            self.factory.censored("corrected", "goal_not_reached", lower=0.0, upper=ratio.value)
+        ]
 
 
-@dataclass(frozen=True, slots=True)
-class Stl:
-    """Scores ``stl``. Needs ``robot_alone``."""
+class Stl(DeclaredMetric[StlSpec], declared=STL):
+    """Scores ``stl``: time alone over the longer of it and the time taken; 0 without arrival.
 
-    spec: StlSpec
+    Needs ``robot_alone``.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score 0 without arrival, else the time alone over the longer of it and the time taken."""
-        factory = ScoreFactory(STL)
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
         if reason := without_task(run) or obstacle(run, refs):
-            return factory.all_undefined(reason)
+            raise UndefinedError(reason)
         assert refs.robot_alone is not None
         if robot_of(run).goal_time is None:
-            return [factory.ok("corrected", 0.0)]
+            return [self.factory.ok("corrected", 0.0)]
         alone, taken = (travel_time(r, robot_of(r)) for r in (refs.robot_alone, run))
-        return [factory.ratio("corrected", alone, max(alone, taken), self.spec.zero_tol)]
+        return [self.factory.ratio("corrected", alone, max(alone, taken), self.spec.zero_tol)]
 
 
-@dataclass(frozen=True, slots=True)
-class FinalDistanceToGoal:
-    """Scores ``final_distance_to_goal``. Needs a goal point or zone."""
+class FinalDistanceToGoal(DeclaredMetric[FinalDistanceToGoalSpec], declared=FINAL_DISTANCE_TO_GOAL):
+    """Scores ``final_distance_to_goal``: the distance at the last known position.
 
-    spec: FinalDistanceToGoalSpec
+    Needs a goal point or zone.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the distance at the last known position up to the arrival."""
-        del refs
-        factory = ScoreFactory(FINAL_DISTANCE_TO_GOAL)
-        found = goal_distance(factory, run)
-        return found if isinstance(found, list) else [factory.ok("corrected", found[1][-1])]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", goal_distance(run)[1][-1])]
 
 
-@dataclass(frozen=True, slots=True)
-class MinDistanceToGoal:
-    """Scores ``min_distance_to_goal``. Needs a goal point or zone."""
+class MinDistanceToGoal(DeclaredMetric[MinDistanceToGoalSpec], declared=MIN_DISTANCE_TO_GOAL):
+    """Scores ``min_distance_to_goal``: the smallest distance at any sample up to the arrival.
 
-    spec: MinDistanceToGoalSpec
+    Needs a goal point or zone.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the smallest distance at any sample up to the arrival."""
-        del refs
-        factory = ScoreFactory(MIN_DISTANCE_TO_GOAL)
-        found = goal_distance(factory, run)
-        return found if isinstance(found, list) else [factory.ok("corrected", found[1].min())]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", goal_distance(run)[1].min())]
 
 
-@dataclass(frozen=True, slots=True)
-class FailureToProgress:
-    """Scores ``failure_to_progress``. Needs a goal point or zone."""
+class FailureToProgress(DeclaredMetric[FailureToProgressSpec], declared=FAILURE_TO_PROGRESS):
+    """Scores ``failure_to_progress``: number of windows in which the goal came no nearer.
 
-    spec: FailureToProgressSpec
+    Complete, consecutive windows from the start. Needs a goal point or zone.
+    """
 
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score complete consecutive windows from the start in which the goal came no nearer."""
-        del refs
-        factory = ScoreFactory(FAILURE_TO_PROGRESS)
-        found = goal_distance(factory, run)
-        if isinstance(found, list):
-            return found
-        t, distance = found
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        t, distance = goal_distance(run)
         windows = int((duration(t) + TOLERANCE) / self.spec.progress_window)
         edges = t[0] + self.spec.progress_window * np.arange(windows + 1)
         nearer = -np.diff(np.interp(edges, t, distance))
         stuck = nearer < self.spec.progress_distance - TOLERANCE
-        return [factory.ok("corrected", stuck.sum(), {"windows": float(windows)})]
+        return [self.factory.ok("corrected", stuck.sum(), {"windows": float(windows)})]
 
 
-@dataclass(frozen=True, slots=True)
-class AggregatedTime:
-    """Scores ``aggregated_time``. Needs no reference run."""
+class AggregatedTime(DeclaredMetric[AggregatedTimeSpec], declared=AGGREGATED_TIME):
+    """Scores ``aggregated_time``: sum of times; a lower bound if anyone had not arrived."""
 
-    spec: AggregatedTimeSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the sum; a lower bound if the robot or any person had not arrived."""
-        del refs
-        factory = ScoreFactory(AGGREGATED_TIME)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         if reason := without_task(run):
-            return factory.all_undefined(reason)
+            raise UndefinedError(reason)
         run = truncate_at_arrival(run)
         trips = durations(run)
         total = travel_time(run, robot_of(run)) + float(trips.seconds.sum())
         if robot_of(run).goal_time is None:
-            return [factory.censored("corrected", "goal_not_reached", lower=total)]
+            return [self.factory.censored("corrected", "goal_not_reached", lower=total)]
         if not trips.reached.all():
-            return [factory.censored("corrected", "unfinished_trips", lower=total)]
-        return [factory.ok("corrected", total)]
+            return [self.factory.censored("corrected", "unfinished_trips", lower=total)]
+        return [self.factory.ok("corrected", total)]
 
 
 def _shortest_and_driven(
-    factory: ScoreFactory, run: Trajectories, spec: SplSpec | PathEfficiencySpec
-) -> tuple[float, float] | list[Score]:
-    """Return the straight distance from start to goal zone or disc, and the driven distance."""
-    found = shortest_way(factory, run)
-    if isinstance(found, list):
-        return found
+    run: Trajectories, spec: SplSpec | PathEfficiencySpec
+) -> tuple[float, float]:
+    """Return the straight distance from start to goal zone or disc, and the driven one, m."""
+    shortest = shortest_way(run)
     run = truncate_at_arrival(run)
-    return found, path_length(run.t, robot_of(run), spec.jump_speed)
+    return shortest, path_length(run.t, robot_of(run), spec.jump_speed)

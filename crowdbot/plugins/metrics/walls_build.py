@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,10 +13,8 @@ from crowdbot.plugin import (
     References,
     RobotTrack,
     Score,
-    ScoreFactory,
     Trajectories,
     time_weights,
-    truncate_at_arrival,
 )
 from crowdbot.plugin.for_metrics import (
     contact_events,
@@ -25,6 +23,7 @@ from crowdbot.plugin.for_metrics import (
     robot_of,
     valid_robot_steps,
 )
+from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.walls import (
     AVG_WALL_CLEARANCE,
     MIN_WALL_CLEARANCE,
@@ -35,35 +34,28 @@ from crowdbot.plugins.metrics.walls import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class WallContactCount:
-    """Scores ``wall_contact_count``.
+class WallContactCount(RobotMetric[WallContactCountSpec], declared=WALL_CONTACT_COUNT):
+    """Scores ``wall_contact_count``: contacts with all walls as one body.
 
-    ``recorded`` needs a table of contacts, ``geometric`` walls.
+    ``recorded`` needs a table of contacts; ``geometric`` needs walls, by the rules of
+    ``collision_count``.
     """
 
-    spec: WallContactCountSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score all walls as one body; ``geometric`` follows the rules of ``collision_count``."""
-        del refs
-        if run.robot is None:
-            return ScoreFactory(WALL_CONTACT_COUNT).all_undefined("invalid_no_robot")
-        run = truncate_at_arrival(run)
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return [self._recorded(run), self.geometric(run)]
 
     def _recorded(self, run: Trajectories) -> Score:
-        factory = ScoreFactory(WALL_CONTACT_COUNT)
         if run.contacts is None:
-            return factory.undefined("recorded", "invalid_no_contacts")
-        return factory.ok("recorded", (run.contacts.agent == -1).sum())
+            return self.factory.undefined("recorded", "invalid_no_contacts")
+        return self.factory.ok("recorded", (run.contacts.agent == -1).sum())
 
     def geometric(self, run: Trajectories) -> Score:
         """Score contacts by the geometry of walls and outline."""
-        factory, tol = ScoreFactory(WALL_CONTACT_COUNT), self.spec.contact_tol
-        gap = wall_gap(factory, run)
-        if isinstance(gap, list):
-            return factory.undefined("geometric", "invalid_no_walls")
+        tol = self.spec.contact_tol
+        try:
+            gap = wall_gap(run)
+        except UndefinedError:
+            return self.factory.undefined("geometric", "invalid_no_walls")
         valid = valid_robot_steps(run.t, robot_of(run), self.spec.jump_speed)[:, None]
         found = contact_events(
             run.t,
@@ -73,7 +65,7 @@ class WallContactCount:
             contact_tol=tol,
             release_gap=self.spec.release_gap,
         )
-        return factory.ok("geometric", len(found.time))
+        return self.factory.ok("geometric", len(found.time))
 
     def _first_touch(self, run: Trajectories, gap: Array) -> Array:
         """Return the fraction of each step (N-1,) at which a wall is first touched; NaN if none is.
@@ -105,52 +97,39 @@ def wall_contacts(
     return 0 if value is None else int(value)
 
 
-@dataclass(frozen=True, slots=True)
-class MinWallClearance:
-    """Scores ``min_wall_clearance``. Needs walls."""
+class MinWallClearance(RobotMetric[MinWallClearanceSpec], declared=MIN_WALL_CLEARANCE):
+    """Scores ``min_wall_clearance``: the smallest gap at any sample. Needs walls."""
 
-    spec: MinWallClearanceSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the smallest gap at any sample."""
-        del refs
-        factory = ScoreFactory(MIN_WALL_CLEARANCE)
-        gap = wall_gap(factory, truncate_at_arrival(run))
-        return gap if isinstance(gap, list) else [factory.ok("corrected", np.nanmin(gap))]
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        return [self.factory.ok("corrected", np.nanmin(wall_gap(run)))]
 
 
-@dataclass(frozen=True, slots=True)
-class AvgWallClearance:
-    """Scores ``avg_wall_clearance``. Needs walls."""
+class AvgWallClearance(RobotMetric[AvgWallClearanceSpec], declared=AVG_WALL_CLEARANCE):
+    """Scores ``avg_wall_clearance``: the mean gap over time. Needs walls."""
 
-    spec: AvgWallClearanceSpec
-
-    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        """Score the mean gap over time."""
-        del refs
-        factory = ScoreFactory(AVG_WALL_CLEARANCE)
-        run = truncate_at_arrival(run)
-        gap = wall_gap(factory, run)
-        if isinstance(gap, list):
-            return gap
+    def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
+        gap = wall_gap(run)
         known = np.isfinite(gap)
         weights = time_weights(run.t)[known]
         if weights.sum() <= 0:
-            return factory.all_undefined("too_few_samples")
-        return [factory.ok("corrected", weights @ gap[known] / weights.sum())]
+            raise UndefinedError("too_few_samples")
+        return [self.factory.ok("corrected", weights @ gap[known] / weights.sum())]
 
 
-def wall_gap(factory: ScoreFactory, run: Trajectories) -> Array | list[Score]:
-    """Return the gap to the nearest wall (N,), m; or scores that say why there is none.
+def wall_gap(run: Trajectories) -> Array:
+    """Return the gap to the nearest wall (N,), m.
 
     At most 0 in contact; the depth is exact for discs only.
+
+    Raises:
+        UndefinedError: there is no wall, or no sample.
     """
-    if run.robot is None:
-        return factory.all_undefined("invalid_no_robot")
     if run.walls is None or not run.walls.size:
-        return factory.all_undefined("invalid_no_walls")
+        raise UndefinedError("invalid_no_walls")
     gap = run.cached("wall_gap", lambda: _gap(run))
-    return gap if np.isfinite(gap).any() else factory.all_undefined("too_few_samples")
+    if not np.isfinite(gap).any():
+        raise UndefinedError("too_few_samples")
+    return gap
 
 
 def _gap(run: Trajectories) -> Array:

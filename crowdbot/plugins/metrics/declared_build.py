@@ -1,0 +1,66 @@
+"""Bases of the metrics: what they share is how a run without a value is scored."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Generic, TypeVar
+
+from crowdbot.plugin import (
+    MetricComponent,
+    MetricSpec,
+    References,
+    Score,
+    ScoreFactory,
+    Trajectories,
+    truncate_at_arrival,
+)
+
+_S = TypeVar("_S", bound=MetricSpec)
+
+
+class UndefinedError(Exception):
+    """A metric, or one of its variants, has no value; the text is the reason."""
+
+
+class DeclaredMetric(Generic[_S]):
+    """Metric whose scores are all undefined if `UndefinedError` is raised.
+
+    Attributes:
+        spec: its parameters.
+        factory: builds its scores; of the declaration that the class names.
+    """
+
+    factory: ClassVar[ScoreFactory]
+
+    def __init_subclass__(cls, declared: MetricComponent[Any] | None = None) -> None:
+        super().__init_subclass__()
+        if declared is not None:
+            cls.factory = ScoreFactory(declared)
+
+    def __init__(self, spec: _S) -> None:
+        self.spec = spec
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Return one score per variant."""
+        try:
+            return self._scores(run, refs)
+        except UndefinedError as error:
+            return self.factory.all_undefined(str(error))
+
+    def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Return one score per variant.
+
+        Raises:
+            UndefinedError: no variant has a value.
+        """
+        raise NotImplementedError
+
+
+class RobotMetric(DeclaredMetric[_S]):
+    """Metric of the robot's drive up to its arrival; undefined without a robot."""
+
+    def score(self, run: Trajectories, refs: References) -> Sequence[Score]:
+        """Return one score per variant, of the run up to the robot's arrival."""
+        if run.robot is None:
+            return self.factory.all_undefined("invalid_no_robot")
+        return super().score(truncate_at_arrival(run), refs)
