@@ -15,19 +15,27 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.plugin import Array, ImaginedCrowd, Indices
+from crowdbot.plugins.planners.crowd_prediction.seats_build import (
+    leave_seats,
+    mean_errors,
+    seated,
+    settle,
+)
 
 #: Preferred speeds of imagined people, m/s, and how many there are of each.
 _SPEEDS, _EACH = np.linspace(0.3, 1.96, 12), 4
 #: Slower people are predicted to stand, m/s.
 _STANDS = 0.2
-#: Distance of the goals of people, m.
-_FAR = 20.0
 #: Steps between two decisions.
 _STEPS = 2
+#: Decisions that are predicted, and people at most, the nearest; the rest keep their velocity.
+_DECISIONS, _MOST = 6, 20
 #: Age at which a prediction is compared with the present, s.
 _CHECKED = 1.0
 #: Mean square error that both predictions have before there is any, m^2.
 _DOUBT = 0.02
+#: Numbers of people (M,), and what they want, (M, 2) m/s.
+_NO_ONE = (np.zeros(0, np.int64), np.zeros((0, 2)))
 
 
 class _Checked(NamedTuple):
@@ -52,27 +60,28 @@ class CrowdForecast:
         self._speeds = np.repeat(_SPEEDS, _EACH)
         self._crowd: ImaginedCrowd | None = None
         self._name, self._settle_time, self._memory = crowd, settle_time, memory
-        self._wanted: dict[int, Array] = {}
+        self._wanted = _NO_ONE
         self._checked = deque[_Checked]()
-        self._errors, self._t = np.full(2, _DOUBT), -math.inf
+        self._errors, self._t = (_DOUBT, _DOUBT), -math.inf
 
     @property
     def trust(self) -> float:
         """Return the weight of the crowd's prediction, 0 to 1."""
         kept, crowd = self._errors
-        return float(kept**2 / (kept**2 + crowd**2))
+        return kept**2 / (kept**2 + crowd**2)
 
     def reset(self) -> None:
         """Forget the last run; compile what is not compiled yet."""
         if self._crowd is None:
             self._crowd = ImaginedCrowd(self._name, self._speeds)
-        self._wanted, self._t = {}, -math.inf
+        self._wanted, self._t = _NO_ONE, -math.inf
         self._checked.clear()
-        self._errors = np.full(2, _DOUBT)
         numbers, people = np.arange(2), np.array([[1.0, 0.0, 1.0, 0.0, 0.2], [3.0, 0, -1, 0, 0.2]])
-        self.predict(0.0, numbers, people, np.zeros((3, 2)), 0.3, 0.16)
-        self._wanted, self._t = {}, -math.inf
+        for t in (0.0, _CHECKED):  # the second one checks the first
+            self.predict(t, numbers, people, np.zeros((3, 2)), 0.3, _CHECKED)
+        self._wanted, self._t = _NO_ONE, -math.inf
         self._checked.clear()
+        self._errors = _DOUBT, _DOUBT
 
     def predict(
         self,
@@ -97,7 +106,7 @@ class CrowdForecast:
         wanted = self._settle(t, numbers, people)
         times = step * np.arange(1, len(path))[:, np.newaxis, np.newaxis]
         kept = people[:, :2] + times * people[:, 2:4]
-        crowd = self._roll(people, wanted, path, radius, step) if len(numbers) else kept
+        crowd = self._roll(people, wanted, path, radius, step, kept) if len(numbers) else kept
         at = round(_CHECKED / step) - 1
         if len(numbers) and at < len(kept):
             self._checked.append(_Checked(t + step * (at + 1), numbers, kept[at], crowd[at]))
@@ -107,62 +116,35 @@ class CrowdForecast:
         """Compare predictions that were for now with now."""
         while self._checked and self._checked[0].t <= t + 1e-9:
             due = self._checked.popleft()
-            _, then, now = np.intersect1d(due.numbers, numbers, return_indices=True)
-            if not len(now):
-                continue
-            here = people[now, :2]
-            off = [np.mean(np.sum((p[then] - here) ** 2, axis=1)) for p in (due.kept, due.crowd)]
-            fresh = 1.0 - math.exp(-max(t - self._t, 0.0) / self._memory)
-            self._errors += fresh * (np.array(off) - self._errors)
+            count, kept, crowd = mean_errors(numbers, people, due.numbers, due.kept, due.crowd)
+            if count:
+                fresh = 1.0 - math.exp(-max(t - self._t, 0.0) / self._memory)
+                before = self._errors
+                self._errors = (
+                    before[0] + fresh * (kept - before[0]),
+                    before[1] + fresh * (crowd - before[1]),
+                )
 
     def _settle(self, t: float, numbers: Indices, people: Array) -> Array:
         """Return the wanted velocities (N, 2), the mean of what each person did lately, m/s."""
         fresh = 1.0 - math.exp(-max(t - self._t, 0.0) / self._settle_time)
-        found = {}
-        for number, velocity in zip(numbers.tolist(), people[:, 2:4], strict=True):
-            before = self._wanted.get(number)
-            found[number] = velocity if before is None else before + fresh * (velocity - before)
-        self._wanted, self._t = found, t
-        return np.array(list(found.values())).reshape(-1, 2)
+        found = np.empty((len(numbers), 2))
+        settle(numbers, people, *self._wanted, fresh, found)
+        self._wanted, self._t = (numbers, found), t
+        return found
 
     def _roll(
-        self, people: Array, wanted: Array, path: Array, radius: float | None, step: float
-    ) -> Array:
-        """Return where people will be who decide as the crowd does, (T, N, 2), m."""
-        assert self._crowd is not None
-        speed = np.hypot(wanted[:, 0], wanted[:, 1])
-        seats, taken = self._seats(speed)
-        size = len(self._speeds)
-        position, velocity = np.full((size, 2), 1e6), np.zeros((size, 2))
-        goal, present = np.full((size, 2), 1e6 + 1.0), np.zeros(size, np.bool_)
-        position[taken], velocity[taken] = people[seats, :2], people[seats, 2:4]
-        goal[taken] = people[seats, :2] + _FAR * wanted[seats] / speed[seats, np.newaxis]
-        present[taken] = True
-        # The seats' speeds are a few per cent off; so is the way.
-        off = (1.0 - self._speeds[taken] / speed[seats])[:, np.newaxis] * wanted[seats]
-        out = people[:, :2] + step * np.arange(1, len(path))[:, None, None] * people[:, 2:4]
-        robots = np.hstack([path[:-1], np.diff(path, axis=0) / step])[::_STEPS]
-        dt, steps = _STEPS * step, np.arange(len(out))
-        places, speeds, pulls = self._crowd.walk(
-            position, velocity, goal, present, robots, radius, dt
-        )
-        since = ((steps % _STEPS + 1) / _STEPS)[:, np.newaxis, np.newaxis]
-        before, pull = (a[:, taken][steps // _STEPS] for a in (speeds, pulls))
-        middle = before + 0.5 * since * (before + dt * pull - before)
-        moved = places[:, taken][steps // _STEPS] + since * dt * middle
-        out[:, seats] = moved + step * (steps + 1)[:, np.newaxis, np.newaxis] * off
-        return out
+        self, people: Array, wanted: Array, path: Array, radius: float | None, step: float,
+        kept: Array,
+    ) -> Array:  # fmt: skip
+        """Return where people will be who decide as the crowd does, (T, N, 2), m.
 
-    def _seats(self, speed: Array) -> tuple[Indices, Indices]:
-        """Return people who walk, and the imagined person of the nearest speed for each of them."""
-        free = np.ones(len(self._speeds), np.bool_)
-        people, seats = [], []
-        for i in np.flatnonzero(speed >= _STANDS):
-            if not free.any():
-                break
-            off = np.where(free, np.abs(self._speeds - speed[i]), np.inf)
-            seat = int(np.argmin(off))
-            free[seat] = False
-            people.append(int(i))
-            seats.append(seat)
-        return np.array(people, np.int64), np.array(seats, np.int64)
+        Those who stand, and those far away, keep their velocity, as in ``kept``.
+        """
+        assert self._crowd is not None
+        taken, seats, slips = seated(people, wanted, path[0], _STANDS, _MOST, self._speeds)
+        robots = np.hstack([path[:-1], np.diff(path, axis=0) / step])[::_STEPS][:_DECISIONS]
+        walked = self._crowd.walk(*taken, robots, radius, _STEPS * step)
+        out = kept.copy()
+        leave_seats(*walked, seats, slips, (step, _STEPS), out)
+        return out

@@ -51,9 +51,12 @@ def kept_points(memory: Array, seen: Array, x: float, y: float, reach: float) ->
 
 
 def thinned(points: Array) -> Array:
-    """Return the first of the points (N, 2) in each cell."""
-    _, first = np.unique(np.round(points / CELL), axis=0, return_index=True)
-    return points[first]
+    """Return the first of the points (N, 2) in each cell, in the order of the cells."""
+    cells = np.round(points / CELL)
+    order = np.lexsort((cells[:, 1], cells[:, 0]))
+    cells, first = cells[order], np.ones(len(points), np.bool_)
+    first[1:] = (cells[1:] != cells[:-1]).any(axis=1)
+    return points[order[first]]
 
 
 @array_kernel

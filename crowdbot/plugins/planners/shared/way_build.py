@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from crowdbot.plugin import Array, Indices, Pose, kernel
+from crowdbot.plugin import Array, Indices, Mask, Pose, kernel
 from crowdbot.plugins.planners.shared.local_map_build import kept_points, thinned, way_out
 
 #: Period at which the map is renewed, s; what stands is remembered in this range, m.
@@ -19,8 +19,8 @@ _TIMES, _CELL = 3, 0.15
 _AHEAD = 1.2
 #: Points this near to the goal do not block the line to it, m.
 _AT_GOAL = 0.3
-#: Steps to a cell itself and its neighbours.
-_BESIDE = np.array([[i, j] for i in (-1, 0, 1) for j in (-1, 0, 1)])
+#: Difference of the numbers of cells that are neighbours along x.
+_ROW = 1_000_003
 
 
 class Way:
@@ -36,6 +36,7 @@ class Way:
         self._lately: deque[Array] = deque(maxlen=_TIMES - 1)
         self._renewed = -math.inf
         self._bearing: float | None = None
+        _still_there(np.ones((1, 2)), [np.ones((1, 2))])
         is_blocked(np.ones((1, 2)), 0.0, 0.0, 1.0, 0.0, 1.0)
         way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, 99.0)  # no way at all is soon found
 
@@ -80,17 +81,36 @@ class Way:
 
 def _still_there(seen: Array, before: Iterable[Array]) -> Array:
     """Return the points (K, 2) of which each earlier scan has one in the same cell or beside it."""
-    cells = np.floor(seen / _CELL).astype(np.int64)
     for points in before:
-        old = np.floor(points / _CELL).astype(np.int64)
-        around = (old[:, None] + _BESIDE).reshape(-1, 2)
-        kept = np.isin(_key(cells), _key(around))
-        cells, seen = cells[kept], seen[kept]
+        kept = np.empty(len(seen), np.bool_)
+        _beside(_key(seen), np.sort(_key(points)), kept)
+        seen = seen[kept]
     return seen
 
 
-def _key(cells: Indices) -> Indices:
-    return np.asarray(cells[:, 0] * 1_000_003 + cells[:, 1])
+def _key(points: Array) -> Indices:
+    """Return the numbers (N,) of the points' cells; those of neighbours along y are consecutive."""
+    cells = np.floor(points / _CELL).astype(np.int64)
+    return cells[:, 0] * _ROW + cells[:, 1]
+
+
+@kernel
+def _beside(cells: Indices, others: Indices, out: Mask) -> None:
+    """Write for each cell (N,) if it or a neighbour is among others (M,), which ascend."""
+    count = others.shape[0]
+    for i in range(cells.shape[0]):
+        out[i] = False
+        for row in range(-1, 2):
+            first = cells[i] + row * _ROW - 1
+            low, high = 0, count
+            while low < high:
+                middle = (low + high) // 2
+                if others[middle] < first:
+                    low = middle + 1
+                else:
+                    high = middle
+            if low < count and others[low] <= first + 2:
+                out[i] = True
 
 
 @kernel
