@@ -153,16 +153,36 @@ def packaged() -> dict[str, PolicyFactory]:
     return {name: policy_of(crowd["policy"], crowd["costs"]) for name, crowd in read.items()}
 
 
+def in_turns(runs: list[Callable[[], object]], rounds: int) -> list[float]:
+    """The least processor time of each of several things that are called in turns, us."""
+    times = [[least(run, 1) for run in runs] for _ in range(rounds)]
+    return [min(column) for column in zip(*times, strict=True)]
+
+
 def print_crowds(walls: Array, middles: Array, side: float, count: int, rounds: int) -> None:
-    """Print a decision of each packaged crowd in both places, measured in turn."""
-    print(f"{'a decision':26}{'empty':>10}{len(walls):>10} segments   ratio")
+    """Print what each packaged crowd costs in both places and in a building ten times as large.
+
+    A second of a crowd is 16 decisions and 128 ticks. In the larger building the same number of
+    people are in as many rooms, with as many walls around them.
+    """
+    larger, rooms, _ = building(10 * len(walls))
+    places = [(hall(side), middles), (walls, middles), (larger, rooms[: len(middles)])]
+    print(
+        f"{'us':26}{'decision: empty':>16}{len(walls):>8} walls{'ratio':>7}{'tick: ratio':>13}"
+        f"{'second: ratio':>15}{'10 times the walls':>20}"
+    )
     for name, policy in packaged().items():
-        found = []
-        both = [crowd(at, people(middles, count), None, policy) for at in (hall(side), walls)]
-        for steps in both:
-            whole, tick = (least(steps[kind], rounds) for kind in ("with", "without"))
-            found.append(whole - tick)
-        print(f"{name:26}{found[0]:10.1f}{found[1]:10.1f} us {found[1] / found[0]:15.2f}")
+        steps = [crowd(at, people(within, count), None, policy) for at, within in places]
+        runs = [each[kind] for each in steps for kind in ("with", "without")]
+        found = in_turns(runs, rounds)
+        ticks = found[1::2]
+        decisions = [whole - tick for whole, tick in zip(found[::2], ticks, strict=True)]
+        seconds = [16 * d + 128 * tick for d, tick in zip(decisions, ticks, strict=True)]
+        print(
+            f"{name:26}{decisions[0]:16.1f}{decisions[1]:14.1f}{decisions[1] / decisions[0]:7.2f}"
+            f"{ticks[1] / ticks[0]:13.2f}{seconds[1] / seconds[0]:15.2f}"
+            f"{decisions[2] / decisions[1]:20.2f}"
+        )
 
 
 def main() -> None:

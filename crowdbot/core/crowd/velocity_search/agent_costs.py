@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.crowd.velocity_search.cost import MORE_WALLS
 from crowdbot.core.crowd.velocity_search.cost_calls import call_base, call_excess, call_prepare
-from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls
+from crowdbot.core.crowd.velocity_search.neighbours import gather, gather_walls_in
 from crowdbot.core.crowd.velocity_search.records import AgentRecord
 from crowdbot.core.crowd.velocity_search.surroundings import Surroundings, wall_distance
 from crowdbot.core.support.compiling.compile import inline_kernel, kernel
@@ -78,10 +78,17 @@ def _walls_within(around: Surroundings, distance: float) -> int:
     settings, agent = around.settings[0], around.deciding[0]
     all_given = settings.wall_more == 0.0 or distance >= around.reach
     agent.walls_within = 0.0 if all_given else distance
+    left = low = -distance
+    right = high = distance
+    if settings.wall_way != 0.0 and agent.descends != 0.0:
+        near, seconds = settings.wall_metres, settings.wall_seconds
+        x, y = seconds * agent.vx, seconds * agent.vy
+        left, right = min(0.0, x) - near, max(0.0, x) + near
+        low, high = min(0.0, y) - near, max(0.0, y) + near
     return int(
-        gather_walls(
+        gather_walls_in(
             around.walls, around.grid_frame, around.grid_first, around.grid_cells,
-            settings.wall_grid, agent.px, agent.py, distance, around.found,
+            settings.wall_grid, agent.px, agent.py, distance, left, low, right, high, around.found,
         )
     )  # fmt: skip
 

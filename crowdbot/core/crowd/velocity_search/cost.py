@@ -99,6 +99,13 @@ class CompiledCost:
             together: the root of the sum of their squares.
         looks_farther: True if farther walls may change a result, and the functions look for them
             where they do: by `first_collision`, or by `MORE_WALLS`.
+        walls_on_the_way: True if, where gradients are followed, only those walls may change a
+            result that the agent comes within the metres of ``wall_reach`` of, in its seconds, at
+            the present velocity.
+        optimum_by_nearby_walls: True if an optimum that differs by less than d from the present
+            velocity is the same bit by bit without most walls: those farther than the metres of
+            ``wall_reach`` plus one second at d and the own speed from the agent, and farther than
+            the metres plus the seconds at d from its way at the present velocity in these seconds.
     """
 
     base: Callable[..., Any]
@@ -114,6 +121,8 @@ class CompiledCost:
     wall_reach: tuple[float, float] | None = None
     reach_with_own: bool = False
     looks_farther: bool = False
+    walls_on_the_way: bool = False
+    optimum_by_nearby_walls: bool = False
 
     def reach(self, radius: float, largest_radius: float) -> float:
         """Return the centre distance beyond which no neighbour counts, m."""

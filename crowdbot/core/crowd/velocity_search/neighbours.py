@@ -156,6 +156,25 @@ def gather_walls(
         frame, first, cells, covered: their `SegmentGrid`, and its reach; farther, all are tried.
         found: (>= S,) output.
     """
+    return int(
+        gather_walls_in(
+            walls, frame, first, cells, covered, px, py, distance, -distance, -distance, distance,
+            distance, found,
+        )
+    )  # fmt: skip
+
+
+@inline_kernel
+def gather_walls_in(
+    walls: Array, frame: Array, first: Indices, cells: Indices, covered: float,
+    px: float, py: float, distance: float, left: float, low: float, right: float, high: float,
+    found: Rows[WallRecord],
+) -> int:  # fmt: skip
+    """Write those of the segments that `gather_walls` finds whose own box touches a given one.
+
+    Args:
+        left, low, right, high: borders of the box relative to the point, m.
+    """
     count, begin, end, listed = 0, 0, walls.shape[0], distance <= covered
     if listed:
         cell = cell_of(frame, px, py)
@@ -163,9 +182,9 @@ def gather_walls(
     for k in range(begin, end):
         s = cells[k] if listed else k
         ax, ay, bx, by = walls[s, 0] - px, walls[s, 1] - py, walls[s, 2] - px, walls[s, 3] - py
-        if min(ax, bx) > distance or max(ax, bx) < -distance:
+        if min(ax, bx) > right or max(ax, bx) < left:
             continue
-        if min(ay, by) > distance or max(ay, by) < -distance:
+        if min(ay, by) > high or max(ay, by) < low:
             continue
         nx, ny = nearest_on_segment(0.0, 0.0, ax, ay, bx, by)
         d2 = nx * nx + ny * ny
@@ -184,6 +203,7 @@ __all__ = [
     "Starts",
     "gather",
     "gather_walls",
+    "gather_walls_in",
     "sort_discs",
     "strip_height",
 ]  # fmt: skip

@@ -41,6 +41,7 @@ class SettingsRecord:
             the second times the fastest speed of a decision, and
         wall_own: 1 if it counts together with the own speed, as `CompiledCost.reach_with_own`.
         wall_grid: the reach of the `SegmentGrid`, m.
+        wall_way: 1 if gradients need only walls on the way, as `CompiledCost.walls_on_the_way`.
         wall_more: 1 if functions look for walls that are farther away, where these matter.
         floor: address of the `FloorRecord`.
     """
@@ -52,6 +53,7 @@ class SettingsRecord:
     wall_seconds: float
     wall_own: float
     wall_grid: float
+    wall_way: float
     wall_more: float
     floor: float
 

@@ -66,7 +66,15 @@ _PUSHED, _HURRIED = 1.05, 1.25
 #: Added against rounding.
 _SLACK = 1e-6
 #: Fields of `SettingsRecord` that depend on the walls.
-_WALL_SETTINGS = ("wall_metres", "wall_seconds", "wall_own", "wall_grid", "wall_more", "floor")
+_WALL_SETTINGS = (
+    "wall_metres",
+    "wall_seconds",
+    "wall_own",
+    "wall_grid",
+    "wall_way",
+    "wall_more",
+    "floor",
+)
 
 # Columns of the table of addresses: part of a cost function and its signature.
 _PARTS = (
@@ -183,15 +191,31 @@ class WeightedCosts:
             self._grid = walls, largest, self._built_grid(walls, largest)
         return self._grid[2]
 
+    def nearby_walls(self, walls: Array, change: float) -> tuple[SegmentGrid, float]:
+        """Return the grid of walls that matter to an optimum near the velocity, and its reach (m).
+
+        Args:
+            change: largest difference from the present velocity, m/s.
+        """
+        if self.parity:
+            return grid_of(walls, math.inf), 0.0
+        walked = _HURRIED * float(np.max(self.agents.preferred_speed, initial=0.0))
+        metres, seconds = self._walls_matter(self._largest_seen)
+        covered = metres + seconds * (walked + change)
+        return grid_of(walls, covered), covered
+
     def _built_grid(self, walls: Array, largest: float) -> SegmentGrid:
         reach, (metres, seconds) = self.reach_of(largest), self._walls_matter(largest)
         own = any(c.reach_with_own for c in self.compiled)
         covered = min(reach, metres + seconds * self._usual_speed(own=own))
         more = any(c.looks_farther for c in self.compiled)
+        way = not more and all(
+            c.walls_on_the_way or c.wall_reach == (0.0, 0.0) for c in self.compiled
+        )
         if self.parity or self.vectorised:
-            metres, seconds, own, covered, more = reach, 0.0, False, reach, False
+            metres, seconds, own, covered, way, more = reach, 0.0, False, reach, False, False
         self._floor, floor = floor_of(walls, self.largest)
-        values = metres, seconds, own, covered, more, floor
+        values = metres, seconds, own, covered, way, more, floor
         for name, value in zip(_WALL_SETTINGS, values, strict=True):
             self._settings[name][:] = value
         return grid_of(walls, covered)

@@ -194,4 +194,5 @@ def build(spec: FoeAvoidanceSpec) -> CompiledCost:
         weight=spec.weight,
         # Nothing is seen that is reached later than in 10 s.
         wall_reach=(2.0, 10.0),
+        walls_on_the_way=True,
     )

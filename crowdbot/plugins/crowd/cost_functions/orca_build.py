@@ -88,30 +88,28 @@ def change(
 
 
 @array_kernel
-def _least(agent: AgentRecord) -> float:
-    """Return the c of half-planes n . u >= c below which all velocities in question are inside.
-
-    Such half-planes change nothing, and most of those of walls are such ones.
-    """
-    asked = math.hypot(agent.asked_x, agent.asked_y) + agent.asked_radius
-    return -(1.0 + 1e-6) * max(agent.max_speed, agent.fastest, asked)
-
-
-@array_kernel
 def is_out_of_the_way(
-    rx: float, ry: float, d2: float, vx: float, vy: float, radius: float, least: float,
-    horizon: float,
+    rx: float, ry: float, d2: float, vx: float, vy: float, radius: float, horizon: float,
+    ax: float, ay: float, spread: float,
 ) -> bool:  # fmt: skip
-    """Return True if both half-planes of a wall clearly change nothing; for most, without a root.
+    """Return True if both half-planes of a wall clearly hold a disc of velocities.
 
-    The second one touches the cut-off disc, and is c - reach away from 0, where c is the part of
-    the disc's centre along its normal.
+    For most walls this needs no root: the second half-plane touches the cut-off disc of radius
+    reach / horizon, and its normal points from this disc's centre to the own velocity.
+
+    Args:
+        rx, ry, d2: nearest point of the wall and its squared distance.
+        ax, ay, spread: centre and radius of the disc, m/s.
     """
-    stops, needed, share = radius - _BRAKING * least, radius / horizon - least, 1.0 / horizon
+    share = 1.0 / horizon
+    stops = radius + _BRAKING * (spread + abs(ax) + abs(ay))
     ox, oy = vx - share * rx, vy - share * ry  # from the centre of the cut-off disc
-    behind = -share * (ox * rx + oy * ry)
-    far = (d2 > (1.0 + 1e-9) * stops * stops) & (behind > 0.0)
-    return bool(far & (behind * behind > (1.0 + 1e-9) * needed * needed * (ox * ox + oy * oy)))
+    out2, behind = (1.0 + 1e-9) * (ox * ox + oy * oy), -share * (ox * rx + oy * ry)
+    inside = behind + ox * ax + oy * ay  # how far the disc's centre is inside, times out
+    far = (d2 > (1.0 + 1e-9) * stops * stops) & (behind > 0.0) & (inside > 0.0)
+    touches = behind * behind > share * share * radius * radius * out2
+    needed = share * radius + spread
+    return bool(far & touches & (inside * inside > needed * needed * out2))
 
 
 @array_kernel
@@ -123,24 +121,28 @@ def _put_walls(
     work: Pointer,
     count: int,
 ) -> int:
-    """Write two half-planes per wall: for braking, and for passing its nearest point."""
+    """Write two half-planes per wall: for braking, and for passing its nearest point.
+
+    Those that hold all velocities in question change nothing, and most are such ones.
+    """
     own = as_record(params, _PARAMS)
-    vx, vy, radius, least = agent.vx, agent.vy, agent.radius, _least(agent)
+    vx, vy, radius = agent.vx, agent.vy, agent.radius
+    ax, ay, spread = agent.asked_x, agent.asked_y, (1.0 + 1e-6) * agent.asked_radius
     for s in range(wall_count):
         d2, rx, ry = walls[s].d2, walls[s].nx, walls[s].ny
-        if is_out_of_the_way(rx, ry, d2, vx, vy, radius, least, own.horizon):
+        if is_out_of_the_way(rx, ry, d2, vx, vy, radius, own.horizon, ax, ay, spread):
             continue
         if d2 == 0.0 or not in_range(d2, radius, params):
             continue
         distance = math.sqrt(d2)
-        c = (radius - distance) / _BRAKING
-        if c >= least:
-            put(work, count, -rx / distance, -ry / distance, c)
+        nx, ny, c = -rx / distance, -ry / distance, (radius - distance) / _BRAKING
+        if c >= nx * ax + ny * ay - spread:
+            put(work, count, nx, ny, c)
             count += 1
         if distance > radius:
             nx, ny, way = change(rx, ry, vx, vy, radius, own.horizon, 1.0, False)
             c = nx * vx + ny * vy + way
-            if c >= least:
+            if c >= nx * ax + ny * ay - spread:
                 put(work, count, nx, ny, c)
                 count += 1
     return count
@@ -161,6 +163,7 @@ def _prepare(
     count = 0
     vx, vy, horizon, dt = agent.vx, agent.vy, own.horizon, agent.time_step
     parity = agent.parity != 0.0
+    ax, ay, spread = agent.asked_x, agent.asked_y, (1.0 + 1e-6) * agent.asked_radius
     for j in range(near_count):
         if not in_range(near[j].d2, near[j].reach, params):
             continue
@@ -172,8 +175,9 @@ def _prepare(
             continue
         share = 1.0 if near[j].static != 0.0 else 0.5  # people share the avoidance equally
         c = nx * (vx + share * way * nx) + ny * (vy + share * way * ny)
-        put(work, count, nx, ny, c)
-        count += 1
+        if parity or c >= nx * ax + ny * ay - spread:
+            put(work, count, nx, ny, c)
+            count += 1
     if not parity:
         count = _put_walls(agent, walls, wall_count, params, work, count)
     work[0] = count
@@ -224,4 +228,7 @@ def build(spec: OrcaSpec) -> CompiledCost:
         # tangents through the present velocity v are sqrt(centre^2 - v^2) or more away from 0.
         wall_reach=(1.0, (1.0 + 1e-5) * max(spec.time_horizon, _BRAKING)),
         reach_with_own=True,
+        # The cut-off disc of a wall beyond is farther from v than d and its radius, so the wall's
+        # half-planes hold every velocity that differs from v by less than d.
+        optimum_by_nearby_walls=True,
     )

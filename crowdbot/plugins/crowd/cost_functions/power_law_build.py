@@ -125,4 +125,5 @@ def build(spec: PowerLawSpec) -> CompiledCost:
         weight=spec.weight,
         # Later collisions exert no force.
         wall_reach=(0.0, spec.tau0),
+        walls_on_the_way=True,
     )

@@ -37,6 +37,10 @@ BOUNDED = [
     "pledestrians", "power_law", "random_function", "rvo", "social_forces_avoidance", "ttca_dca",
     "van_toll",
 ]  # fmt: skip
+ALL_GIVEN: dict[str, Any] = {
+    "wall_reach": None, "looks_farther": False, "walls_on_the_way": False,
+    "optimum_by_nearby_walls": False,
+}  # fmt: skip
 METHODS = {
     "orca": "global", "foe_avoidance": "gradient", "power_law": "gradient",
     "social_forces_avoidance": "gradient",
@@ -64,15 +68,15 @@ def _choices(kind: str, whole: bool) -> Array:
 
 
 def _states(
-    kind: str, whole: bool, walls: Array, at: tuple[Array, Array], velocity: Array
+    kind: str, whole: bool, walls: Array, at: tuple[Array, Array], velocity: Array, **options: float
 ) -> Array:
     known, rng, count = registry(), np.random.default_rng(5), len(velocity)
     function: Any = build_cost(
-        known, known.find("cost function", kind).spec.model_validate({"kind": kind} | FAR)
+        known, known.find("cost function", kind).spec.model_validate({"kind": kind} | FAR | options)
     )
     assert isinstance(function, CompiledCost)
     assert function.wall_reach is not None
-    shown = replace(function, wall_reach=None, looks_farther=False) if whole else function
+    shown = replace(function, **ALL_GIVEN) if whole else function
     spec = VelocitySpaceSpec.model_validate(
         {"kind": "velocity_space", "relaxation_time": 0.4, "method": METHODS.get(kind, "sampling")}
     )
@@ -132,18 +136,33 @@ def test_walls_are_looked_up_by_someone_outside_of_their_box_and_by_someone_who_
     assert np.array_equal(given, whole)
 
 
+@pytest.mark.parametrize("horizon", [0.3, 2.0, 9.0])
+def test_half_planes_of_far_walls_and_people_change_no_optimum_in_a_crowd(horizon: float) -> None:
+    rng = np.random.default_rng(6)
+    at, velocity = rng.uniform(-6.0, 6.0, (2, 60)), rng.normal(0.0, 1.2, (60, 2))
+    walls = _rooms(rng)
+    walls = walls[np.hypot(walls[:, 0], walls[:, 1]) < 22.0]
+    given, whole = (
+        _states("orca", whole, walls, (at[0], at[1]), velocity, time_horizon=horizon)
+        for whole in (False, True)
+    )
+    assert np.array_equal(given, whole)
+
+
 @given(
     distance=st.floats(0.3, 40.0), angle=st.floats(0.0, 6.3), vx=st.floats(-3.0, 3.0),
-    vy=st.floats(-3.0, 3.0), radius=st.floats(0.1, 1.0), least=st.floats(-4.0, -0.1),
-    horizon=st.floats(0.2, 10.0),
+    vy=st.floats(-3.0, 3.0), radius=st.floats(0.1, 1.0), spread=st.floats(0.1, 4.0),
+    horizon=st.floats(0.2, 10.0), share=st.sampled_from([0.0, 1.0]) | st.floats(-1.5, 1.5),
 )  # fmt: skip
 def test_half_planes_that_orca_leaves_out_hold_every_velocity(
-    distance: float, angle: float, vx: float, vy: float, radius: float, least: float, horizon: float
-) -> None:
+    distance: float, angle: float, vx: float, vy: float, radius: float, spread: float,
+    horizon: float, share: float,
+) -> None:  # fmt: skip
     rx, ry = distance * math.cos(angle), distance * math.sin(angle)
-    if not is_out_of_the_way(rx, ry, rx * rx + ry * ry, vx, vy, radius, least, horizon):
+    ax, ay, d2 = share * vx, share * vy, rx * rx + ry * ry
+    if not is_out_of_the_way(rx, ry, d2, vx, vy, radius, horizon, ax, ay, spread):
         return
     assert distance > radius
-    assert (radius - distance) / 0.5 < least
+    assert (radius - distance) / 0.5 < -(rx * ax + ry * ay) / distance - spread
     nx, ny, way = change(rx, ry, vx, vy, radius, horizon, 1.0, False)
-    assert nx * vx + ny * vy + way < least
+    assert nx * vx + ny * vy + way < nx * ax + ny * ay - spread
