@@ -19,7 +19,7 @@ from crowdbot.errors import printable
 
 
 def internal_error(error: Exception) -> str:
-    """Return one line that names other plugins, which run in this process and can break it."""
+    """Return one line on a bug, which names installed plugins, since they may have caused it."""
     from importlib.metadata import entry_points
 
     text = (
@@ -50,7 +50,10 @@ def system_error(error: OSError) -> str:
 
 
 def link_loop(error: Exception) -> OSError | None:
-    """Return links in a circle as an OSError, which before Python 3.13 they are not; else None."""
+    """Return the OSError for a circle of symbolic links; None for another error.
+
+    Before Python 3.13 such a circle raises a RuntimeError.
+    """
     match = re.fullmatch(r"Symlink loop from (['\"])(.*)\1", str(error), re.DOTALL)
     if not isinstance(error, RuntimeError) or match is None:
         return None
@@ -66,9 +69,10 @@ def _has_no_folder() -> bool:
 
 
 def left_by(error: BaseException) -> str:
-    """Describe an exception that a plugin raised to exit crowdbot outside any call.
+    """Describe how a plugin made crowdbot exit from outside its call; empty if it did not.
 
-    Empty for the user's interrupt, or for the command line's own ``SystemExit`` from click.
+    Empty also after an interrupt by the user, and after the command line's own ``SystemExit`` from
+    click.
     """
     turned = error.__context__.__cause__ if error.__context__ else None
     if isinstance(turned, KeyboardInterrupt):  # typer converts it to an exit
@@ -78,7 +82,7 @@ def left_by(error: BaseException) -> str:
 
 
 def tell_of_threads() -> None:
-    """Print an exception in a plugin's thread as one line, like any other."""
+    """Print an uncaught exception of a plugin's thread as one line, as other errors are printed."""
     usual = threading.excepthook is threading.__excepthook__
     if usual and not os.environ.get("CROWDBOT_DEBUG"):
         threading.excepthook = _tell

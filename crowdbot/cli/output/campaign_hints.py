@@ -1,4 +1,4 @@
-"""Hints that save waiting in a campaign: what is already known, and when one may stop."""
+"""Hints during a campaign: results that are already known, and when it may be stopped."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def known_runs(plan: Plan) -> str:
 
 
 class OwnFirst:
-    """Says once that only runs of floors and ceilings are left."""
+    """Prints once that only runs of floor and ceiling planners remain."""
 
     def __init__(self) -> None:
         self._waits = True
 
     def line(self, state: State) -> str:
-        """Return the line when the last job of a named planner has ended, else nothing."""
+        """Return the line after the last job of the user's own planners, else an empty text."""
         left = state.left.values()
         if not (self._waits and left and all(job.added for job in left)):
             return ""

@@ -24,11 +24,11 @@ class FilmOptions:
     """Options of ``crowdbot export`` for films; None where the default of the format applies.
 
     Attributes:
-        first, last: of the run, s.
+        first, last: first and last time that is shown, s.
         at: times of pictures, s.
         rate: pictures a second.
         speed: how many times faster than real time.
-        width: px.
+        width: width of the picture, px.
         follow: True to follow the robot, False to show all.
         dark: True for dark colours.
     """
@@ -43,7 +43,7 @@ class FilmOptions:
     dark: bool = False
 
     def check(self, to: str) -> None:
-        """Refuse options that the format has no use for.
+        """Raise an error for options that the chosen format does not use.
 
         Raises:
             UsageError: naming one.

@@ -1,4 +1,4 @@
-"""Print lines in which text of others cannot reach the terminal as control characters."""
+"""Print untrusted text with control characters escaped, so that it cannot control the terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Make a run with a person in a page: the request, the page, the doors for programs."""
+"""A run with a person at a web page: its request, the page, and servers for other programs."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class PersonRun:
 
 @dataclass(frozen=True, kw_only=True)
 class PageDoors:
-    """The ports at which the person, and programs, come in.
+    """Ports of the person's page and of the servers for other programs.
 
     Attributes:
         port: of the page; ``open_`` shows it in the browser.
@@ -61,7 +61,7 @@ class PageDoors:
 
 
 def request_of(given: PersonRun, registry: Registry) -> Request:
-    """Return the request, with a planner that is still to be chosen.
+    """Return the request of the run; the planner is chosen later.
 
     Raises:
         InputError: the scenario is wrong, or there is no such one.
@@ -91,7 +91,7 @@ def request_of(given: PersonRun, registry: Registry) -> Request:
 
 @contextmanager
 def page_of(seat: Seat, mode: Mode, scenario: str, doors: PageDoors) -> Iterator[PageServer]:
-    """Serve the page of a seat, and programs beside it, until the run is over.
+    """Serve a person's page, and the servers for other programs, until the run ends.
 
     Raises:
         MissingLibraryError: the extra ``live`` is not installed.

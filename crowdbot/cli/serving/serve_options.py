@@ -77,7 +77,7 @@ def manner_of(
 
 @contextmanager
 def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[list[Door]]:
-    """The doors through which programs come in, closed at the end.
+    """Open the servers for external programs; they are closed when the context ends.
 
     Raises:
         MissingLibraryError: the extra ``live`` is not installed.
@@ -100,7 +100,7 @@ def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[
 def listening_also(
     session: LiveSession, listen: Listen, *, rosbridge: bool
 ) -> Iterator[list[Door]]:
-    """The doors of programs beside a person's page, closed at the end; errors as `listening`."""
+    """Open further servers beside a person's page; they are closed when the context ends."""
     from crowdbot.core.live.manner import Manner
 
     manner = Manner(rate=1.0)
@@ -251,7 +251,7 @@ def needs(extra: str, *modules: str) -> None:
 
 
 def report(record: RunRecord) -> None:
-    """Say on stderr what only a live run has."""
+    """Print on stderr the facts that only a live run has, such as missed steps."""
     live = record.live
     if live is None:
         return

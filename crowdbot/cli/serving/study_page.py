@@ -21,7 +21,7 @@ _STAYS = 5.0
 def serve_participant(
     progress: StudyProgress, registry: Registry, *, port: int, synthetic: bool
 ) -> None:
-    """Serve the page of a participant until the last step is done, or until a signal.
+    """Serve a participant's page until the last step is done, or until a signal.
 
     Raises:
         InputError: the port cannot be opened.

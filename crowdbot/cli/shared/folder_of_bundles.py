@@ -38,7 +38,7 @@ class FolderOfBundles:
 
 
 def trusted_keys(keys: Sequence[str]) -> set[str]:
-    """Return the public keys that are believed: the given ones, and the user's own.
+    """Return the trusted public keys: those given, and the user's own.
 
     Raises:
         InputError: one is not a public key.
@@ -58,7 +58,7 @@ def read_bundles(
     audits: Sequence[Path] = (),
     suites: Sequence[Expansion] = (),
 ) -> FolderOfBundles:
-    """Return the tables of a folder, and say why bundles are left out or a record is not believed.
+    """Return the tables of a folder; print why bundles or verification records are left out.
 
     Args:
         folder: folder of the bundles.

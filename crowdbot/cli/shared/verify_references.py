@@ -17,7 +17,7 @@ _FINE = ("identical", "different_platform")
 def verify_references(
     text: str, registry: Registry, size: int | None, seed: int | None
 ) -> dict[str, Any] | None:
-    """Make a sample of reference runs again, and return how they relate; None for a bundle.
+    """Repeat a sample of the reference scores' runs; None if the argument names a bundle instead.
 
     Args:
         text: the argument of `verify`.
@@ -52,7 +52,7 @@ def verify_references(
 
 
 def said_of(document: dict[str, Any]) -> Iterator[str]:
-    """Yield the lines of the outcome."""
+    """Yield the lines that report the outcome."""
     for name, relation in document["runs"].items():
         yield f"{name}: {relation}"
     count = len(document["runs"])

@@ -1,4 +1,4 @@
-"""Finders: what a robot knows of its person, as tracked by its lidars or as told by a device."""
+"""Person finders: estimate where a robot's person is, by lidar tracking or from a device."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class KnownPerson:
     moved: bool = False
 
     def at(self, t: float) -> tuple[float, float]:
-        """Return where it should be at a time: it walks on for a while."""
+        """Return the extrapolated pose at a time: constant velocity for a short while."""
         ahead = min(max(0.0, t - self.seen), _WALKS_ON)
         if math.hypot(self.vx, self.vy) < _WALKS:
             ahead = 0.0
@@ -58,7 +58,7 @@ class KnownPerson:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PersonSight:
-    """Data that finders may use in one step.
+    """Input of a person finder in one step.
 
     Attributes:
         t: s.
@@ -78,7 +78,7 @@ class PersonSight:
 
 @dataclass
 class PersonFinder:
-    """Knows the people of a target by a pose at the start; subclasses learn more.
+    """Base of finders: knows only each person's pose at the start.
 
     Args:
         target: who it is.
@@ -97,7 +97,7 @@ class PersonFinder:
         ]
 
     def update(self, sight: PersonSight) -> None:
-        """Learn from one step."""
+        """Update the estimate with the data of one step."""
 
     def _with_errors(self, poses: Array) -> Array:
         """Return poses (M, 3) as the robot gets them."""
@@ -108,10 +108,10 @@ class PersonFinder:
 
 
 class ToldFinder(PersonFinder):
-    """Gets the pose of each person from a device, relative to the robot, at a low rate."""
+    """Finder that gets each person's pose relative to the robot from a device, at a low rate."""
 
     def update(self, sight: PersonSight) -> None:
-        """Take what the device tells, if it is due."""
+        """Read the device, if its next reading is due."""
         if (sight.t / TOLD_EVERY) % 1.0 != 0.0:
             return
         poses = self._with_errors(sight.relative[:, :3])
@@ -127,7 +127,7 @@ class ToldFinder(PersonFinder):
 
 
 class TrackingFinder(PersonFinder):
-    """Follows each person with the robot's lidars, from the pose at the start."""
+    """Finder that tracks each person with the robot's lidars, from the pose at the start."""
 
     def __init__(
         self, target: Target, rng: np.random.Generator, lidars: Mapping[str, SensorInfo]
@@ -136,7 +136,7 @@ class TrackingFinder(PersonFinder):
         self._points, self._tracker = LidarPoints(lidars), PeopleTracker()
 
     def update(self, sight: PersonSight) -> None:
-        """Look for each person where the last track of it was, or should be by now."""
+        """Match each person to the nearest lidar track around its last or extrapolated position."""
         points = self._points(sight.readings, sight.t, sight.twist, sight.vy)
         tracks = self._tracker.update(sight.t, sight.pose, points)
         rows = {int(number): row for row, number in enumerate(tracks.id)}

@@ -1,4 +1,4 @@
-"""PersonGuide: tells a planner where its person is, and so where to go."""
+"""PersonGuide: gives a planner the pose of its person and the place beside it to drive to."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Guidance(NamedTuple):
 
 
 class PersonGuide:
-    """Estimates the person's pose from what the robot may know, and the robot's place.
+    """Estimates the person's pose from the robot's data, and the place where the robot should be.
 
     Args:
         task: of the robot, from `task_with_person`.
@@ -53,7 +53,7 @@ class PersonGuide:
         self._last: tuple[float, Guidance] | None = None
 
     def update(self, sight: PersonSight) -> Guidance:
-        """Return what the planner gets in a step; the same again for the same time."""
+        """Return the planner's guidance for a step; the same again for the same time."""
         if self._last is None or self._last[0] != sight.t:
             self._finder.update(sight)
             self._last = sight.t, self._guidance(sight)
@@ -95,7 +95,7 @@ class PersonGuide:
 
 
 def task_with_person(task: Task, target: Target) -> Task:
-    """Return the task of a robot with what a planner may know of its person at the start.
+    """Return the robot's task, with the person's pose that its planner may know at the start.
 
     Args:
         task: with the robot's body, and of ``lead`` with the goal zone.
@@ -133,7 +133,7 @@ def zone_around(goal: tuple[float, float], tolerance: float) -> Array:
 def check_sees(
     scenario: str, robot: str, target: Target, sensors: Mapping[str, SensorInfo]
 ) -> None:
-    """Refuse a robot that would have to track its person without a lidar.
+    """Raise an error if the robot has to track its person but has no lidar.
 
     Raises:
         InputError: it has none.

@@ -1,4 +1,4 @@
-"""People who follow a robot: their goal is the robot, within people's own limits."""
+"""People who follow a robot: their goal is the robot's position; people's limits of motion hold."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.dsl.scenario.person_goals import LeadGoal
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LedPeople:
-    """The people whom one robot leads.
+    """The people who follow one robot.
 
     Attributes:
         robot: its number.

@@ -50,12 +50,12 @@ class Target:
 
     @property
     def at_start(self) -> PersonCircle:
-        """The person, or the circle around the group, at t = 0: arrays (1,)."""
+        """Return the person, or the circle around the group, at t = 0 as arrays (1,)."""
         at = self.x[np.newaxis], self.y[np.newaxis], self.heading[np.newaxis]
         return together(at[0], at[1], at[2], self.radius)
 
     def task(self) -> PersonTask:
-        """Return what a planner is told of the task."""
+        """Return the part of the task that a planner gets."""
         goal = self.goal
         side = goal.side if isinstance(goal, AccompanyGoal) else "either"
         hold = goal.hold if isinstance(goal, ApproachGoal | FollowGoal | AccompanyGoal) else 0.0
@@ -142,7 +142,7 @@ def _rows(
 
 
 def lidars_of(sensors: Mapping[str, SensorInfo]) -> dict[str, SensorInfo]:
-    """Return the planar lidars, in whose points people are found."""
+    """Return the planar lidars, in whose scans people are detected."""
     return {
         name: info
         for name, info in sensors.items()

@@ -59,7 +59,7 @@ class PersonWatch:
 
 
 def person_in(crowd: Array, target: Target) -> PersonCircle:
-    """Return a target as it is in the state of a crowd: arrays (1,), NaN if not there."""
+    """Return a target's person in the crowd's state as arrays (1,); NaN while absent."""
     rows = rows_in(crowd, target)
     x, y, facing = (rows[np.newaxis, :, k] for k in range(3))
     return together(x, y, facing, target.radius)

@@ -22,7 +22,7 @@ _AXES = ENTRY - 1
 
 
 class ArrayTable:
-    """The arrays of one thing, by the names of `fields`; they are kept alive.
+    """Addresses and shapes of the arrays of one part, by the names of `fields`; keeps them alive.
 
     Attributes:
         entries: (F, 4) address and sizes of each array, int64.
@@ -50,7 +50,7 @@ class ArrayTable:
 
 
 class ScratchPool:
-    """Scratch that worlds of one thread share, so that it stays in the processor's cache."""
+    """Scratch memory shared by the worlds of a thread, to stay in the processor's cache."""
 
     def __init__(self) -> None:
         self._kept: dict[tuple[str, tuple[int, ...], str], Any] = {}
@@ -61,7 +61,7 @@ class ScratchPool:
         return self._kept.setdefault((name, given.shape, repr(given.dtype)), like)
 
     def put(self, into: ArrayTable, **arrays: Any) -> None:
-        """Set scratch arrays of a table, shared."""
+        """Set the scratch arrays of a table to shared memory."""
         into.put(**{name: self(name, array) for name, array in arrays.items()})
 
 

@@ -1,4 +1,4 @@
-"""Worlds that are built once and begin again: new draws of people, and those drawn before."""
+"""A pool of worlds that are built once and reset, or given new draws of people."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MOST = 1024
 
 
 class Bank:
-    """Worlds of one thread.
+    """The pool of one thread.
 
     Args:
         keep: True if draws come again, so that worlds are kept.
@@ -24,7 +24,7 @@ class Bank:
         self._free: OrderedDict[tuple[int, int | None], list[BatchWorld]] = OrderedDict()
 
     def take(self, blueprint: Blueprint, root: int | None) -> BatchWorld:
-        """Return a world of a draw at its beginning, kept or new.
+        """Return a world with a given draw in its initial state, from the pool or new.
 
         Raises:
             InputError: the people do not fit, or a robot would start in a wall or a person.
@@ -38,7 +38,7 @@ class Bank:
         return world
 
     def give_back(self, world: BatchWorld) -> None:
-        """Keep a world that is not stepped any more."""
+        """Return a world that is no longer stepped to the pool."""
         if not self._keep:
             return
         key = id(world.blueprint), world.root

@@ -24,7 +24,7 @@ _MOST_KEY = 2**62
 
 
 class Drives(NamedTuple):
-    """Robots of many worlds; batches of several threads have parts of the same arrays.
+    """Drive states of the robots of many worlds; several threads share the same arrays.
 
     Attributes:
         table: (W, `crowdbot.core.batch.step.WORLD_COLUMNS`) of the worlds.
@@ -38,13 +38,13 @@ class Drives(NamedTuple):
     most: Array
 
     def part(self, first: int, end: int) -> Drives:
-        """Return those of some worlds, sharing memory."""
+        """Return the drive states of some worlds, sharing memory."""
         own = slice(first, end)
         return Drives(self.table[own], self.drives[own], self.least[own], self.most[own])
 
 
 def drives_of(worlds: Sequence[BatchWorld]) -> Drives:
-    """Return room for the robots of worlds."""
+    """Return arrays large enough for the robots of given worlds."""
     count, robots = len(worlds), max(len(w.robots) for w in worlds)
     return Drives(
         np.zeros((count, k.WORLD_COLUMNS), np.int64),
@@ -54,7 +54,7 @@ def drives_of(worlds: Sequence[BatchWorld]) -> Drives:
 
 
 class Batch:
-    """Worlds side by side. Not for two threads at once; threads have batches of their own.
+    """Worlds that are stepped together. Not thread-safe: each thread has its own batch.
 
     Args:
         worlds: the first ones; `put` replaces any.
@@ -86,7 +86,7 @@ class Batch:
         self._read(self._all)
 
     def put(self, w: int, world: BatchWorld, key: int) -> None:
-        """Replace a world; it begins at its initial state, with its scanners read."""
+        """Replace a world; the new one is in its initial state, and its lidars have been read."""
         world.reset()
         self.worlds[w] = world
         if len(world.groups) > self._most[0] or len(world.scanners) > self._most[1]:
@@ -102,7 +102,7 @@ class Batch:
         self._read(np.array([w]))
 
     def step(self, commands: Array, which: Indices | None = None) -> None:
-        """Advance worlds by one step each, one period of their planner.
+        """Advance worlds by one step each, which is one period of their planner.
 
         Args:
             commands: (W, R, 3) v, w, vy of each robot, m/s and rad/s; clamped to its limits.
@@ -127,7 +127,7 @@ class Batch:
             self._refuse(int(np.flatnonzero(~self._sound)[0]))
 
     def robots(self, out: Array) -> None:
-        """Write the rows (W, R, 8) of all robots as people feel them."""
+        """Write the rows (W, R, 8) of all robots, as in `RobotRecord`."""
         gather_robots(self._crowds, out)
 
     def people(self, out: Array, which: Indices | None = None) -> None:
@@ -153,7 +153,7 @@ class Batch:
         return self.drives[:, :, _SLEWED]
 
     def drive(self, name: str) -> Array:
-        """Return (W, R) a field of `DriveStateRecord`."""
+        """Return one field (W, R) of `DriveStateRecord`."""
         return self.drives[:, :, _DRIVE[name]]
 
     def _step_slowly(self, w: int) -> None:

@@ -1,4 +1,4 @@
-"""A scenario resolved for many worlds: its place, its robots, what they see."""
+"""A scenario resolved for many worlds: its place, its robots and their sensors."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _CATEGORIES = {"lidar2d": "lidar", "rgbd_camera": "camera"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Blueprint:
-    """Parts that all draws of a scenario share.
+    """Parts of a world that do not depend on the draw of people.
 
     Attributes:
         scenario: as it was written.
@@ -73,7 +73,7 @@ class Blueprint:
 
 
 def with_root(scenario: Scenario, root: int) -> Scenario:
-    """Return a scenario whose people are drawn from another root of random numbers."""
+    """Return a scenario whose people are drawn with another root seed."""
     crowd = scenario.crowd
     if crowd is None:
         return scenario

@@ -1,7 +1,7 @@
-"""CompiledWalk: people on an empty floor decide and walk on, many decisions in one compiled call.
+"""CompiledWalk: predicts people on an empty floor over many decisions in one compiled call.
 
-The same numbers as `CrowdEngine.decide` gives, bit by bit, in a third of the time: most of that of
-a decision among forty people are calls from Python.
+The result equals that of `CrowdEngine.decide` bit by bit, in a third of the time: most time of a
+decision among forty people goes into calls from Python.
 """
 
 from __future__ import annotations

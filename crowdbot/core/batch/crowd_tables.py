@@ -1,4 +1,4 @@
-"""Arrays for compiled code: a crowd: the arrays of its engine, by address."""
+"""The arrays of a crowd's engine by address, for compiled code."""
 
 from __future__ import annotations
 
@@ -53,9 +53,9 @@ HALF, REACH, RELAXATION, STEP = range(4)
 
 
 def is_compiled(engine: CrowdEngine) -> bool:
-    """True if all decisions of a crowd are made in compiled code alone.
+    """Return True if compiled code alone makes all decisions of a crowd.
 
-    Otherwise `CrowdEngine` makes them for one world after the other, with the same results.
+    Otherwise `CrowdEngine` makes them, world by world, with the same results.
     """
     return engine.decides_by_policies_alone and all(searches(g) for g in engine.groups)
 
@@ -178,6 +178,6 @@ def _group_table(
 
 
 def random_states(engine: CrowdEngine) -> list[Array]:
-    """Return what random candidates change outside of the crowd's state, (N,) of each policy."""
+    """Return the random generators' states (N,) of each policy, which random candidates change."""
     costs = (getattr(policy, "costs", None) for policy in engine.policies)
     return [c.random for c in costs if isinstance(c, WeightedCosts)]

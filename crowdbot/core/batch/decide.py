@@ -44,7 +44,7 @@ def decide(crowd: Indices, groups: Indices, now: float) -> bool:
 
 @kernel
 def evade(people: People, crowd: Indices, seen: Array, now: float) -> None:
-    """Change what people want who have noticed robots, (R, 8) as people see them."""
+    """Change desired accelerations of people who have noticed robots (R, 8), see `RobotRecord`."""
     evade_robots(
         people, floats1(crowd, c.RADIUS), mask1(crowd, c.HEEDS), mask1(crowd, c.LATE),
         floats1(crowd, c.ATTENTION), floats1(crowd, c.PREFERRED), seen,
@@ -54,7 +54,7 @@ def evade(people: People, crowd: Indices, seen: Array, now: float) -> None:
 
 @kernel
 def look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
-    """Write positions, velocities and goals of all people, and the robots as they see them."""
+    """Write what a decision reads: positions, velocities and goals of people, and the robots."""
     position, velocity = floats2(crowd, c.POSITION), floats2(crowd, c.VELOCITY)
     goal, present = floats2(crowd, c.GOAL), mask1(crowd, c.PRESENT)
     for i in range(people.shape[0]):

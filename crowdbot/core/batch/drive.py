@@ -127,7 +127,7 @@ def _arc(robot: RobotRecord, heading: float, way: float, turn: float) -> None:
 def watch_goal(
     robot: RobotRecord, drive: DriveStateRecord, own: Indices, x0: float, y0: float
 ) -> None:
-    """Record the arrival of a robot that was at (x0, y0) a tick ago."""
+    """Record the arrival of a robot; (x0, y0) is its position one tick ago, m."""
     zone = floats2(own, ZONE)
     if drive.arrived < 0.0 and inside(zone, robot.x, robot.y):
         fraction = entry_fraction(zone, x0, y0, robot.x, robot.y)

@@ -1,8 +1,8 @@
-"""Room that people have around a robot, compiled: the quantities of the scores, step by step.
+"""Space that people have around a robot, compiled: the quantities of the scores, step by step.
 
 Gap, advance and demanded work are those of the metrics ``intrusion`` and ``push_work``, with their
-usual parameters, but taken once a step. The push of people who are forced aside is that of the
-metric ``safe_efficiency``, taken at each tick.
+default parameters, but computed once per step. The push of people who are forced aside is that of
+the metric ``safe_efficiency``, computed at each tick.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ def meet(
     drive: DriveStateRecord, robot: RobotRecord, outlines: Array, r: int, people: People,
     traits: Rows[TraitsRecord], dt: float,
 ) -> None:  # fmt: skip
-    """Set ``gap``, ``advance`` and ``work`` of a step.
+    """Compute ``gap``, ``advance`` and ``work`` of a step.
 
     Args:
         outlines: (R, K, 2) of the robots, of which this is number ``r``.
-        dt: how long the step takes, s.
+        dt: length of the step, s.
     """
     outline = outlines[r][: corners_of(outlines, r)]
     drive.gap, drive.advance, drive.work = math.inf, 0.0, 0.0
@@ -80,12 +80,12 @@ def press(
     drive: DriveStateRecord, robot: RobotRecord, outlines: Array, r: int, people: People,
     traits: Rows[TraitsRecord], pressed: Array, dt: float,
 ) -> None:  # fmt: skip
-    """Add the push of a tick to ``forced``, and what it drives people aside to ``aside``.
+    """Add a tick's push to ``forced``, and the resulting share of people driven aside to ``aside``.
 
     Args:
         outlines: (R, K, 2) of the robots, of which this is number ``r``.
         pressed: (N,) the push of each person since the episode began, J/kg, changed.
-        dt: how long the tick takes, s.
+        dt: length of the tick, s.
     """
     outline = outlines[r][: corners_of(outlines, r)]
     for i in range(people.shape[0]):
@@ -108,9 +108,9 @@ def press(
 
 @kernel
 def driven_aside(push: float) -> float:
-    """Return how far a person is driven aside, 0 to 1: 1 is a person whom the score counts.
+    """Return how far a person counts as driven aside, 0 to 1; 1 as in the score.
 
-    Below it is the square of the push, so that little pushes cost little, but not nothing.
+    Below 1 it is the square of the push, so that small pushes cost little, but not nothing.
     """
     return min(1.0, (push / FORCED_PUSH) ** 2)
 

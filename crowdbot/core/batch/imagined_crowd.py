@@ -1,4 +1,4 @@
-"""ImaginedCrowd: people whom a planner imagines, who decide as those of a crowd do."""
+"""ImaginedCrowd: people in a planner's prediction, who decide with a crowd's own policy."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _NO_ROBOT = np.zeros((0, 8))
 
 
 class ImaginedCrowd:
-    """A fixed number of people on an empty floor, whom the caller places for each decision.
+    """A fixed number of predicted people on an empty floor, placed by the caller.
 
-    They take the policy, the steering parts without `wander`, and the response to robots of a
-    crowd; all of them have noticed a robot that is within sight.
+    They have a crowd's policy, its steering parts without `wander`, and its response to robots; all
+    of them have noticed every robot within sight.
 
     Args:
         crowd: name of a crowd, file of one, or kind of a response to robots.
@@ -76,7 +76,7 @@ class ImaginedCrowd:
         present: NDArray[np.bool_],
         robot: Array = _NO_ROBOT,
     ) -> Array:
-        """Return the accelerations (N, 2) that people want, m/s^2; zero for those not present.
+        """Return people's desired accelerations (N, 2), m/s^2; zero for those not present.
 
         Args:
             position, velocity, goal: (N, 2), m and m/s.

@@ -1,4 +1,4 @@
-"""Batches in threads: the same as one batch, on several cores."""
+"""A batch of worlds split among threads; results are those of a single batch."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _HEAD_START = 100
 
 
 def parts_of(worlds: int, threads: int, people: int) -> list[tuple[int, int]]:
-    """Return which worlds each thread steps, first and end.
+    """Return the first and end world of each thread.
 
-    The first thread begins at once, the others when they have woken up: it has more worlds.
+    The first thread starts at once and the others after waking up, so it gets more worlds.
 
     Args:
         worlds: how many, one or more.
@@ -36,7 +36,7 @@ def parts_of(worlds: int, threads: int, people: int) -> list[tuple[int, int]]:
 
 
 class Batches:
-    """Worlds shared out among threads, in order; with one thread there is no other.
+    """Batches of worlds, one for each thread; a single thread needs no others.
 
     Args:
         worlds, keys: as of `Batch`.
@@ -55,7 +55,7 @@ class Batches:
         self._threads = StepThreads(len(self._batches) - 1)
 
     def thread_of(self, w: int) -> int:
-        """Return the number of the thread of a world."""
+        """Return the index of the thread that steps a world."""
         return int(self._thread_of[w])
 
     def put(self, w: int, world: BatchWorld, key: int) -> None:
@@ -64,7 +64,7 @@ class Batches:
         self._batches[number].put(w - self._parts[number][0], world, key)
 
     def world(self, w: int) -> BatchWorld:
-        """Return a world as it is now."""
+        """Return a world in its present state."""
         number = self.thread_of(w)
         return self._batches[number].worlds[w - self._parts[number][0]]
 
@@ -94,7 +94,7 @@ class Batches:
         self._into(out, lambda batch, rows: batch.people(rows))
 
     def show_people(self, out: Array) -> None:
-        """Write all people (W, M, 5) to ``out`` now and after each step, see `Batch.seen`."""
+        """Write all people (W, M, 5) to ``out`` now and after each later step, see `Batch.seen`."""
         for batch, (first, end) in zip(self._batches, self._parts, strict=True):
             batch.seen = out[first:end]
         self.people(out)
@@ -119,7 +119,7 @@ class Batches:
 
     @property
     def ticks(self) -> Indices:
-        """Return what `now` returns, shared memory."""
+        """Return (W,) ticks of 1/128 s since each world began, shared memory."""
         return self._shared.table[:, NOW]
 
     @property

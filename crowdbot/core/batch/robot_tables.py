@@ -1,4 +1,4 @@
-"""Arrays for compiled code: a robot with kinematic control, by address."""
+"""The arrays of a robot with kinematic control by address, for compiled code."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class DriveLimitsRecord:
 
 
 class DriveStateRecord:
-    """A robot's motion, besides its row in the crowd's table.
+    """A robot's state of motion beyond pose and velocity, which are in the crowd's table.
 
     Attributes:
         v, w, vy: the command after slew limits, m/s and rad/s.

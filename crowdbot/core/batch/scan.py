@@ -1,7 +1,7 @@
-"""Readings of a lidar in one world, compiled: the rays of `crowdbot.core.sensing`.
+"""Lidar readings in one world, compiled; rays are those of `crowdbot.core.sensing`.
 
 Ranges, incidence limits, digits and dropouts are those of `RangeModel`. Noise has the same
-distributions, but its numbers come from a counter of their own.
+distributions, but random numbers of its own counter.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SLACK = 1e-9  # as of `crowdbot.core.support.ticks`
 
 @kernel
 def is_due(tick: int, rate: float) -> bool:
-    """Return True if a sample of a rate falls on a tick, as `crowdbot.core.support.ticks`."""
+    """Return True if a sensor with this rate is read at a tick."""
     if tick == 0:
         return True
     now = math.floor(tick * rate / TICKS_PER_SECOND + _SLACK)

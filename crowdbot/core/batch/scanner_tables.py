@@ -1,4 +1,4 @@
-"""Arrays for compiled code: a lidar, by address."""
+"""The arrays of a lidar by address, for compiled code."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ O_ROBOT, O_DISC, O_PLATE, O_PLATES = range(4)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenSensor:
-    """A sensor of a robot: its name, the robot's index, what describes it, what a run reads."""
+    """A robot's sensor: name, the robot's index, description, and the run's sensor object."""
 
     name: str
     robot: int
@@ -72,7 +72,7 @@ class SeenSensor:
 
 
 class ScannerRecord:
-    """A scanner.
+    """Parameters of one lidar.
 
     Attributes:
         x, y, z, yaw: its place on the base, z over the floor, m and rad.
@@ -197,7 +197,7 @@ def _put_others(own: ArrayTable, scene: Scene, robot: int, robots: int) -> None:
 
 
 def others_of(models: Sequence[RobotModel], robot: int) -> list[OtherRobot]:
-    """Return the robots that one robot sees, in order."""
+    """Return the indices of the robots that one robot's lidar can hit, in order."""
     return [
         OtherRobot(footprint_of_model(model), model.height)
         for number, model in enumerate(models)

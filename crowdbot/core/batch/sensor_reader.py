@@ -1,8 +1,8 @@
-"""Sensors of distances that are read outside of compiled loops, by the code of a run itself.
+"""Range sensors that are read outside compiled loops, by the code of a run.
 
-Level lidars with built-in noise are cast in compiled code for all worlds (`scanner_tables`). Any
-other sensor of distances, such as a sonar, a depth camera, or a lidar that is tilted or errs, is
-the object that a run reads, which looks at the scene of its world.
+Level lidars with built-in noise are cast in compiled code for all worlds (`scanner_tables`). Every
+other range sensor, such as a sonar, a depth camera, or a tilted or faulty lidar, is read through
+the sensor object of a run in the scene of its world.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from crowdbot.core.types.robot import RobotModel, RobotState
 
 
 class SensorReader:
-    """A sensor of one robot in one world.
+    """A range sensor of one robot in one world, read by Python code.
 
     Its random numbers are those of a run whose seed is the key of the world's noise.
 
@@ -55,7 +55,7 @@ class SensorReader:
         )
 
     def is_steady(self, period: int) -> bool:
-        """Return True if in each step of some ticks a reading is due at its end, or none is."""
+        """Return True if in steps of this length readings are due only at the end of a step."""
         ratio = self._info.rate * period / TICKS_PER_SECOND
         return ratio.is_integer() or (1.0 / ratio).is_integer()
 

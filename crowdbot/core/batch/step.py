@@ -95,7 +95,7 @@ def _within(value: float, low: float, high: float) -> float:
 def step_robots(
     w: int, worlds: Indices, crowds: Indices, robots: Indices, scanners: Indices, drives: Array
 ) -> None:
-    """As `step_worlds` for one tick of a world whose people have been advanced already."""
+    """Advance the robots of one world by a tick, after its people have been advanced."""
     _advance_robots(worlds[w], crowds[w], robots[w], drives[w])
     worlds[w, NOW] += 1
     _read(worlds[w], crowds[w], scanners)
@@ -103,14 +103,14 @@ def step_robots(
 
 @free_kernel
 def read_scanners(which: Indices, worlds: Indices, crowds: Indices, scanners: Indices) -> None:
-    """Read the scanners of some worlds at their present tick, where they are due."""
+    """Read the lidars of some worlds that are due at the present tick."""
     for k in range(which.shape[0]):
         _read(worlds[which[k]], crowds[which[k]], scanners)
 
 
 @free_kernel
 def meet_people(w: int, worlds: Indices, crowds: Indices, drives: Array) -> None:
-    """Note what room people have around the robots of a world, at the end of a step."""
+    """Store how much space people have around a world's robots, at the end of a step."""
     crowd, count = crowds[w], worlds[w, PEOPLE]
     rows, outlines = as_rows(floats2(crowd, c.ROBOTS), ROBOT), floats3(crowd, c.OUTLINES)
     people = as_rows(

@@ -1,4 +1,4 @@
-"""Changes of robots in a step, for rewards; compiled."""
+"""Changes of robots during a step, from which rewards are computed; compiled."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ROWS = 9
 
 
 def changes(count: int) -> tuple[Array, Mask]:
-    """Return room for `write_changes`: (9, W) numbers and (3, W) arrived, touched, late."""
+    """Return arrays for `write_changes`: (9, W) numbers and (3, W) flags arrived, touched, late."""
     return np.empty((_ROWS, count)), np.empty((3, count), np.bool_)
 
 

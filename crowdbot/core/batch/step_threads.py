@@ -1,4 +1,4 @@
-"""Threads that do equal parts of short work beside the one that asks for it."""
+"""Threads that split short work with the thread that asks for it."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _Order = tuple[int, Callable[[int], None], "SimpleQueue[BaseException | None]"] 
 
 
 class StepThreads:
-    """Threads that wait for work of less than a millisecond.
+    """Threads for work of less than a millisecond.
 
-    A pool of `concurrent.futures` costs a tenth of a millisecond for each share; here the thread
-    that asks does a part itself, and the others wake by one queue each.
+    A pool of `concurrent.futures` costs 0.1 ms for each part; here the calling thread does one part
+    itself, and each other thread is woken through a queue.
 
     Args:
         helpers: number of threads beside the one that asks.
@@ -30,7 +30,7 @@ class StepThreads:
         self._finalizer = weakref.finalize(self, _end, self._orders)
 
     def share(self, part: Callable[[int], None]) -> None:
-        """Call ``part`` with 0 here and with 1, 2, ... in the other threads, until all are done.
+        """Call ``part(0)`` here and ``part(1)``, ``part(2)``, ... in the other threads, and wait.
 
         Raises:
             BaseException: the first that a part raised, after all have ended.

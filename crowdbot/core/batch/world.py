@@ -88,11 +88,11 @@ class BatchWorld:
 
     @property
     def people(self) -> int:
-        """Return how many people there are, present or to come."""
+        """Return the number of people, present or to come."""
         return 0 if self.engine is None else len(self.engine.agents)
 
     def place(self, tasks: Sequence[Task]) -> None:
-        """Give the robots other starts and goals, from the next `reset` on.
+        """Set other starts and goals of the robots, used from the next `reset` on.
 
         Raises:
             InputError: a robot would start in a wall, a person or another robot, or end in a wall.
@@ -110,7 +110,7 @@ class BatchWorld:
 
     @property
     def reads(self) -> bool:
-        """Return True if it has sensors outside of compiled code."""
+        """Return True if some sensors are read outside compiled code."""
         return bool(self._readers)
 
     def reset(self) -> None:
@@ -137,11 +137,11 @@ class BatchWorld:
                 reader.read(rows, self.robots, tick)
 
     def rows(self) -> Array:
-        """Return the state of all people (N, C), see `crowdbot.core.crowd.state`; shared memory."""
+        """Return the state of all people (N, C), see `PersonRecord`; shared memory."""
         return s.view(self.flat)[1]
 
     def advance_people(self) -> None:
-        """Advance people by a tick with `CrowdEngine`, who do not decide in compiled code alone."""
+        """Advance people by a tick with `CrowdEngine`, if compiled code alone cannot."""
         if self.engine is not None:
             self.engine.advance(
                 self.flat, self.robots, self.outlines, numbers=np.arange(len(self.robots)),

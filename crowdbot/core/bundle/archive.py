@@ -152,7 +152,7 @@ class Archive:
 
 
 def open_zip(path: Path, what: str) -> zipfile.ZipFile:
-    """Open a zip file; errors call it ``what``.
+    """Open a zip file; error messages name it ``what``.
 
     Raises:
         InputError: missing file, or not a zip file.

@@ -40,7 +40,7 @@ def lock_of(expansion: Expansion) -> Path | None:
 
 
 def late(bundle: Path, closes: str) -> str:
-    """Return why a bundle was not in time, by the time of its file; empty if it was.
+    """Return why a bundle is late, by the time stamp of its file; empty if it is in time.
 
     Args:
         bundle: the archive.
@@ -54,7 +54,7 @@ def late(bundle: Path, closes: str) -> str:
 
 
 def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
-    """Yield false statements of a manifest about its edition."""
+    """Yield claims of a manifest about its edition that are false."""
     edition, name = manifest.edition, expansion.suite_id
     lock = lock_of(expansion)
     wanted = {

@@ -45,7 +45,7 @@ def recording_problems(archive: Archive, runs: Sequence[ClaimedRun]) -> Iterator
 
 
 def reference_members(run: ClaimedRun) -> dict[str, str]:
-    """Return the names of the members that record a run's calibration runs."""
+    """Return the names of the members that hold the recordings of a run's calibration runs."""
     listed = run.record.references
     return {k: posixpath.normpath(f"{run.entry.directory}/{p}") for k, p in listed.items()}
 

@@ -52,12 +52,12 @@ class LeaderboardEntry:
 
     @property
     def ranked(self) -> bool:
-        """Return True if nothing speaks against a rank."""
+        """Return True if the entry may have a rank."""
         return not self.unranked
 
     @property
     def unranked(self) -> str:
-        """Return why it has no rank: incomplete, refused, or handed in otherwise than asked."""
+        """Return why it has no rank: incomplete, refused, or not in the required form."""
         outcome = (self.verification or {}).get("outcome")
         if outcome in REFUSED:
             return f"the organisers found it {outcome}"
@@ -68,7 +68,7 @@ class LeaderboardEntry:
         return ""
 
     def in_round(self, held: Round | None) -> LeaderboardEntry:
-        """Return the entry with the dates and form of the organisers' round, not of the bundle."""
+        """Return the entry judged by the organisers' dates and form, not by those in the bundle."""
         told = {
             "closes": (held and held.closes) or "",
             "handed_in": held.planners if held else "any",
@@ -78,12 +78,12 @@ class LeaderboardEntry:
 
     @property
     def late(self) -> str:
-        """Return why the archive was not in time, by the time of its file; empty if it was."""
+        """Return why the archive is late, by the time stamp of its file; empty if it is in time."""
         return late(self.path, self.manifest.edition.closes)
 
     @property
     def is_verified(self) -> bool:
-        """Return True if an organiser has made runs of it again and accepted it."""
+        """Return True if an organiser has repeated some of its runs and accepted it."""
         record = self.verification
         return bool(record and record.get("ok") is True and record.get("runs"))
 

@@ -1,4 +1,4 @@
-"""Compare claimed scores with those on new people: a planner may have learnt published draws."""
+"""Compare claimed scores with those on new people, to find planners fitted to published draws."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class FreshScore:
 
     @property
     def is_worse(self) -> bool:
-        """Return True if chance does not explain the difference."""
+        """Return True if the new score is significantly worse."""
         return self.p < _LEVEL / len(MAIN_SCORES)
 
     def __str__(self) -> str:
@@ -46,7 +46,7 @@ class FreshScore:
 
 
 def with_fresh(verdict: RerunVerdict, fresh: Sequence[Rerun]) -> RerunVerdict:
-    """Return the verdict with the comparison; a fine one is withheld if scores are worse.
+    """Return the verdict with this comparison; a bundle whose scores are worse does not pass.
 
     Args:
         verdict: that on the bundle's own runs.

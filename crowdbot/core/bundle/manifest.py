@@ -85,7 +85,7 @@ class Edition(_Model):
 
 
 class BundledRun(_Model):
-    """One run: the location of its files, and the hashes that identify it."""
+    """One run: the names of its files in the archive, and the hashes that identify it."""
 
     scenario: str
     seed: int

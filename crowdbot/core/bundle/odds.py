@@ -1,4 +1,4 @@
-"""The odds of finding edited runs of a bundle by making some of its runs again."""
+"""The probability of detecting edited runs of a bundle by repeating a sample of its runs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _SHARES = (0.02, 0.1)
 
 
 def odds_of_finding(runs: int, again: int) -> dict[int, float]:
-    """Return number of edited runs -> probability that at least one of them is made again.
+    """Return number of edited runs -> probability that at least one of them is repeated.
 
     Args:
         runs: runs of the bundle.

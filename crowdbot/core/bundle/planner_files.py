@@ -1,4 +1,4 @@
-"""Files that the planner of a bundle reads, unpacked for as long as its runs are repeated."""
+"""Files that a bundled planner reads, unpacked while its runs are repeated."""
 
 from __future__ import annotations
 

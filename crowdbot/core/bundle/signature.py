@@ -61,7 +61,7 @@ def signer_of(document: Mapping[str, Any]) -> str:
 
 
 def signature_problem(document: Mapping[str, Any], trusted: Collection[str]) -> str:
-    """Return why a document is not believed; empty if a trusted key signed exactly this content.
+    """Return why a signature is invalid; empty if a trusted key signed exactly this content.
 
     Args:
         document: from `sign`.

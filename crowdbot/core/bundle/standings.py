@@ -54,7 +54,7 @@ class Standings:
 
     @property
     def too_small(self) -> str:
-        """Return why no rank can differ: too few crowds; empty if they are enough, or no ranks."""
+        """Return why there are too few crowds to separate ranks; empty if there are enough."""
         size = sample_size(self.summary)
         return size.text if size and self.ranks(self.by) else ""
 
@@ -121,10 +121,10 @@ def standings(
 def set_apart(
     entries: Sequence[LeaderboardEntry], accept: Iterable[str]
 ) -> tuple[list[LeaderboardEntry], dict[str, str]]:
-    """Return comparable entries, and reasons against the others, by file name.
+    """Split entries into comparable ones and the others, with reasons, by file name.
 
-    Verified entries stay before others, and of equals those that are comparable with the most
-    others of their edition and class; ties go to the first.
+    Verified entries take precedence, then those comparable with most others of their edition and
+    class; ties go to the first.
 
     Raises:
         UnknownNameError: there is no such confound.

@@ -49,7 +49,7 @@ def save_verification(bundle: Path, record: Mapping[str, Any]) -> None:
 
 
 def read_verification(bundle: Path, trusted: Collection[str]) -> tuple[dict[str, Any] | None, str]:
-    """Return the record of this bundle, and why there is none that is believed.
+    """Return the record of this bundle, and why it is not trusted.
 
     Both are empty if no record lies beside the bundle, or it is of another bundle.
 

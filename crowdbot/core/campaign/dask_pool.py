@@ -76,7 +76,7 @@ def _await_listener(address: str) -> None:
 
 
 class DaskWorkerPool:
-    """The workers of one scheduler.
+    """The worker processes of one Dask scheduler.
 
     Args:
         address: ``tcp://HOST:PORT`` of the scheduler.
@@ -118,7 +118,7 @@ class DaskWorkerPool:
         return max(0, 2 * max(1, self._threads()) - len(self._futures))
 
     def submit(self, job: Job) -> None:
-        """Submit a job; another one with the same key would be a separate task."""
+        """Submit a job as a task with a key of its own, since Dask merges tasks of equal keys."""
         key = f"crowdbot-{job.key}-{uuid.uuid4().hex[:8]}"
         future = self._client.submit(execute_job, job, self._versions, key=key, pure=False)
         self._futures[job.key] = (job, future)

@@ -32,13 +32,13 @@ class CostEstimate:
     _size: list[float] = field(default_factory=lambda: [0.0, 0.0])
 
     def learn(self, label: str, cost: float, took: float) -> None:
-        """Learn from a job that took ``took`` seconds with an expected ``cost``."""
+        """Update the estimate with a job that took ``took`` s where ``cost`` s were expected."""
         for name in (label, ""):
             self._time[name][0] += took
             self._time[name][1] += cost
 
     def learn_run(self, run: Path, record: RunRecord, people: int, limit: float) -> None:
-        """Learn from a complete run."""
+        """Update the estimate with a completed run."""
         took = record.wall_time + _START
         self.learn(record.planner.label, expected_seconds("run", people, limit), took)
         try:

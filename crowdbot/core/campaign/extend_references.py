@@ -1,4 +1,4 @@
-"""Extends reference scores by further runs, without making again those that are there."""
+"""Add runs to reference scores without repeating the existing ones."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _NAMES = ("name", "label")  # what a record adds to what defines a planner
 
 
 def known_jobs(plan: Plan, known: Iterable[RunRow]) -> list[Job]:
-    """Return the missing runs that references have: of the same scenario, planner and seed.
+    """Return the missing runs that the references hold: same scenario, planner and seed.
 
-    A planner whose parameters have changed since is another one.
+    A planner whose parameters have changed since counts as another one.
     """
     there = {(r.suite, r.scenario, r.spec_hash, r.seed, _planner_digest(r)) for r in known}
     return [
@@ -34,9 +34,9 @@ def _planner_digest(run: RunRow) -> str:
 
 
 def without_known(plan: Plan, known: Iterable[RunRow]) -> Plan:
-    """Return a plan without the runs that references have.
+    """Return a plan without the runs that the references hold.
 
-    Calibration runs that no other run needs go, too.
+    Calibration runs that no other run needs are removed, too.
     """
     held = {job.key for job in known_jobs(plan, known)}
     runs = [job for job in plan.jobs if job.kind == "run" and job.key not in held]
@@ -48,7 +48,7 @@ def without_known(plan: Plan, known: Iterable[RunRow]) -> Plan:
 
 
 def extended(old: Results, new: Results) -> Results:
-    """Return both; a new run takes the place of an old one of its scenario, planner and seed."""
+    """Return both sets of runs; a new run replaces an old one of its scenario, planner and seed."""
     places = {run.directory for run in new.runs}
     kept = [run for run in old.runs if run.directory not in places]
     ids = {run.run_id for run in kept}

@@ -13,7 +13,7 @@ Kind = Literal["crowd_alone", "robot_alone", "run"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SuiteSource:
-    """The location of a suite, for a worker to open.
+    """Location of a suite, for a worker to open: name or file, and overrides.
 
     Attributes:
         spec: absolute path, or the name of a packaged suite.

@@ -63,7 +63,7 @@ class Judge:
 
 @dataclass(kw_only=True)
 class Judgement:
-    """The result of a call of `judge`.
+    """The outcome of `judge`.
 
     Attributes:
         received, judged: new ones of this time, by name of the file.

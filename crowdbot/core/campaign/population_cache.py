@@ -12,7 +12,7 @@ from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def cached_population() -> Callable[[Scenario, Registry], Population]:
-    """Return a `population` that samples or reads each table once, but checks every scenario."""
+    """Return a cached `population`: each table is drawn or read once, every scenario is checked."""
     known: dict[tuple[str, str], Population] = {}
 
     def populate(scenario: Scenario, registry: Registry) -> Population:

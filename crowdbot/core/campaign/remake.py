@@ -1,4 +1,4 @@
-"""Make runs of reference scores again, and compare their trajectories bit by bit."""
+"""Repeat runs of the reference scores, and compare their trajectories bit by bit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _METRICS = ("success",)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RemakeSetup:
-    """Components, and what is called while runs are made, as in `Request`."""
+    """Registry and callbacks for repeating runs, as in `Request`."""
 
     registry: Registry
     progress: Callable[[Progress], None] | None = None
@@ -38,7 +38,7 @@ class RemakeSetup:
 
 
 def sample_of(runs: Sequence[RunRow], size: int | None, seed: int) -> list[RunRow]:
-    """Return some of the runs, chosen by a seed; all if ``size`` is None."""
+    """Return a random sample of the runs by a seed; all if ``size`` is None."""
     if size is None or size >= len(runs):
         return list(runs)
     rng = random.Random(stream_seed(seed, "references", "verify.sample"))
@@ -46,7 +46,7 @@ def sample_of(runs: Sequence[RunRow], size: int | None, seed: int) -> list[RunRo
 
 
 def remake(setup: RemakeSetup, run: RunRow) -> Remade:
-    """Make a run again; return how it relates to the reference.
+    """Repeat a run; return how its trajectory relates to the reference.
 
     Raises:
         CrowdbotError: it cannot be simulated.

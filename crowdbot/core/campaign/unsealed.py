@@ -1,4 +1,4 @@
-"""A sealed planner, unpacked for as long as its runs are repeated."""
+"""Unpack a sealed planner while its runs are repeated."""
 
 from __future__ import annotations
 

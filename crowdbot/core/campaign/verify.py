@@ -39,7 +39,7 @@ _NAMES = ("kind", "name", "label")
 
 
 class NotRunnable(InputError):  # noqa: N818 - an outcome of verification
-    """The planner of a bundle is missing or different here."""
+    """The planner of a bundle is not installed, or differs from the one in the bundle."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,8 +141,8 @@ def foreign_owners(manifest: Manifest, registry: Registry) -> dict[str, str]:
 def make_reruns(setup: RerunSetup, chosen: Sequence[ClaimedRun]) -> list[Rerun]:
     """Simulate and score some runs of a bundle.
 
-    A run whose trajectory differs is made once more, to check if the planner is deterministic; of
-    runs that claim another processor or software only the first one.
+    A run whose trajectory differs is repeated once more, to detect nondeterministic planners; where
+    the claimed processor or software differs, only the first such run.
 
     Raises:
         CrowdbotError: one cannot be simulated.

@@ -27,7 +27,7 @@ _PR_SET_PDEATHSIG = 1
 
 
 class Beat(NamedTuple):
-    """The process is alive; ``progress`` of the job, None before it starts.
+    """Message: the process is alive; ``progress`` of the job, None before it starts.
 
     ``patient``: True while the planner may load a model, or scores are computed.
     """
@@ -37,7 +37,7 @@ class Beat(NamedTuple):
 
 
 class Hung(NamedTuple):
-    """The planner catches every interruption; the process ends now."""
+    """Message: the planner ignores every interruption, so the process ends now."""
 
 
 def main(handle: int, parent: int) -> None:

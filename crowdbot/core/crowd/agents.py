@@ -23,7 +23,7 @@ _ABREAST = 0.75
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Agents:
-    """Agents, as they stay for the whole run; SI units.
+    """Constant data of all agents of a run; SI units.
 
     Attributes:
         id, x, y, preferred_speed, radius, max_speed, max_acceleration, mass: (N,).
@@ -125,8 +125,9 @@ class Agents:
         looks: Appearance | None = None,
         avoided_radius: ArrayLike | None = None,
     ) -> Agents:
-        """Build agents from rows or single numbers; with routes they stop at the end, else portals.
+        """Build agents from arrays (N,) or single numbers.
 
+        With routes people stop at the last point, else they re-enter through portals.
         ``goal_areas`` and ``pauses`` are, per agent, empty or have an entry per point of its route;
         ``origins`` are empty or five numbers.
 
@@ -174,7 +175,7 @@ class Agents:
         return made
 
     def check(self) -> None:
-        """Refuse data that would make a simulation meaningless.
+        """Raise an error for values that make no valid simulation.
 
         Raises:
             ValueError: ids repeat, a number is not finite or a size is not positive.
@@ -215,9 +216,9 @@ class Agents:
 
     @property
     def guide(self) -> NDArray[np.int64]:
-        """Return (N,) the id of the first member of each agent's group.
+        """Return (N,) the id of the first member of each agent's group, or its own id if alone.
 
-        All members use its draws; alone, it is the own id.
+        All members of a group use the random draws of this agent.
         """
         guide = self.id.copy()
         for number in np.unique(self.group[self.group >= 0]):

@@ -44,7 +44,7 @@ def build_policy(
     costs: Sequence[CompiledCost | NumpyCost],
     agents: Agents,
 ) -> CheckedPolicy:
-    """Build the policy of a spec, for some agents; each of its results is checked.
+    """Build the policy of a spec for some agents; all its later results are checked.
 
     Args:
         costs: what it minimises, built.

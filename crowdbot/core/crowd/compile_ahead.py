@@ -1,8 +1,8 @@
-"""Compile the crowd's slowest functions in a second process, in parallel to a first run.
+"""Compile the crowd's slowest functions in a second process while a first run prepares.
 
-A run calls them late: first it prepares robot, planner and cost functions. They are compiled by
-calling them for one person at most, the dearest first, so that two processes seldom want the same
-one.
+A run needs them late: first it builds robot, planner and cost functions. They are compiled by
+calling them with at most one person, the slowest first, so that two processes rarely compile the
+same one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from crowdbot.core.types.arrays import Array
 
 
 def crowd_compiled_ahead() -> AbstractContextManager[None]:
-    """Compile in a second process during the context, if nothing is compiled yet."""
+    """Compile in a second process while the context is open, if nothing is compiled yet."""
     return compiled_ahead(__name__)
 
 
@@ -39,9 +39,9 @@ class _Chooses:
 
 
 def compile_ahead() -> None:
-    """Compute ticks of a crowd without robots, then a decision, then with a robot.
+    """Call ticks without robots, a decision, and a tick with a robot, so that they are compiled.
 
-    Types alone matter: those of a run are the same.
+    Only the types matter, which are those of a run.
     """
     nobody = CrowdEngine(Agents.of(x=[], y=[]), CrowdWorld(), _Chooses)
     state = nobody.initial_state()

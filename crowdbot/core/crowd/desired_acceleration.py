@@ -1,4 +1,4 @@
-"""Desired accelerations of people: a policy's answer, checked."""
+"""Desired accelerations of people: the output of a policy, checked."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class CheckedPolicy:
 
 
 def desired_acceleration(policy: CrowdPolicy, view: CrowdView) -> Array:
-    """Return accelerations (N, 2) of agents that decide, m/s^2; other rows are meaningless.
+    """Return accelerations (N, 2) of agents that decide, m/s^2; other rows are not defined.
 
     Raises:
         PluginError: the policy raised, its result has a wrong shape, or is not finite for an agent
@@ -80,7 +80,7 @@ def candidates_of(policy: CrowdPolicy) -> VelocityCandidates | None:
 
 
 def relaxation_time_of(policy: CrowdPolicy) -> float:
-    """Time in which a policy approaches the velocity that it chooses, s; 0 where it says nothing.
+    """Return the time in which a policy reaches its chosen velocity, s; 0 if it declares none.
 
     Raises:
         PluginError: its ``relaxation_time`` raised, or is not a time.

@@ -45,7 +45,7 @@ _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # columns of its motion
 
 @dataclass(frozen=True, slots=True)
 class DecisionGroup:
-    """Agents with the same policy and the same view.
+    """Agents with the same policy, who decide together.
 
     Attributes:
         foreign: True for a third-party policy; crowdbot's own never write to their inputs.
@@ -58,7 +58,7 @@ class DecisionGroup:
 
 
 class CrowdEngine:
-    """Advances a flat state vector in place; has no state of its own.
+    """Advances the flat state vector of a crowd in place; keeps no state of its own.
 
     Args:
         agents: all, present or to come.
@@ -125,7 +125,7 @@ class CrowdEngine:
         self._usual: dict[int, tuple[Indices, Array]] = {}
 
     def initial_state(self, robots: int = 1) -> Array:
-        """Return the state at t = 0, with room for the contacts of some robots.
+        """Return the state at t = 0, with space for contacts with a number of robots.
 
         Agents that start at once walk to their first goal at preferred speed; others wait.
         """
@@ -162,10 +162,10 @@ class CrowdEngine:
 
     @property
     def decides_by_policies_alone(self) -> bool:
-        """True if decisions are those of policies, and evasion of robots; nothing else has a part.
+        """Return True if decisions depend on policies and evasion of robots only.
 
-        Ways around walls, steering parts, forces of groups, images across a border and people who
-        are led are others.
+        False with routing around walls, steering parts, group forces, periodic boundaries, or
+        people who follow a robot.
         """
         grouped = self._cohesion is not None and len(self._members) > 0
         border = self.world.periodic_boundary is not None
@@ -301,9 +301,9 @@ class CrowdEngine:
         present: NDArray[np.bool_],
         robots: Array = NOBODY,
     ) -> Array:
-        """Return what people want in a situation of one's own, as accelerations (N, 2), m/s^2.
+        """Return desired accelerations (N, 2) in a given situation, m/s^2.
 
-        They face where they walk to, and have noticed robots that are within sight.
+        People face their walking direction, and have noticed all robots within sight.
 
         Args:
             position, velocity, goal: (N, 2), m and m/s.

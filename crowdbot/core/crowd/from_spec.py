@@ -1,4 +1,4 @@
-"""Build a crowd's policy from its fields, as in a scenario, but without one."""
+"""Build a crowd's policy from the fields of a scenario, without a whole scenario."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from crowdbot.core.support.records import record_type
 
 
 class PlaceRecord:
-    """A point of a route, or where people come in.
+    """A point or area of a route, or an entrance.
 
     Attributes:
         x, y: middle, m.
@@ -50,7 +50,7 @@ def point_in_area(
 def into_area(
     px: float, py: float, x: float, y: float, area: PlaceRecord, margin: float
 ) -> tuple[float, float]:
-    """Return the point of a shrunk area that is nearest to p in the area's own frame."""
+    """Return the nearest point to p in a shrunk area, in the area's own frame, m."""
     c, s = math.cos(area.turn), math.sin(area.turn)
     a, b = c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
     ha, hb = max(0.0, 0.5 * area.width - margin), max(0.0, 0.5 * area.height - margin)

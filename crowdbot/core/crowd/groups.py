@@ -54,7 +54,7 @@ class Cohesion:
 
     @property
     def forces(self) -> Rows[GroupForcesRecord]:
-        """(1,) the numbers as `hold_together` takes them."""
+        """Return the parameters (1,) for `hold_together`."""
         numbers = record_values(
             _FORCES,
             gaze=self.gaze,

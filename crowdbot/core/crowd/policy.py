@@ -1,4 +1,4 @@
-"""Crowd policies: what they see and return."""
+"""Interface of crowd policies: input and output."""
 
 from __future__ import annotations
 

@@ -64,8 +64,8 @@ def draw_goal(
 ) -> None:
     """Set agent i's goal for the current trip: a point of the out-portal, one radius inside.
 
-    With `RulesRecord.goal_ahead` it lies in the out-portal as (x, y), where the trip starts, lies
-    in the in-portal, beyond whose sides it counts as on them; or else it is drawn.
+    With `RulesRecord.goal_ahead` it lies in the out-portal as the start (x, y) lies in the
+    in-portal, clamped to its sides; otherwise it is drawn.
     """
     traits = people.traits[i]
     flow, radius = int(traits.flow), traits.radius
@@ -108,7 +108,7 @@ def is_free(
     x: float,
     y: float,
 ) -> bool:
-    """Return True if agent i could stand at a point: on no other, and clear of robots."""
+    """Return True if agent i would overlap no other agent and no robot at a point."""
     for r in range(robots.shape[0]):
         if (robots[r].x - x) ** 2 + (robots[r].y - y) ** 2 < CLEAR_OF_ROBOT**2:
             return False
@@ -197,7 +197,7 @@ def try_to_re_enter(
 def place_of_entry(
     agents: People, i: int, people: AgentParameters, key: np.uint64
 ) -> tuple[float, float]:
-    """A point of the area in which agent i comes in, drawn again in each attempt."""
+    """Return a point of the area in which agent i enters, drawn again in each attempt."""
     trip, attempt = int(agents[i].trip), int(agents[i].attempt)
     traits, origin = people.traits[i], people.origin[i]
     u = counter_rng.uniform(key, int(traits.id), trip, counter_rng.ENTRY, 2 * attempt)
@@ -233,9 +233,9 @@ def try_to_start(
     robots: Rows[RobotRecord],
     discs: Array, now: float,
 ) -> None:  # fmt: skip
-    """Put agent i into the world where it starts, if there is room.
+    """Put agent i into the world at its start, if it is free.
 
-    One that has an origin tries another point of it next time.
+    An agent with an entrance area tries another point of it next time.
     """
     x, y = agents[i].x, agents[i].y
     choice = people.traits[i].chooses_origin != 0.0

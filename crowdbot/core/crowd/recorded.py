@@ -22,7 +22,7 @@ COLUMNS = ("t", "id", "x", "y")
 
 @dataclass(frozen=True, slots=True)
 class RecordedCrowd:
-    """Places of recorded people.
+    """Positions of recorded people over time.
 
     Attributes:
         time: id -> (K,) increasing times, s.
@@ -41,7 +41,7 @@ class RecordedCrowd:
         return np.array([np.interp(t, time, place[:, 0]), np.interp(t, time, place[:, 1])])
 
     def agents(self, **same_for_all: Any) -> Agents:
-        """Return agents that enter at the start of the record and leave at its end.
+        """Return agents that enter at the start of their record and leave at its end.
 
         Preferred speed is the mean of the recorded one.
 

@@ -1,4 +1,4 @@
-"""Routes: the goals of a trip, and behaviour when one is reached."""
+"""Routes: people's goals during a trip, and what they do when they reach one."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from crowdbot.core.support.compiling.compile import kernel
 
 @kernel
 def head_for(agents: People, i: int, people: AgentParameters, key: np.uint64) -> None:
-    """Set the goal of agent i to the next point of its route; to where it is without one.
+    """Set the goal of agent i to the next point of its route, or its position without one.
 
-    In an area every agent has its own point; members of a group go to points side by side.
+    Each agent has its own point in an area; members of a group go to points side by side.
     """
     traits = people.traits[i]
     row = int(traits.first) + int(agents[i].route_point)
@@ -117,9 +117,9 @@ def arrive(agents: People, i: int, people: AgentParameters, key: np.uint64, when
 
 @kernel
 def stays(agents: People, i: int, people: AgentParameters, now: float) -> bool:
-    """Return True if agent i, which is on no trip, has reason to stay where it is.
+    """Return True if agent i, which is on no trip, stays where it is.
 
-    In a queue, a person who is not at its head stays until the place before it is left.
+    In a queue, everyone but the head waits until the place in front is left.
     """
     traits = people.traits[i]
     row, end = int(traits.first) + int(agents[i].route_point), int(traits.end)
@@ -134,7 +134,7 @@ def stays(agents: People, i: int, people: AgentParameters, now: float) -> bool:
 
 @kernel
 def next_goal(agents: People, i: int, people: AgentParameters, key: np.uint64, when: float) -> None:
-    """After an arrival, go to the next point, or do what the agent does at the end of its route."""
+    """Set the next goal after an arrival; at the end of the route, act as the agent's rule says."""
     traits, route = people.traits[i], people.route
     first, end, at_goal = int(traits.first), int(traits.end), traits.at_goal
     if at_goal == ONWARD:

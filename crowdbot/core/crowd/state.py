@@ -189,7 +189,7 @@ def contact_with(flat: Array, robot: int = 0) -> tuple[Array, Array]:
 
 
 def felt_at(flat: Array, robot: int, entry: int) -> int:
-    """Place in the flat vector of an entry of what a robot feels."""
+    """Return the index in the flat vector of one entry of the forces on a robot."""
     start = _contacts_start(flat)
     return start + robot * ((len(flat) - start) // int(flat[ROBOTS])) + entry
 

@@ -1,4 +1,4 @@
-"""Traits of a person that stay for the whole run, for compiled code."""
+"""Constant traits of a person, for compiled code."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from crowdbot.core.support.records import record_type
 
 
 class TraitsRecord:
-    """Traits of a person; as of `crowdbot.core.crowd.agents.Agents`, where not said.
+    """Constant traits of a person; meanings as in `crowdbot.core.crowd.agents.Agents`.
 
     Attributes:
         first, end: the rows of its route.

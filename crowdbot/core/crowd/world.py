@@ -92,7 +92,7 @@ class CrowdWorld:
             raise ValueError("there is no routing across a periodic boundary")
 
     def check(self, agents: Agents) -> None:
-        """Refuse agents that do not fit this world.
+        """Raise an error for agents that do not fit this world.
 
         Raises:
             ValueError: an agent walks through portals that do not exist.

@@ -1,4 +1,4 @@
-"""The drawing of a text: walls, people, movable items, and the messages of the language."""
+"""The editor's drawing of a text: walls, people, movable items, and validation messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ten seconds of a drawing, simulated by crowdbot itself in a process of its own."""
+"""The first ten seconds of an edited scenario, simulated in a separate process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Environments as plugins return them: plain geometry, checked before anything is built of it."""
+"""Build environments from plugins; their geometry is checked before use."""
 
 from __future__ import annotations
 

@@ -32,12 +32,12 @@ class GridMap:
     resolution: float
 
     def to_pgm(self) -> bytes:
-        """The image."""
+        """Return the PGM image."""
         height, width = self.cells.shape
         return b"P5\n%d %d\n255\n" % (width, height) + self.cells.tobytes()
 
     def to_yaml(self, image: str) -> str:
-        """The file beside the image."""
+        """Return the text of ``map.yaml``."""
         x, y = (round(value, 9) for value in self.origin)  # no -1.4000000000000001
         return (
             f"image: {image}\nmode: trinary\nresolution: {self.resolution!r}\n"

@@ -1,7 +1,7 @@
-"""People and places in something solid: other simulators allow it, our language does not.
+"""Move people and places out of solids: other simulators allow overlap, crowdbot does not.
 
-People are moved to the nearest place with room for their body, where the contact of their own
-simulator would push them, too; so are goals and areas that have no room at all.
+People are moved to the nearest place with room for their body, where their own simulator's contact
+would push them, too; so are goals and areas that have no room at all.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Files that files of others name: found beside them, and nowhere else."""
+"""Files that imported files refer to: found beside them, and nowhere else."""
 
 from __future__ import annotations
 

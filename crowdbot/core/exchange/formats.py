@@ -15,7 +15,7 @@ from crowdbot.core.registry.registry import Registry
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """The surroundings of a reader: report, components and name.
+    """Input of a format's reader: report, components and name.
 
     Attributes:
         report: where each part is recorded.

@@ -1,7 +1,7 @@
-"""Parts of files of other programs: a tree whose parts know their position, and if they were used.
+"""Parts of imported files: a tree whose nodes know their position, and if they were used.
 
 Elements, attributes, keys and entries are all items. An attribute ``x`` of an element is its child
-``@x``. What nothing asked for is found at the end, so that nothing is dropped silently.
+``@x``. Items that no reader used are found at the end, so that nothing is dropped silently.
 """
 
 from __future__ import annotations

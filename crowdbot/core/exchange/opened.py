@@ -1,4 +1,4 @@
-"""Files that are to be imported, opened by the look of their content."""
+"""Files to import, opened and parsed by their content."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class OpenedScene:
 
     @property
     def top(self) -> Mark:
-        """Its beginning."""
+        """Return the beginning of its text."""
         return Mark(self.source)
 
     @property
@@ -51,7 +51,7 @@ class OpenedScene:
 
 
 def open_file_of_others(path: Path, report: Report) -> OpenedScene:
-    """Open a file and parse it; record what its format does not allow, and is accepted.
+    """Open and parse a file; record violations of its format that are accepted.
 
     Raises:
         SpecError: E401, it cannot be read or parsed.

@@ -1,7 +1,7 @@
-"""People who overlap at the start: other simulators allow it, our language does not.
+"""People who overlap at the start: other simulators allow it, crowdbot does not.
 
-They keep their places, which the simulated contact pushes apart as it does elsewhere, and enter a
-few milliseconds one after the other, within the first tick.
+They keep their positions and enter a few milliseconds apart, within the first tick; the simulated
+contact then pushes them apart.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Polygons and lines of others as blocks and walls of a floor."""
+"""Imported polygons and lines as blocks and walls of a floor."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def add_wall(
 
 
 def without_repeats(corners: Sequence[Corner]) -> list[Corner]:
-    """Return corners without those that equal the one before, round the outline."""
+    """Return corners without consecutive duplicates, around the closed outline."""
     found: list[Corner] = []
     for corner in corners:
         if not found or math.dist(corner, found[-1]) > 1e-9:

@@ -1,4 +1,4 @@
-"""The report of an import or export: each part that was read, its fate and its place."""
+"""The report of an import or export: each part that was read, its outcome and its place."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNKNOWN = "no meaning of it is known here"
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """The treatment of one part of a file.
+    """The outcome for one part of a file: carried over, interpreted, left out or added.
 
     Attributes:
         fate: what happened to it.
@@ -82,11 +82,11 @@ class Report:
         self.entries.append(Trace(Fate.ADDED, "", at, ours, note))
 
     def odd(self, mark: Mark, note: str) -> None:
-        """Record something that the file's format does not allow, and that was accepted."""
+        """Record a violation of the file's format that was accepted."""
         self.entries.append(Trace(Fate.INTERPRETED, "(syntax)", mark, "", note))
 
     def take(self, item: Item, table: RowTable) -> dict[str, Any]:
-        """Return our fields of an item's parts, as its table says, and record each.
+        """Return crowdbot's fields for an item's parts, by its table; each is recorded.
 
         Raises:
             SpecError: a part has a value that its row does not accept.
@@ -104,13 +104,13 @@ class Report:
         return found
 
     def others(self, item: Item, note: str, *names: str) -> None:
-        """Record the parts of an item that no reader asked for: all, or those of some names."""
+        """Record parts of an item that no reader used: all, or those of some names."""
         for part in item.children:
             if not part.used and (not names or part.name in names):
                 self.left_out(part, note)
 
     def rest(self, root: Item) -> None:
-        """Record what nothing asked for: at its outermost part."""
+        """Record all items that no reader used, each at its outermost part."""
         stack = [root]
         while stack:
             item = stack.pop()

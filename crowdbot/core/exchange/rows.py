@@ -1,4 +1,4 @@
-"""Tables of element -> our field, which readers follow and from which the documents are made."""
+"""Tables from elements of other formats to crowdbot's fields, for readers and documentation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.core.exchange.item import Item
 
 
 class Fate(StrEnum):
-    """The fate of one part of a file."""
+    """The outcome for one part of a file: carried over, interpreted, left out or added."""
 
     CARRIED = "carried over"
     INTERPRETED = "interpreted"
@@ -59,14 +59,14 @@ class Row:
 
     @property
     def fate(self) -> Fate:
-        """Fate of the part."""
+        """Return the outcome for the part."""
         if not self.ours:
             return Fate.LEFT_OUT
         return Fate.INTERPRETED if self.note else Fate.CARRIED
 
     @property
     def field(self) -> str:
-        """Our field's own name."""
+        """Return the name of crowdbot's field."""
         return self.ours.rpartition(".")[2]
 
 

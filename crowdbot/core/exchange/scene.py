@@ -1,4 +1,4 @@
-"""A scene of another simulator in our words: plain data of one scenario, and where it came from."""
+"""A scene of another simulator in crowdbot's terms: plain data of one scenario, and its origin."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Draft:
     notes: list[str] = field(default_factory=list)
 
     def agent(self, row: Data, origin: Mark, comment: str = "") -> None:
-        """Add an agent; without an id of its own its number is that of the row."""
+        """Add an agent; without an id, its id is its row number."""
         path = ("crowd", "agents", str(len(self.agents)))
         self.origins[path] = origin
         if comment:
@@ -118,7 +118,7 @@ class Draft:
         return found
 
     def extent(self) -> tuple[float, float, float, float]:
-        """Return x0, x1, y0, y1 of all that stands or starts somewhere."""
+        """Return x0, x1, y0, y1 of everything that has a position, m."""
         points = [(0.0, 0.0)] if not (self.agents or self.robots) else []
         points += [(a["x"], a["y"]) for a in self.agents]
         points += [r["task"]["start"][:2] for r in self.robots.values()]

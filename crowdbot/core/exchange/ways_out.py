@@ -1,6 +1,6 @@
-"""Areas that people come from and no way leads out of: pockets in pillars, strips behind walls.
+"""Entry areas from which no path leads out: gaps between pillars, strips behind walls.
 
-Other simulators push people straight to their goals; here people find ways, and each needs one.
+Other simulators push people straight to their goals; crowdbot's people need a path.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ _SHARE = 0.05
 
 
 def keep_ways(scene: Draft, report: Report) -> None:
-    """Let each area that people come from have a way to all their goals; record each change.
+    """Make sure that each entry area has paths to all its goals; record each change.
 
-    An area is cut to the part of the floor that has one, and pockets closed by walls are filled.
-    Spawns of which that is not enough walk straight to their goals.
+    An area is cut to the part of the floor with paths, and pockets closed by walls are filled.
+    Spawns for which that does not suffice walk straight to their goals.
     """
     if scene.crowd.get("routing", {}).get("kind") != "mesh":
         return

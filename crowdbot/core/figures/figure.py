@@ -52,7 +52,7 @@ class Figure:
     phases: tuple[tuple[FigurePart, ...], ...]
 
     def phase(self, walked: float, height: float) -> int:
-        """Return the number of the phase after a way.
+        """Return the number of the walk's phase after a walked distance.
 
         Args:
             walked: m; two steps are 0.83 heights long, as sensors see them.

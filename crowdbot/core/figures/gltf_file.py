@@ -55,7 +55,7 @@ class GltfFile:
         self._buffers = [self._buffer(b, blob) for b in self.list("buffers")]
 
     def error(self, what: str) -> InputError:
-        """Return an error about this file."""
+        """Return an error that names this file."""
         return InputError(f"{self._path}: {what}")
 
     def list(self, name: str) -> list[dict[str, Any]]:

@@ -17,7 +17,7 @@ _LARGEST = 512
 
 
 class Looks(NamedTuple):
-    """Colour (sRGB), places in the texture (N, 2) from its top left corner, and PNG."""
+    """Colour (sRGB), texture coordinates (N, 2) from the top left corner, and PNG of a part."""
 
     colour: tuple[float, float, float] = GREY
     uv: Array | None = None
@@ -25,9 +25,9 @@ class Looks(NamedTuple):
 
 
 def looks_of(file: GltfFile, primitive: dict[str, Any]) -> Looks:
-    """Return how a primitive with a material looks.
+    """Return colour and texture of a primitive with a material.
 
-    Colours of points are replaced by their mean. A texture is multiplied by the base colour.
+    Vertex colours are replaced by their mean. A texture is multiplied by the base colour.
     """
     material = file.list("materials")[primitive["material"]].get("pbrMetallicRoughness", {})
     names = primitive["attributes"]

@@ -1,4 +1,4 @@
-"""Figures for pages: few triangles, a colour for each corner, whole millimetres."""
+"""Simplified figures for web pages: few triangles, one colour per vertex, whole millimetres."""
 
 from __future__ import annotations
 

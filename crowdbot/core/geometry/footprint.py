@@ -31,7 +31,7 @@ class Footprint:
 
     @property
     def reach(self) -> float:
-        """Distance of its farthest point from the origin, m."""
+        """Return the distance of its farthest point from the origin, m."""
         return float(np.max(np.hypot(*self.corners.T), initial=0.0)) + self.radius
 
     def outline(self, x: float, y: float, yaw: float, steps: int = 24) -> Array:
@@ -121,7 +121,9 @@ def _turns(corners: Array) -> Array:
 
 
 def body_side(bearing: float) -> str:
-    """``front``, ``left``, ``right`` or ``rear`` of a robot; ``unknown`` for NaN.
+    """Return the side of a robot that a direction points to: front, left, right, rear or unknown.
+
+    ``unknown`` for NaN.
 
     Args:
         bearing: of a point in the robot's frame, rad; each side has a quarter of the circle.

@@ -22,9 +22,9 @@ def inside(zone: Array, x: float, y: float) -> bool:
 
 @kernel
 def entry_fraction(zone: Array, x0: float, y0: float, x1: float, y1: float) -> float:
-    """Fraction of the way from p0 to p1 at which it first crosses the border.
+    """Return the fraction of the way from p0 to p1 at which it first crosses the border.
 
-    Returns 1 when it crosses none, as when the robot was inside all along.
+    Returns 1 if it crosses none, as for a robot that was inside from the start.
     """
     first, sx, sy = 1.0, x1 - x0, y1 - y0
     for k in range(zone.shape[0]):

@@ -10,7 +10,7 @@ from crowdbot.core.types.arrays import Array
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Array:
-    """The matrix (3, 3) that turns vectors of the turned frame into those of the fixed one; rad."""
+    """Return the matrix (3, 3) from the rotated frame to the fixed one; angles in rad."""
     angles = (roll, pitch, yaw)
     cr, sr, cp, sp, cy, sy = (f(a) for a in angles for f in (math.cos, math.sin))
     return np.array(

@@ -1,6 +1,6 @@
-"""The robot's place beside a person, and how much a robot is off it.
+"""The place where a robot should be beside a person, and the robot's deviation from it.
 
-Functions take numbers or arrays over time alike. Angles are in rad, frames are one at rest.
+Functions take numbers or arrays over time. Angles are in rad, in an inertial frame.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class PersonCircle(NamedTuple):
 
 
 class Off(NamedTuple):
-    """A robot's stance to a person: numbers, or arrays (N,).
+    """A robot's position relative to a person: numbers, or arrays (N,).
 
     Attributes:
         gap: between the surfaces, m; negative inside.
@@ -76,7 +76,7 @@ def together(x: Array, y: Array, facing: Array, radius: Array) -> PersonCircle:
 
 
 def off(outline: Footprint, x: Array, y: Array, yaw: Array, person: PersonCircle) -> Off:
-    """Return how a robot at a pose stands to a person."""
+    """Return a robot's position relative to a person."""
     dx, dy = person.x - x, person.y - y
     c, s = np.cos(yaw), np.sin(yaw)
     ahead, left = c * dx + s * dy, c * dy - s * dx
@@ -95,7 +95,7 @@ def wrapped(angle: Array) -> Array:
 
 
 def wanted_direction(task: PersonTask, around: Array) -> Array:
-    """Return the wanted direction off the person's front, on the side where the robot is now."""
+    """Return the wanted direction from the person's front, on the side where the robot is, rad."""
     if task.kind in ("approach", "lead"):
         return np.zeros_like(around)
     if task.kind == "follow":
@@ -106,7 +106,7 @@ def wanted_direction(task: PersonTask, around: Array) -> Array:
 
 
 def in_place(task: PersonTask, found: Off) -> Array:
-    """Return True where a robot is in its place; a person without a front is met from anywhere."""
+    """Return True where a robot is at its place; without a known front, any direction will do."""
     near = np.abs(found.gap - task.distance) <= task.tolerance
     aside = np.abs(wrapped(found.around - wanted_direction(task, found.around)))
     fits = np.isnan(aside) | (aside <= task.angle)
@@ -119,7 +119,7 @@ def in_place(task: PersonTask, found: Off) -> Array:
 def place_beside(
     task: PersonTask, body: RobotBody, x: float, y: float, heading: float, robot: Pose
 ) -> Pose:
-    """Return the pose of the robot's base in the middle of its place.
+    """Return the pose of the robot's base at the centre of its place.
 
     Args:
         task: what to do, with the person's radius.

@@ -1,4 +1,4 @@
-"""Valid shapes of what others draw."""
+"""Repair of invalid polygons in files of other programs."""
 
 from __future__ import annotations
 

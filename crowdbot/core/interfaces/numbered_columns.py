@@ -1,4 +1,4 @@
-"""Old names for columns of what cost functions get, which stay until 1.0."""
+"""Old names for columns of cost functions' arguments, kept until 1.0."""
 
 from __future__ import annotations
 

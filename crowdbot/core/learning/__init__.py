@@ -1,5 +1,5 @@
-"""Views of policies that learn: observations as vectors, and rewards.
+"""Input of learned policies: observations as vectors, and rewards.
 
-The same observation is made in a batch of worlds, where a policy is trained, and of what a planner
-sees, where it is judged.
+A batch of worlds, in which a policy is trained, and a planner, with which it is judged, get the
+same observation.
 """

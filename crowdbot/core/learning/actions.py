@@ -1,4 +1,4 @@
-"""Actions of policies that learn: shares of a robot's limits."""
+"""Actions of learned policies: fractions of a robot's velocity limits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crowdbot.core.types.robot import RobotLimits
 
 
 def action_size(limits: RobotLimits) -> int:
-    """Return how many numbers an action has: v, w and, where the drive can, vy."""
+    """Return the number of entries of an action: v, w and, if the drive can move sideways, vy."""
     return 3 if limits.vy_max > 0.0 else 2
 
 

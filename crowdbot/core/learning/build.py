@@ -1,4 +1,4 @@
-"""Build observations and rewards of specs, and check their answers."""
+"""Build observations and rewards from specs, and check the values they return."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PERSON = 5
 
 
 class Observer(Protocol):
-    """Turns what robots see into vectors. It may keep what it has seen, for each world.
+    """Turns sensor data of robots into vectors; may keep a memory for each world.
 
     Attributes:
         low, high: (N,) float32, finite: bounds of each number.
@@ -37,7 +37,7 @@ class Observer(Protocol):
 
 
 class Reward(Protocol):
-    """Rates steps."""
+    """Computes the reward of steps."""
 
     def of(self, change: StepChange) -> Array:
         """Return (W,) finite float64."""
@@ -45,7 +45,7 @@ class Reward(Protocol):
 
 
 class CheckedObserver:
-    """An observer whose answers are checked.
+    """An observer whose results are checked.
 
     Attributes:
         low, high: as of `Observer`.
@@ -58,7 +58,7 @@ class CheckedObserver:
 
     @property
     def size(self) -> int:
-        """Return how many numbers a vector has."""
+        """Return the length of a vector."""
         return len(self.low)
 
     def observe(self, seen: RobotInputs) -> Vectors:
@@ -77,7 +77,7 @@ class CheckedObserver:
         return bounded
 
     def tracker(self) -> Callable[[Any], Array]:
-        """Return a tracker: from an observation of a planner to people (M, 5) as of `RobotInputs`.
+        """Return a function from a planner's observation to people (M, 5) as in `RobotInputs`.
 
         Only for observations whose spec has ``tracks``.
         """
@@ -95,7 +95,7 @@ class CheckedObserver:
 
 
 class CheckedReward:
-    """A reward whose answers are checked."""
+    """A reward whose results are checked."""
 
     def __init__(self, reward: Reward, worlds: int, call: PluginCall) -> None:
         self._reward, self._worlds, self._call = reward, worlds, call

@@ -1,4 +1,4 @@
-"""Conventions of a trained policy: what it observes and how its actions are meant.
+"""Conventions of a trained policy: its observation, and the meaning of its actions.
 
 They are kept as JSON in the policy's file, under the name `KEY`.
 """

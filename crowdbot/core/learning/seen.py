@@ -1,4 +1,4 @@
-"""Arrays of what many robots see at one time, and what a step has changed."""
+"""Arrays of many robots' inputs at one time, and of the changes in one step."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LearningContext:
-    """Constant data of the robots that observe; they are alike.
+    """Constant data of the observing robots, which are all of one model.
 
     Attributes:
         worlds: how many there are, W.

@@ -1,1 +1,1 @@
-"""Live runs: external programs drive the robot of a run, through their own protocols."""
+"""Live runs: external programs drive the robots of a run, through their own protocols."""

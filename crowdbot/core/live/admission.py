@@ -1,4 +1,4 @@
-"""Admission to a live server: websites of others are refused, since a browser visits any."""
+"""Admission to a live server: pages of foreign websites are refused."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def twist(message: Any) -> tuple[Command, int | None]:
 
 
 def joy(message: Any, limits: RobotLimits) -> Command:
-    """Return a sensor_msgs/Joy as a command: axis 1 is ahead, axis 0 to the left, as of sticks.
+    """Return a sensor_msgs/Joy as a command: axis 1 is forward, axis 0 to the left.
 
     Raises:
         InputError: it is not one, or has fewer axes.
@@ -45,7 +45,7 @@ def joy(message: Any, limits: RobotLimits) -> Command:
 
 
 def stick_command(ahead: float, left: float, limits: RobotLimits) -> Command:
-    """Return the velocities that a stick asks for, deflected from -1 to 1; full is the limit."""
+    """Return the velocities for a stick's deflection, -1 to 1; full deflection is the limit."""
     ahead, left = min(1.0, max(-1.0, ahead)), min(1.0, max(-1.0, left))
     v = ahead * limits.v_max if ahead > 0.0 else -ahead * limits.v_min
     return Command(v + 0.0, left * limits.w_max)

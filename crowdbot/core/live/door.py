@@ -15,7 +15,7 @@ class Door(Protocol):
     """
 
     def open(self, offers: Sequence[OfferedTopic]) -> None:
-        """Start a run that offers these topics."""
+        """Start a run that publishes the given topics."""
         ...
 
     def wants(self, topic: str) -> bool:

@@ -1,4 +1,4 @@
-"""Add what only a live run knows to its record."""
+"""Add the facts of a live run to its record."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crowdbot.core.runs.run import Run
 
 
 def with_live_part(run: Run, live: LivePart) -> Run:
-    """Write the part into run.json, and return the run with it."""
+    """Write the live part into run.json, and return the run with it."""
     record = run.record.model_copy(update={"live": live})
     files.attach_files(run.directory, record.document())
     listed = {"files": files.sizes(run.directory), "digests": files.digests(run.directory)}

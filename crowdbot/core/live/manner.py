@@ -1,4 +1,4 @@
-"""The manner of a live run: the timing of its steps."""
+"""Timing of a live run's steps."""
 
 from __future__ import annotations
 

@@ -41,5 +41,5 @@ class LiveMessage:
 
 
 def told(topic: str, ns: int, message: Any, *, latched: bool = False) -> LiveMessage:
-    """Return a message object as a live message."""
+    """Return a message object as a `LiveMessage`."""
     return LiveMessage(topic, message.__msgtype__, ns, ros.to_cdr(message), latched)

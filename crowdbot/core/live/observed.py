@@ -100,7 +100,7 @@ class Observed:
         yield from self._state(obs, wanted)
 
     def again(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
-        """Yield the latest messages, for clients that came after `messages` were sent."""
+        """Yield the latest messages again, for clients that connected after `messages`."""
         for name, reading in obs.readings.items():
             yield from self._reading(name, reading, wanted)
         yield from self._state(obs, wanted)

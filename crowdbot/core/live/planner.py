@@ -32,13 +32,13 @@ class LivePlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """OfferedTopic the topics of this robot, and its constant data."""
+        """Announce the topics of this robot, and publish its constant data."""
         del limits
         messages = RobotMessages(self._scene, task, sensors, seed, self._manner.epoch)
         self._steps.join(self._scene.name, messages)
 
     def step(self, obs: Observation) -> Command:
-        """Publish the observation; return the external command.
+        """Publish the observation, and return the external command.
 
         Raises:
             NoValidCommand: there is no command.

@@ -61,7 +61,7 @@ class RobotMessages:
 
 
 def constant_of(robots: Iterable[RobotMessages]) -> list[LiveMessage]:
-    """Return the constant messages of all robots: of a shared topic one, with all frames."""
+    """Return the constant messages of all robots; a shared topic has one message for all frames."""
     every = [message for robot in robots for message in robot.constant]
     found: dict[str, LiveMessage] = {}
     for message in every:
@@ -74,7 +74,7 @@ def constant_of(robots: Iterable[RobotMessages]) -> list[LiveMessage]:
 
 
 def clock_last(messages: Iterable[LiveMessage]) -> Sequence[LiveMessage]:
-    """Return messages of several robots with one clock, which ends the step."""
+    """Return messages of several robots with a single clock message at the end of the step."""
     every = list(messages)
     clocks = [m for m in every if m.topic == Topic.CLOCK]
     return [m for m in every if m.topic != Topic.CLOCK] + clocks[-1:]

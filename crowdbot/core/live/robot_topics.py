@@ -1,4 +1,4 @@
-"""Topics of a live run that belong to one robot: plain for the only one, ``/NAME/…`` of several."""
+"""Topics of each robot in a live run: without a prefix for a single robot, else ``/NAME/…``."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def _store() -> Any:
 
 
 class ServiceType:
-    """The types of one service."""
+    """Message types of one service: request, response and event."""
 
     def __init__(self, kind: str, request: Fields, response: Fields) -> None:
         """Build the types. ``kind``: ``package/srv/Name``."""
@@ -78,7 +78,7 @@ class ServiceType:
 
 
 def service_type(service: Service) -> ServiceType:
-    """Return the types of a service."""
+    """Return the message types of a service."""
     return ServiceType(service.kind, service.request, service.response)
 
 

@@ -87,7 +87,7 @@ class LiveSession:
         return bool(self._request) or self.interrupted()
 
     def ask(self, ns: int, robots: Sequence[str] = ("",)) -> None:
-        """From now on, commands for robots, given by namespace, are for the step at ``ns``."""
+        """Assign all following commands to the step at ``ns``; robots are given by namespace."""
         with self._changed:
             self._listeners = False
             for robot in robots:
@@ -199,7 +199,7 @@ class LiveSession:
             return one.driver == who
 
     def leave(self, who: Hashable, robot: str | None = None) -> None:
-        """Handle a client that stopped driving a robot; without one, a client that left."""
+        """Handle a client that stopped driving a robot, or, without a robot, disconnected."""
         with self._changed:
             for one in self.robots.values() if robot is None else [self.robots[robot]]:
                 if one.driver == who:
@@ -209,18 +209,18 @@ class LiveSession:
             self._changed.notify_all()
 
     def leave_clock(self, who: Hashable) -> None:
-        """Handle a client that stopped keeping the clock."""
+        """Handle a client that no longer drives the external clock."""
         with self._changed:
             if self._clock_keeper == who:
                 self._clock_keeper = None
 
     def drives(self, who: Hashable) -> bool:
-        """Return True if this client drives a robot, or keeps the clock."""
+        """Return True if this client drives a robot or the external clock."""
         return self._clock_keeper == who or any(r.driver == who for r in self.robots.values())
 
     @property
     def here(self) -> list[LiveRobot]:
-        """Return the robots of the current run."""
+        """Return the robots of the current run by namespace."""
         return [robot for robot in self.robots.values() if robot.name]
 
     @property
@@ -311,7 +311,7 @@ class LiveSession:
             return self.counts.steps + self._steps
 
     def ask_for(self, request: Request, seed: int | None = None) -> None:
-        """Stop the run and start another: the same scenario again, or the next one."""
+        """Stop the run and start another: the same scenario, or the next one."""
         with self._changed:
             self._request = request
             self.seed = self.seed if seed is None else seed

@@ -20,10 +20,10 @@ _TELL = 1.0  # s of wall time between two messages about the state
 
 
 class LiveSteps:
-    """The part of a live run that happens once for all robots.
+    """The parts of a live run's step that happen once for all robots.
 
-    The planner that is asked first in a step publishes what all robots see, and then the clock;
-    from then on, commands for all robots count for that step.
+    The first planner of a step publishes the observations of all robots, and then the clock; from
+    then on, commands for all robots count for that step.
 
     Attributes:
         session, manner: the session, and the timing.
@@ -44,7 +44,7 @@ class LiveSteps:
         self._t = self._began = self._told = -math.inf
 
     def begin_run(self, look: Callable[[], Mapping[str, Observation]]) -> None:
-        """A recording begins; ``look`` returns what all robots see at the present step."""
+        """Start a recording; ``look`` returns all robots' observations at the present step."""
         self._look = look
 
     def space(self, robot: str) -> str:
@@ -52,7 +52,7 @@ class LiveSteps:
         return self._spaces[robot]
 
     def join(self, robot: str, messages: RobotMessages) -> None:
-        """Add a robot; with the last one, offer the topics of all and publish constant data."""
+        """Add a robot; after the last one, announce all topics and publish constant data."""
         if set(self._robots) == set(self._spaces):  # of an earlier recording
             self._robots = {}
         self._robots[robot] = messages
@@ -70,7 +70,7 @@ class LiveSteps:
         self._tell()
 
     def begin(self, robot: str, obs: Observation) -> bool:
-        """Begin a step, if the robot is the first that is asked; return False if the run ends."""
+        """Begin a step, if this robot is its first; return False if the run ends."""
         if obs.t > self._t:
             if self._open:  # a robot ended before it was asked
                 self._finish()
@@ -84,13 +84,13 @@ class LiveSteps:
         return not self.session.must_stop
 
     def taken(self, robot: str) -> None:
-        """Note that a robot has its answer; with the last one, the step is taken."""
+        """Store that a robot has its command; after the last one, the step is complete."""
         self._open.discard(robot)
         if not self._open:
             self._finish()
 
     def tell_who_came(self) -> None:
-        """Publish the current step for new subscribers."""
+        """Publish the current step again for new subscribers."""
         for robot, obs in self._seen.items():
             more = self._robots[robot].again(obs, lambda t: t not in self._said and self._wanted(t))
             self._said |= self._pass_on(more)

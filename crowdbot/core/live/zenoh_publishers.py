@@ -21,7 +21,7 @@ class ZenohPublishers:
     def left(self, token: str) -> bool:
         """Forget a publisher; return True if none is left.
 
-        The first one has left if none of those that remain is known to be it.
+        The first publisher counts as gone if none of the remaining ones is known to be it.
         """
         self._gids.pop(token, None)
         if self._first not in self._gids.values():

@@ -33,7 +33,7 @@ class ZenohServices:
         self._kept: list[Any] = []
 
     def serve(self, name: str, service: Service, domain: int, distro: Distro) -> Ros2Topic:
-        """OfferedTopic one service.
+        """Announce and serve one service.
 
         Returns:
             Its ROS 2 name.

@@ -56,7 +56,7 @@ ANYWHERE = PlannerPlace()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannerChoice:
-    """A planner that can be built any number of times.
+    """A planner chosen by the user, which can be built any number of times.
 
     Attributes:
         name: its kind or class name.
@@ -97,7 +97,7 @@ class PlannerChoice:
 
     @property
     def digest(self) -> str:
-        """Return the SHA-256 of its code; of its parameters where the code is installed."""
+        """Return the SHA-256 of the planner's code; of its parameters if the code is installed."""
         own = self.spec_dump.get("sha256") or digest(self.spec_dump)
         return str(own).rpartition(":")[2]
 
@@ -107,7 +107,7 @@ class PlannerChoice:
 
     @property
     def all_files(self) -> dict[str, Path]:
-        """Return SHA-256 -> file of all that it, or its fleet, reads."""
+        """Return SHA-256 -> file for all files that the planner, or each one of a fleet, reads."""
         found = dict(self.files)
         for choice in self.fleet.values():
             found |= choice.files
@@ -125,12 +125,12 @@ class PlannerChoice:
 
     @property
     def contained(self) -> list[Aspect] | None:
-        """Return what the kernel keeps from it, as named in records; None in this process."""
+        """Return what the kernel denies the planner, as in records; None in this process."""
         return None if self.in_process else list(kernel_offer().contained)
 
     @property
     def process(self) -> Literal["own", "in_process"]:
-        """Return where it runs, as named in records."""
+        """Return the process in which the planner runs, as named in records."""
         return IN_PROCESS if self.in_process else OWN
 
 
@@ -151,7 +151,7 @@ NO_ROBOT = PlannerChoice(
 
 
 def label_of(name: str, parameters: Mapping[str, Any], privileged: bool) -> str:
-    """Return the name of a planner's folder.
+    """Return the name of the folder with a planner's runs.
 
     Args:
         parameters: parameters that differ from the defaults.

@@ -49,7 +49,7 @@ def described(holder: type, call: PluginCall) -> PlannerDescription:
 
 
 def sensors_of(needs: tuple[str, ...] | None, spec: PlannerSpec) -> tuple[str, ...] | None:
-    """Return the sensors that a planner with a spec reads: its needs and what it wants beside."""
+    """Return the sensors that a planner with a spec reads: those it needs, and optional ones."""
     return None if needs is None else (*needs, *(f"{want}?" for want in spec.wants))
 
 

@@ -94,7 +94,7 @@ def together(fleet: Mapping[str, PlannerChoice]) -> PlannerChoice:
 
 
 def check_robots(choice: PlannerChoice, robots: Sequence[str]) -> None:
-    """Refuse planners that do not match the robots.
+    """Raise an error if the planners' robots are not those of the scenario.
 
     Raises:
         UnknownNameError: a planner is for an unknown robot.

@@ -32,7 +32,7 @@ def planner_title(name: str, origin: str) -> str:
 
 
 class GuardedPlanner:
-    """Calls a planner; the result is a command, `NoValidCommand` or a `PlannerError`.
+    """Calls a planner and returns its command, or raises `NoValidCommand` or a `PlannerError`.
 
     Args:
         planner: anything with ``reset`` and ``step``.

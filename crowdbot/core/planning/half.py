@@ -1,4 +1,4 @@
-"""A planner that another planner uses, as its other half."""
+"""A planner that calls another planner, its half, in each step."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.core.types.task import Task
 
 
 class HalfPlanner:
-    """A planner that sees what it needs, as if it were alone, and commands within the limits.
+    """The called planner: gets its own observation, and its commands are clamped to the limits.
 
     Args:
         planner: of this process or of a process of its own.
@@ -60,7 +60,7 @@ class HalfPlanner:
         self._host.reset(task, {n: sensors[n] for n in self._visible}, seed)
 
     def step(self, obs: Observation) -> Command:
-        """As `Planner.step`; to stop if it has no valid command.
+        """Return the command as `Planner.step`; zero if it has no valid command.
 
         Raises:
             PlannerError: it failed.
@@ -78,7 +78,7 @@ class HalfPlanner:
 
 @dataclass(frozen=True, slots=True)
 class PlannerWithHalf:
-    """A planner and the one that it uses, so that both can be closed."""
+    """A planner and the one that it calls, so that both can be closed."""
 
     planner: Planner
     half: HalfPlanner

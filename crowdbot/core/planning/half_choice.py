@@ -1,4 +1,4 @@
-"""The choice of a planner that uses another one."""
+"""The choice of a planner that calls another planner."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from crowdbot.dsl.spec.component_specs import PlannerSpec
 
 @dataclass(frozen=True, slots=True)
 class BuildWithHalf:
-    """Builds a planner in the simulator's process, and its half wherever that one runs."""
+    """Builds a planner in the simulator's process, and the one it calls in its own place."""
 
     spec: PlannerSpec
     registry: Registry
@@ -57,10 +57,10 @@ def choice_with_half(
     half: PlannerChoice,
     is_default: Callable[[Component[Any], PlannerSpec], bool],
 ) -> PlannerChoice:
-    """Return the choice of one of crowdbot's own planners that uses another one.
+    """Return the choice of a built-in planner that calls another one.
 
-    It is where its half is as far as records are concerned: a half in a process of its own is
-    contained there, and this planner, which is trusted, is in the simulator's.
+    Records name the process of the called planner: that one may be untrusted and contained, while
+    the calling planner is trusted and runs in the simulator's process.
 
     Args:
         half: the planner that it uses.

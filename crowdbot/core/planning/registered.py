@@ -89,7 +89,7 @@ def build_of_kind(spec: PlannerSpec, registry: Registry, half: Planner | None = 
 
 
 def half_of(spec: PlannerSpec, registry: Registry) -> tuple[Planner, ...]:
-    """Build the planner that a planner uses, in this process; empty if it uses none.
+    """Build the planner that another planner calls, in this process; empty without one.
 
     Raises:
         InputError: it is not a registered kind, or a parameter is wrong.
@@ -104,7 +104,7 @@ def half_of(spec: PlannerSpec, registry: Registry) -> tuple[Planner, ...]:
 
 
 def half_spec(spec: PlannerSpec, registry: Registry, where: str = "") -> PlannerSpec:
-    """Return the spec of the registered planner that a planner uses.
+    """Return the spec of the registered planner that a planner calls.
 
     Raises:
         InputError: it is not a registered kind, or a parameter is wrong.
@@ -117,7 +117,7 @@ def half_spec(spec: PlannerSpec, registry: Registry, where: str = "") -> Planner
 
 
 def uses_half(spec: PlannerSpec) -> bool:
-    """Return True if a planner uses another one."""
+    """Return True if a planner calls another one."""
     return bool(spec.half) and getattr(spec, spec.half) is not None
 
 

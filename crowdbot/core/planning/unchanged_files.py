@@ -12,7 +12,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class UnchangedFiles:
-    """Builds a planner, if its files are those that were chosen.
+    """Builds a planner, after checking that its files are unchanged since it was chosen.
 
     Attributes:
         build: builds it.
@@ -41,5 +41,5 @@ class UnchangedFiles:
 def while_unchanged(
     build: Callable[[], Planner], digest: Callable[[], str], sha256: str, origin: str
 ) -> Callable[[], Planner]:
-    """Return the builder of a planner as long as its files stay; one that fails stays as it is."""
+    """Return a builder that first checks the planner's files; a failing one stays as it is."""
     return build if isinstance(build, NotLoaded) else UnchangedFiles(build, digest, sha256, origin)

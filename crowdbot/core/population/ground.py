@@ -54,10 +54,10 @@ class Ground:
         return not any(_inside(outline, x, y) for outline in self._solids)
 
     def reaches(self, start: Point, goal: Point, radius: float) -> bool:
-        """Return True if a person with path finding gets from one place to another.
+        """Return True if a person can get from one place to another; always without path finding.
 
-        Others always do. Margins of corners are a little wider than a body: one that stands there
-        is in the part of the floor beside it.
+        Margins of corners are a little wider than a body: a body that stands there is counted to
+        the part of the floor beside it.
         """
         if not self.finds_way:
             return True

@@ -43,7 +43,7 @@ class Placer:
         return self._occupancy.count - self._since
 
     def put_group(self, members: range, rng: np.random.Generator) -> bool:
-        """Place the first anywhere and the others around; return False if that fails."""
+        """Place a group's first member anywhere and the others around; return False on failure."""
         before = self._occupancy.count
         spacing = max(self._spacing, 2.0 * float(np.max(self._radius[members])))
         for _ in range(ATTEMPTS):

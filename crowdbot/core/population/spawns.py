@@ -1,7 +1,7 @@
-"""Sample one spawn: groups, places, routes and the parameters of each person.
+"""Sample one spawn: groups, positions, routes and the parameters of each person.
 
-Each purpose has its own stream, named after the spawn; places and goals have an additional one per
-group, so that an occupied place moves only one group.
+Each purpose has its own random stream, named after the spawn; positions and goals have one more for
+each group, so that an occupied position changes only one group.
 """
 
 from __future__ import annotations

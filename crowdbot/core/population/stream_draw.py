@@ -1,7 +1,7 @@
-"""StreamDraw: the random streams of one stream of people, and what all kinds draw from them.
+"""StreamDraw: random numbers of one stream of people, and draws shared by all kinds of streams.
 
 Each purpose has its own random stream, named after the stream of people. Route, start and arrival
-of a group have one for each group beside that, the body of a person one for each person.
+of a group have an additional one for each group, the body of a person one for each person.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class StreamDraw:
         self.radius = self.bodies.radius
 
     def rng(self, purpose: str, unit: int | None = None) -> np.random.Generator:
-        """Return a random stream of this stream, or the one of a unit of it, such as a group."""
+        """Return one of this stream's random streams, or that of one of its groups or people."""
         return self._streams.rng(f"crowd.streams.{purpose}.{self.name}", unit)
 
     def _count(self) -> int:
@@ -79,7 +79,7 @@ class StreamDraw:
     def placed(
         self, area: Area, units: Sequence[int], occupancy: Occupancy
     ) -> Iterator[tuple[int, Point]]:
-        """Places of the members of some groups, larger groups first, in an area."""
+        """Return positions in an area for the members of some groups, larger groups first."""
         placer = Placer(area, self.radius, 0.0, occupancy)
         for done, unit in enumerate(sorted(units, key=lambda g: -len(self.groups[g]))):
             if not placer.put_group(self.groups[unit], self.rng("place", unit)):
@@ -91,11 +91,11 @@ class StreamDraw:
                 yield i, (float(placer.places[i, 0]), float(placer.places[i, 1]))
 
     def entering(self, area: Area, unit: int, occupancy: Occupancy) -> Iterator[tuple[int, Point]]:
-        """Places of a group that enters later: clear only of walls and each other."""
+        """Return positions for a group that enters later: clear only of walls and each other."""
         yield from self.placed(area, [unit], Occupancy([], occupancy.ground))
 
     def check_entrance(self, area: Area, occupancy: Occupancy) -> None:
-        """Refuse an entrance area in which walls leave no room for the largest body."""
+        """Raise an error if walls leave no room for the largest body in an entrance area."""
         radius = float(np.max(self.radius, initial=0.0))
         if not any(occupancy.ground.is_free(*at, radius) for at in places_in(area, radius)):
             raise InputError(
@@ -105,5 +105,5 @@ class StreamDraw:
             )
 
     def duration(self, sample: DurationSample, purpose: str, unit: int) -> float:
-        """Draw how long something of a unit lasts, s."""
+        """Draw a duration of a group or person, s."""
         return draw_one(self.rng(purpose, unit), sample)

@@ -73,7 +73,7 @@ def route_through(
 
 
 def lane_of(area: Area, lanes: Lanes | None, lane: int) -> Area:
-    """Return one lane of an area; the whole area without lanes."""
+    """Return one lane of an area; the whole area if it has none."""
     if lanes is None:
         return area
     width = area.size[1] / lanes.of
@@ -90,7 +90,7 @@ def straight_on(start: Point, angle: float, trip: float) -> Route:
 def border_to_border(
     area: Area, start: Point, radius: float, angles: Sequence[float], rng: np.random.Generator
 ) -> Route:
-    """Straight to the border of an area, there in a new direction to another place of it, and on.
+    """Return an endless route: straight to an area's border, then in a new direction, and so on.
 
     Args:
         angles: directions to sample from, rad; if empty, any.
@@ -129,7 +129,7 @@ def _to_border(u: float, v: float, angle: float, half: Sequence[float]) -> float
 def stroll(
     areas: Mapping[str, GoalArea], begin: Sequence[str], visits: int, rng: np.random.Generator
 ) -> list[str]:
-    """Return the areas of a stroll: the next linked one, else any other."""
+    """Return the next area of a stroll: a linked one if there is one, else any other."""
     names = [begin[int(rng.integers(len(begin)))]]
     while len(names) < visits:
         here = names[-1]

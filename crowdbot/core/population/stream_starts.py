@@ -1,4 +1,4 @@
-"""Draws where, when and on which route the people of each kind of stream begin.
+"""Draws the start of each person in each kind of stream: place, time and route.
 
 A route is drawn with the random streams of `StreamDraw`; a kind is registered by its spec.
 """
@@ -64,7 +64,7 @@ class Start:
 def starts(
     stream: StreamChoice, draw: StreamDraw, occupancy: Occupancy
 ) -> Iterator[tuple[int, Start]]:
-    """Draw where the people of a stream begin, by their number in the stream.
+    """Draw the starts of a stream's people, by their number in the stream.
 
     Args:
         occupancy: the discs of those who are there already; people who start at once are added.

@@ -92,7 +92,7 @@ class FitTask:
 
 
 class Fitted(Protocol):
-    """A fit in plain values that can be sent to workers."""
+    """A fit in plain values that can be sent to workers, and its losses."""
 
     @property
     def ceiling(self) -> float:

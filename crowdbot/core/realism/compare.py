@@ -36,7 +36,7 @@ class RealismScore:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Beside:
-    """Errors reported in addition to the score.
+    """Errors that are reported in addition to the score.
 
     Attributes:
         diagram_error: mean relative error of speed over the recorded curve.

@@ -1,4 +1,4 @@
-"""Simulate a crowd in an endless corridor, at the densities of the recordings."""
+"""Simulate a crowd in an endless corridor, at the densities of recorded crowds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The crowds of a suite, and what is known of them without a simulation."""
+"""The different crowds of a suite, and their stored realism."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def different_crowds(scenarios: Sequence[Scenario]) -> dict[str, Crowd]:
 
 @cache
 def known() -> Mapping[str, Mapping[str, Any]]:
-    """Return fingerprint -> name, score, index, ceiling and floor of measured crowds."""
+    """Return fingerprint -> stored name, score, index, ceiling and floor of a crowd."""
     text = resources.files(__package__).joinpath(KNOWN).read_text(encoding="utf-8")
     found: Mapping[str, Mapping[str, Any]] = json.loads(text)
     return found
 
 
 def by_name(name: str) -> Mapping[str, Any] | None:
-    """Return what is known of a crowd that comes with crowdbot."""
+    """Return the stored realism of a crowd that comes with crowdbot."""
     return next((row for row in known().values() if row["name"] == name), None)
 
 

@@ -58,7 +58,7 @@ class Realism:
 
     @property
     def coverage(self) -> str:
-        """Cells that count, if not all of the reference do; else empty."""
+        """Return which cells count, if not all of the reference do; else an empty text."""
         names = ", ".join(f"{flow} {density}" for flow, density in self.reference.cells)
         count = len(self.reference.cells)
         if not self.of_cells or count == self.of_cells:
@@ -170,9 +170,9 @@ def measure_tracks(
 def measure_met(
     name: str, draws: Sequence[Sequence[CorridorTracks]], reference: RealismReference
 ) -> Realism:
-    """Compare tracks of people who were not put into the recorded conditions, such as of runs.
+    """Compare tracks of people in other conditions than the recorded ones, such as finished runs.
 
-    Only the cells with enough samples of these people count, for floor and ceiling too.
+    Only cells with enough samples of these people count, for floor and ceiling too.
 
     Raises:
         InputError: there are enough samples in less than a quarter of the reference's cells.

@@ -1,4 +1,4 @@
-"""CrowdModel: a crowd's decisions and bodies, independent of a place."""
+"""CrowdModel: policy and bodies of a crowd, independent of a place."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ RADIUS = 0.2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdModel:
-    """A crowd's properties, independent of the place; SI units.
+    """Policy and bodies of a crowd, independent of the place; SI units.
 
     Attributes:
         policy: function that builds the policy.

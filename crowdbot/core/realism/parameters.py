@@ -40,17 +40,14 @@ class Parameter:
     high: float
 
     def value(self, share: float) -> float:
-        """Return the value at a share of the way from low to high.
-
-        Geometric if both are above 0.
-        """
+        """Return the value at a fraction between low and high; geometric if both are above 0."""
         share = min(1.0, max(0.0, share))
         if self.low > 0.0:
             return float(self.low * (self.high / self.low) ** share)
         return self.low + share * (self.high - self.low)
 
     def share(self, value: float) -> float:
-        """Return the share for a value, the inverse of `value`."""
+        """Return the fraction between low and high of a value, the inverse of `value`."""
         if self.low > 0.0:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
@@ -94,7 +91,7 @@ def overrides_of(parameters: Sequence[Parameter], shares: Array) -> list[str]:
 
 
 def shares_of(parameters: Sequence[Parameter]) -> Array:
-    """Return the shares of the start values."""
+    """Return the fractions of the start values."""
     return np.array([p.share(p.start) for p in parameters])
 
 

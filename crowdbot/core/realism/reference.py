@@ -30,7 +30,7 @@ FLOORS: Mapping[str, CrowdModel] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealismReference:
-    """Recorded people, part of whom are also compared with the others.
+    """Recorded people; parts of them, the folds, are compared with the rest for the ceiling.
 
     Attributes:
         halves: statistics of alternating recordings.
@@ -53,7 +53,7 @@ class RealismReference:
 
     @property
     def ceiling(self) -> RealismScore:
-        """Return the score of the other recordings in place of a crowd."""
+        """Return the mean score of each fold against the other recordings: the best possible."""
         return _mean([score(others, one) for one, others in self.folds])
 
     @property
@@ -72,7 +72,7 @@ class RealismReference:
         return compared_cells(self.whole)
 
     def within(self, cells: Sequence[Cell]) -> RealismReference:
-        """Return the same recordings, of which only some cells count, floor and ceiling too."""
+        """Return the reference with only some cells, also for floor and ceiling."""
         first, second = (half.within(cells) for half in self.halves)
         return replace(
             self,

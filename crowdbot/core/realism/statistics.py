@@ -1,4 +1,4 @@
-"""Statistics of a crowd: the only data kept of recordings, and the basis of comparisons."""
+"""Statistics of a crowd, which are compared; all that is kept of recordings."""
 
 from __future__ import annotations
 

@@ -27,14 +27,14 @@ def has_noise(info: SensorInfo) -> bool:
 
 
 def imu_deviations(info: SensorInfo) -> tuple[float, ...]:
-    """Return (6,) standard deviations of an IMU's numbers, rad/s and m/s^2; 0: unknown."""
+    """Return (6,) standard deviations of an IMU's axes, rad/s and m/s^2; 0: unknown."""
     rate, force, *_ = (*info.deviations, 0.0, 0.0)
     scatter = info.scatter or (0.0,) * _SIX
     return tuple(map(math.hypot, (rate,) * 3 + (force,) * 3, scatter))
 
 
 class OdometryCovariance:
-    """Covariances of one odometry, whose readings come one by one, or every n-th."""
+    """Covariance of one odometry's pose, updated with each reading, or every n-th."""
 
     def __init__(self, info: SensorInfo) -> None:
         """Build the covariances of an odometry that `has_noise`."""

@@ -1,4 +1,4 @@
-"""Encode messages of a sensor's own: fields by name become a message of a declared ROS type."""
+"""Encode readings of sensors that declare their own ROS message type."""
 
 from __future__ import annotations
 

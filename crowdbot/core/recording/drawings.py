@@ -1,4 +1,4 @@
-"""A planner's drawings, made in its robot's base frame, as messages and placed in the world."""
+"""Planners' drawings, given in the robot's base frame, as messages and in the world frame."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _AHEAD = 1.0
 
 
 def drawn_lines(columns: Array, name: str = "") -> Array:
-    """Return the lines (2, M, 2) from x, y to x, y that show a drawing, m.
+    """Return the line segments (2, M, 2), from and to x, y, that show a drawing, m.
 
     Args:
         columns: of `drawing_in_world`. A path (2, K): from each row to the next. Tracks (4, K):
@@ -58,7 +58,7 @@ def drawn_marker(ns: int, name: str, columns: Array) -> bytes:
 def text_markers(ns: int, name: str, columns: Array, texts: Sequence[str]) -> list[bytes]:
     """Return one ``visualization_msgs/Marker`` for each text that is not empty, above heads.
 
-    They go by themselves if they are not drawn again, as in the replay.
+    They expire if they are not drawn again, as in the replay.
     """
     found = []
     for number, ((x, y), text) in enumerate(zip(columns[:2].T.tolist(), texts, strict=True)):
@@ -92,7 +92,7 @@ def drawing_message(ns: int, frame: str, drawn: Drawn) -> tuple[str, int, Any]:
 
 
 def drawing_in_world(x: float, y: float, yaw: float, rows: ArrayLike, *, tracks: bool) -> Array:
-    """Return x and y (2, K) of rows, m; of tracks also vx and vy, (4, K), m/s.
+    """Return x and y (2, K) of points in the world, m; of tracks also vx and vy, (4, K), m/s.
 
     Args:
         x, y, yaw: the robot's pose, m and rad.

@@ -1,4 +1,4 @@
-"""Registers how `Trajectories.from_mcap` reads: recordings lie above trajectories."""
+"""Registers the reader of `Trajectories.from_mcap`, which may not import this package itself."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ def format_problem(version: int) -> str:
 
 
 def check_format(path: Path, data: bytes) -> None:
-    """Refuse a header of a format that is not read, before it is decoded.
+    """Raise an error for a header whose format cannot be read, before it is decoded.
 
     Args:
         path: the recording, for the message.
@@ -159,7 +159,7 @@ def tilts_message(sensors: Mapping[str, SensorInfo]) -> Any | None:
 
 
 def with_tilts(sensors: Mapping[str, SensorInfo], message: Any) -> dict[str, SensorInfo]:
-    """Return the sensors of a header with the tilts of a message, which may name others.
+    """Return a header's sensors with the tilts of a message, which may name other sensors, too.
 
     Raises:
         InputError: its lists have different lengths.

@@ -1,4 +1,4 @@
-"""Driven wheels in a recording: their joint states, and the frames that turn with them."""
+"""Driven wheels in a recording: joint states, and frames that rotate with the wheels."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class UrdfJoint(NamedTuple):
 
     @property
     def turn(self) -> Quaternion:
-        """Return x, y, z, w of the turn at angle 0."""
+        """Return the rotation at joint angle 0 as a quaternion x, y, z, w."""
         return quaternion(*self.rpy)
 
 

@@ -1,4 +1,4 @@
-"""Frames of a robot's links that do not move against its base, from its description."""
+"""Static frames of a robot's links, from its URDF."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class _Step(NamedTuple):
 
 
 def link_frames(description: str, namespace: str, known: Sequence[str]) -> Iterator[Any]:
-    """Yield a static transform for each link that hangs rigidly on a known frame.
+    """Yield a static transform for each link that is fixed to a known frame.
 
     Args:
         description: the robot's URDF; may be empty.

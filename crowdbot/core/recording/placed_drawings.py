@@ -1,4 +1,4 @@
-"""Drawings of a planner, placed in the world: for films, pages and viewers of a finished run."""
+"""Planners' drawings in the world frame: for films, pages and viewers of a finished run."""
 
 from __future__ import annotations
 

@@ -61,8 +61,8 @@ class RobotRecording:
 class Recording:
     """A recording of one robot, of several, or of people alone.
 
-    The file is read once, front to back, and only as far as a question needs: the header comes
-    first, all else needs the whole file. Of an interrupted run it answers as far as the run came.
+    The file is read once, front to back, and only as far as needed: the header comes first, other
+    data need the whole file. Of an interrupted run the data until the interruption are returned.
 
     Args:
         path: a file that crowdbot recorded.
@@ -106,7 +106,7 @@ class Recording:
         self.close()
 
     def close(self) -> None:
-        """Close the file; what was read can still be asked for."""
+        """Close the file; data that were read stay available."""
         if self._cursor is not None:
             self._cursor.close()
             self._cursor = None
@@ -115,14 +115,14 @@ class Recording:
     # ------------------------------------------------------------------------ questions
     @property
     def holds_run(self) -> bool:
-        """True if the file has a header of crowdbot, for whichever robot."""
+        """Return True if the file has a header written by crowdbot, for any robot."""
         while not self._has_header() and self._advance():
             pass
         return self._has_header()
 
     @property
     def robots(self) -> tuple[str, ...]:
-        """Names of the robots, where there are several; empty in any other recording."""
+        """Return the names of the robots if there are several, else an empty tuple."""
         self._read_headers()
         names = [
             n.removeprefix("/") for n, part in self._by_prefix.items() if n and part.has_header
@@ -131,7 +131,7 @@ class Recording:
 
     @property
     def header(self) -> RecordingHeader:
-        """The constants of the run; where there are several robots, of what they share."""
+        """Return the constants of the run; with several robots, the shared ones."""
         if self._first is None:
             self._advance()
         if self._first != Topic.HEADER:
@@ -171,16 +171,16 @@ class Recording:
         return self._robots[name]
 
     def trajectories(self, robot: str | None = None) -> Trajectories:
-        """The arrays that were written, bit by bit; arguments and errors as `robot`.
+        """Return the recorded arrays, bit by bit; arguments and errors as `robot`.
 
-        ``trips`` is a table, perhaps empty, where there were people; ``contacts`` where there was
-        a robot. ``signals[name]`` is (K, 2): time and value. ``planner_step_time`` is None unless
+        ``trips`` is a table, perhaps empty, where there were people; ``contacts`` where there was a
+        robot. ``signals[name]`` is (K, 2): time and value. ``planner_step_time`` is None unless
         some was recorded.
         """
         return self.robot(robot).run
 
     def scans(self, sensor: str | None = None, robot: str | None = None) -> list[ReplayScan]:
-        """Readings of distances: of all lidars, then of all ultrasound and infrared sensors.
+        """Return range readings: those of lidars, then those of ultrasound and infrared sensors.
 
         Args:
             sensor: name of one; None: all that recorded some.

@@ -1,4 +1,4 @@
-"""Topics for tools of ROS and for 3-D viewers; scores need none of them."""
+"""Topics for ROS tools and 3-D viewers; scores do not use them."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class ToolTopics:
             self._file.put_bytes(Topic.PEOPLE_MARKERS, ns, ARROWS_TYPE, data)
 
     def measured(self, sensor: str, ns: int, msgtype: str, data: bytes, values: Array) -> None:
-        """Write a reading again under its usual ROS name; and the frame of odometry."""
+        """Write a reading again under its usual ROS name, and the frame of odometry."""
         usual = self._usual.get(sensor)
         if usual is not None:
             self._file.put_bytes(usual, ns, msgtype, data)
@@ -112,13 +112,13 @@ class ToolTopics:
         self._put(Topic.COMMAND, ns, self._twist, *parts)
 
     def contact(self, t0: float, ns: int, agent: int, bearing: float) -> None:
-        """A contact that began at ``t0`` (s) and ended at ``ns``."""
+        """Write a contact that began at ``t0`` (s) and ended at ``ns``."""
         if self._path_so_far is not None:
             touch = self._path_so_far.touch(t0, agent, bearing)
             self._file.put(Topic.CONTACT_MARKERS, ns, touch)
 
     def path(self, ns: int) -> None:
-        """The path so far."""
+        """Write the path so far."""
         if self._path_so_far is not None and self._path_so_far.known:
             self._file.put(Topic.PATH, ns, self._path_so_far.path(ns))
 

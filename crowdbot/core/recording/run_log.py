@@ -22,7 +22,7 @@ from crowdbot.core.types.robot import RobotState
 
 
 class RunLog:
-    """Records each event of the crowd once, in the order of agents."""
+    """Records samples, trips and contacts, each event once, in the order of agents."""
 
     def __init__(
         self,

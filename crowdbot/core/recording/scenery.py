@@ -1,4 +1,4 @@
-"""Messages on what never moves: frames on the robot, walls, map, goal, robot description."""
+"""Messages for static data: frames on the robot, walls, map, goal, robot description."""
 
 from __future__ import annotations
 
@@ -29,9 +29,8 @@ _OCCUPIED, _UNKNOWN = 100, -1
 def static_frames(header: RecordingHeader, description: str = "") -> list[Any]:
     """Return the transforms of ``map``, ``odom``, ``base_footprint``, ``base_link`` and sensors.
 
-    Further those of the links in the robot's URDF that do not move against it.
-
-    Empty without a robot, as for a fleet's people, who have no odometry.
+    The fixed links of the robot's URDF are included. Empty without a robot, as for people recorded
+    apart from several robots, who have no odometry.
     """
     robot = header.robot
     if robot is None:
@@ -72,8 +71,8 @@ def occupancy_grid(
 ) -> Any:
     """Return a map as ``nav_msgs/OccupancyGrid``: cells touched by a wall are occupied.
 
-    If walls separate the goal from the rim of the map, what is outside of them is unknown. All else
-    is free.
+    If walls separate the goal from the rim of the map, everything outside them is unknown. All
+    other cells are free.
 
     Args:
         ns: its stamp.

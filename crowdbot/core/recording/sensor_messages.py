@@ -1,7 +1,7 @@
-"""The messages of sensors: one table from ROS type to encoder, and what sensors declare themselves.
+"""Messages of sensors: a table from ROS type to encoder, and types that sensors declare.
 
-A sensor says its ROS type in `SensorInfo.ros_type`. For a type that is not in the table it says
-in `SensorInfo.message` how readings become fields. Without that, readings are plain numbers.
+A sensor gives its ROS type in `SensorInfo.ros_type`. For a type that is not in the table,
+`SensorInfo.message` says how readings become fields. Otherwise readings are sent as plain numbers.
 """
 
 from __future__ import annotations
@@ -38,9 +38,10 @@ class MessageKind(NamedTuple):
 
 
 def message_kind(info: SensorInfo) -> tuple[str, MessageKind]:
-    """Return the ROS type of a sensor's messages, and how they are made.
+    """Return the ROS type of a sensor's messages, and their encoder.
 
-    What the sensor declares comes first, then the usual type of its category, then its ROS type.
+    The sensor's own declaration comes first, then the usual type of its category, then its ROS
+    type.
     """
     if info.message is not None:
         return info.ros_type, MessageKind(info.message.topic, lambda _: True, declared_encoder)
@@ -67,7 +68,7 @@ def _is_beam_grid(info: SensorInfo) -> bool:
 
 
 def has_shape(*shapes: tuple[int, ...]) -> Callable[[SensorInfo], bool]:
-    """Return a test for readings of one of some shapes."""
+    """Return a function that tests readings for one of some shapes."""
     return lambda info: info.shape in shapes
 
 

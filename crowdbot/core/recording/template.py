@@ -35,7 +35,7 @@ def stamp(ns: int) -> bytes:
 
 
 def turn(yaw: float) -> bytes:
-    """Return z and w of a quaternion about z."""
+    """Return z and w of the quaternion of a rotation about z."""
     return two(*ros.half_turn(yaw))
 
 

@@ -1,4 +1,4 @@
-"""Texts as lines on the floor, for viewers that have no letters."""
+"""Texts as line segments on the floor, for viewers that cannot draw letters."""
 
 from __future__ import annotations
 

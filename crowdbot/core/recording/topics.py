@@ -90,12 +90,12 @@ def scan_topic(sensor: str) -> str:
 
 
 def range_topic(sensor: str) -> str:
-    """Topic of the readings of an ultrasound or infrared sensor."""
+    """Return the topic of an ultrasound or infrared sensor's readings."""
     return _topic(sensor, "range")
 
 
 def is_cone(info: SensorInfo) -> bool:
-    """Return True if a reading is one distance between two known edges."""
+    """Return True if a reading is one distance within a cone, as of ultrasound."""
     known = info.angles is not None and info.angles.shape == (2,) and info.message is None
     return known and info.ros_type == "sensor_msgs/msg/Range" and info.shape == (1,)
 

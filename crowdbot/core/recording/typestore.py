@@ -135,5 +135,5 @@ def to_ros1(data: bytes, msgtype: str) -> bytes:
 
 
 def from_cdr(data: bytes, msgtype: str) -> Any:
-    """Deserialise; raises whatever the decoder stumbles over."""
+    """Deserialise; any exception of the decoder is passed on."""
     return _store().deserialize_cdr(data, msgtype)

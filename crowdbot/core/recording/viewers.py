@@ -101,11 +101,11 @@ class RobotPath:
 
     @property
     def known(self) -> bool:
-        """True if it has begun."""
+        """Return True if the path has a pose."""
         return bool(self._rows)
 
     def path(self, ns: int) -> Any:
-        """``nav_msgs/Path`` of the path so far."""
+        """Return the path so far as ``nav_msgs/Path``."""
         poses = [_coarse(*row) for row in self._path]
         return ros.new("nav_msgs/Path", header=ros.header(ns, "map"), poses=poses)
 

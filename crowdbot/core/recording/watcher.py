@@ -10,10 +10,10 @@ from crowdbot.core.types.arrays import Array
 
 
 class Watcher(Protocol):
-    """Gets the ground truth, like a recording; it cannot affect the run."""
+    """Gets the ground truth during the simulation, without affecting the run."""
 
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
-        """A run begins.
+        """Start of a run.
 
         Args:
             shared: has walls and people.
@@ -22,7 +22,7 @@ class Watcher(Protocol):
         ...
 
     def sample(self, t: float, robots: Mapping[str, Sequence[float]], agents: Array | None) -> None:
-        """One sample of the log.
+        """One sample of the ground truth.
 
         Args:
             t: time, s.
@@ -39,7 +39,7 @@ class Watcher(Protocol):
         columns: Array,
         texts: Sequence[str] | None = None,
     ) -> None:
-        """A robot's planner drew what it thinks.
+        """A drawing by a robot's planner.
 
         Args:
             t: time, s.

@@ -227,10 +227,7 @@ class RecordingWriter:
         self._series[Topic.SIGNAL].add(name, t, value)
 
     def drawing(self, t: float, drawn: Drawn) -> None:
-        """Write what a planner thinks.
-
-        With the rate of the replay page, unless all is recorded.
-        """
+        """Write a planner's drawing, at the replay page's rate unless everything is recorded."""
         if self._tools is None:
             return
         rate = None if self._whole else REPLAY_RATE

@@ -1,4 +1,4 @@
-"""The build function that a component names as text: its import, and what it is called with."""
+"""The build function that a component names as text: its import, and its arguments."""
 
 from __future__ import annotations
 

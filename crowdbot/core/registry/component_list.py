@@ -1,4 +1,4 @@
-"""The components of a plugin by category, each found when its category is first asked for."""
+"""A plugin's components by category, each found when its category is first requested."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ Components = tuple[Component[Any], ...]
 
 
 class ComponentList(Sequence[Component[Any]]):
-    """All components, ordered by category.
+    """All components, ordered by category, loaded on demand.
 
-    Commands that read scenarios end without planners and metrics, which are the most and which no
-    scenario holds.
+    Commands that only read scenarios never load planners and metrics, the largest categories.
 
     Attributes:
         errors: category -> why it has no components, of those that were asked for.
@@ -34,7 +33,7 @@ class ComponentList(Sequence[Component[Any]]):
         self.errors: dict[str, CrowdbotError] = {}
 
     def of(self, category: str) -> Components:
-        """Return the components of one category; none if they cannot be had, see `errors`."""
+        """Return the components of one category; none if they cannot be loaded, see `errors`."""
         if category in self._later:
             try:
                 self._found[category] = self._later[category]()
@@ -52,7 +51,7 @@ class ComponentList(Sequence[Component[Any]]):
 
     @property
     def known(self) -> Components:
-        """Those whose category was asked for."""
+        """Return the components that have been loaded."""
         return tuple(c for category in self._order for c in self._found.get(category, ()))
 
     @property
@@ -104,12 +103,12 @@ class ComponentsByKind(Mapping[str, Mapping[str, Component[Any]]]):
 
 
 def known_components(listed: Sequence[Component[Any]]) -> Sequence[Component[Any]]:
-    """Return those of a plugin that are there already."""
+    """Return a plugin's components that have been loaded."""
     return listed.known if isinstance(listed, ComponentList) else listed
 
 
 def of_category(listed: Sequence[Component[Any]], category: str) -> Sequence[Component[Any]]:
-    """Return those of a plugin that belong to one category; no other is asked for."""
+    """Return a plugin's components of one category; no other category is loaded."""
     if isinstance(listed, ComponentList):
         return listed.of(category)
     return [c for c in listed if c.category == category]

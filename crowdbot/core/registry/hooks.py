@@ -1,4 +1,4 @@
-"""Calls the hooks of one plugin, and says what is wrong with their answers."""
+"""Calls the hooks of one plugin, and reports invalid results."""
 
 from __future__ import annotations
 

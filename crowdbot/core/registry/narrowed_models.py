@@ -1,7 +1,8 @@
-"""Classes narrowed to the installed components: shared, and found again when they are unpickled.
+"""Classes narrowed to the installed components, and their pickling.
 
-They are made when a registry is, so that no module has them. A pickled object holds the arguments
-of `discover` instead, and its class's name; another process discovers the same plugins first.
+They are created at run time with a registry, so no module has them. A pickled object holds the
+arguments of `discover` and its class's name instead; another process discovers the same plugins
+first.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ _latest: deque[Models] = deque(maxlen=8)
 
 
 def models_of(specs: Specs, source: RegistrySource | None, blank: Blank) -> Models:
-    """Return the classes so far for some specs by category; to be added to.
+    """Return the classes created so far for some specs; new ones are added to it.
 
     Args:
         specs: category and class of each component's spec.

@@ -1,4 +1,4 @@
-"""One hook for each category: old names of ``crowdbot_components``, which end with 1.0."""
+"""Deprecated hooks, one for each category, in place of ``crowdbot_components``; kept until 1.0."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OLD_HOOKS = {
 
 
 def old_hookspecs() -> ModuleType:
-    """Return the specs of the old hooks, as pluggy reads them; each warns of an implementation."""
+    """Return pluggy's specs of the deprecated hooks; implementing one gives a warning."""
     module = ModuleType("old_hooks")
     for name, category in OLD_HOOKS.items():
         setattr(module, name, _spec(name, category))

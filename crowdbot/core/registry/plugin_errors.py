@@ -75,7 +75,7 @@ class UserInterrupt(KeyboardInterrupt):
 
 @contextmanager
 def telling_interrupts() -> Iterator[None]:
-    """Raise `UserInterrupt` on Ctrl-C in the context, to tell it from a plugin's own interrupt.
+    """Raise `UserInterrupt` on Ctrl-C in the context, to tell it from a plugin's interrupt.
 
     Does nothing if Ctrl-C already has a handler, or outside the main thread.
     """

@@ -356,6 +356,6 @@ def registry_of(where: Whereabouts) -> Registry:
 
 
 def blank_of(where: Whereabouts, name: str) -> BaseModel:
-    """Return an object without fields of a narrowed class, which unpickling fills in."""
+    """Return an empty object of a narrowed class, which unpickling fills in."""
     model = registry_of(where).narrowed(name)
     return model.__new__(model)

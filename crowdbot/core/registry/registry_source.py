@@ -20,7 +20,7 @@ class RegistrySource:
 
 
 def whereabouts(source: RegistrySource | None) -> Whereabouts:
-    """Return what another process needs to find the components of a registry.
+    """Return the arguments with which another process can discover the same registry.
 
     Raises:
         PicklingError: it was put together by hand.

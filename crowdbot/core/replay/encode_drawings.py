@@ -1,4 +1,4 @@
-"""Pack what the planner drew: its tracks of people, paths, points and texts, in the world."""
+"""Encode planners' drawings for the page, in the world: tracks of people, paths, points, texts."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def encode_drawings(
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Return names, times and numbers of rows; and x, y of all rows (2, K), float32.
 
-    Rows of tracks also have their velocities, (4, K). They are placed from the robot's true pose.
-    A drawing with texts has each of them once, and for each row which one it is; -1: none.
+    Rows of tracks also have their velocities, (4, K). Positions follow from the robot's true pose.
+    Each text is stored once, with its index for each row; -1: none.
     """
     about: list[dict[str, Any]] = []
     blobs: dict[str, str] = {}

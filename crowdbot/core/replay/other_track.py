@@ -36,7 +36,7 @@ def motion_of(robot: RobotTrack) -> Array:
 
 
 def motion_until(robot: RobotTrack, samples: int, *, leaves: bool) -> Array:
-    """Return `motion_of` for this many samples; after the robot's end it stands, or is NaN."""
+    """Return `motion_of` for a number of samples; after its end a robot stands still, or is NaN."""
     rows = np.full((5, samples), np.nan)
     count = min(samples, len(robot.x))
     rows[:, :count] = motion_of(robot)[:, :count]

@@ -37,7 +37,7 @@ def pack_motion(rows: NDArray[np.int16]) -> str:
 
 
 def pack_readings(rows: NDArray[np.int16]) -> str:
-    """Pack rows with similar neighbours, such as the beams of a scan: differences between rows.
+    """Pack rows with similar neighbours, such as the beams of a scan, as differences of rows.
 
     They contain no repeated strings, so zlib does not search for any.
     """

@@ -1,4 +1,4 @@
-"""three.js in the pages: packed, and unpacked only when a view in three dimensions is asked for."""
+"""three.js in the pages: compressed, and unpacked only when the 3-D view is opened."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Metric cards as plain data for the page, which builds its elements from text only."""
+"""Metric cards as plain data for the page."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def cards(registry: Registry, metrics: Iterable[str]) -> dict[str, dict[str, Any
 
 
 def card(text: str) -> dict[str, Any]:
-    """Return the parts of a card that fit beside a table.
+    """Return the parts of a card that are shown beside a table.
 
     Returns:
         ``summary``, ``head`` (pairs of texts), ``formula``, ``variants`` (name -> definition),
@@ -48,7 +48,7 @@ def card(text: str) -> dict[str, Any]:
 
 
 def reference(card_: dict[str, Any] | None) -> dict[str, Any] | None:
-    """Return the value that means "same as without the other", if the card's range names one."""
+    """Return the value that means "no effect", if the card's range names one."""
     said = dict(card_["head"]).get("range", "") if card_ else ""
     match = re.search(r"; (-?\d+(?:\.\d+)?): ([^;,]+)", said)
     return None if match is None else {"value": float(match[1]), "meaning": match[2].strip()}

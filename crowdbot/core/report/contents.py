@@ -97,7 +97,7 @@ class Contents:
 
     @property
     def planners(self) -> tuple[str, ...]:
-        """Labels, sorted."""
+        """Return the labels of all planners, sorted."""
         return self.figures.planners
 
     @property
@@ -107,12 +107,12 @@ class Contents:
 
     @property
     def pareto_labels(self) -> dict[str, float]:
-        """Return the y of each planner's name in the plot of `pareto`, px."""
+        """Return the y position of each planner's name in the plot of `pareto`, px."""
         return label_heights(self.pareto)
 
     @cached_property
     def seeds(self) -> list[int]:
-        """All seeds, in order."""
+        """Return all seeds, in order."""
         return sorted({a.seed for a in self.attempts})
 
     @cached_property
@@ -161,7 +161,7 @@ class Contents:
         return next(roles, "candidate")
 
     def is_pinned(self, planner: str) -> bool:
-        """Return True if everything came from installed distributions, in all its runs."""
+        """Return True if all runs of a planner used only code from installed distributions."""
         return all(a.pinned for a in self.of(planner) if isinstance(a, RunRow))
 
 

@@ -43,7 +43,7 @@ class Names:
 
 
 def attempts(results: Results) -> list[Attempt]:
-    """Return everything that was tried: the runs, and failures without a later successful run."""
+    """Return all attempts: runs, and failures that no later successful run replaced."""
     made = {(r.suite, r.scenario, r.planner, r.seed) for r in results.runs}
     failed = [f for f in results.failures if (f.suite, f.scenario, f.planner, f.seed) not in made]
     return [*results.runs, *failed]
@@ -89,7 +89,7 @@ def encode_runs(
     axes: Sequence[Mapping[str, Any]],
     replays: Mapping[str, str],
 ) -> dict[str, Any]:
-    """Columns of runs; ``replays``: run id -> address of its replay page."""
+    """Return columns of runs; ``replays``: run id -> address of its replay page."""
     scenarios, statuses = Names(), Names(*ATTEMPTED)
     reasons = Names("")
     labels = [a.axes for a in tried]

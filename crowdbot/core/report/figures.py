@@ -1,4 +1,4 @@
-"""Statistics that a page shows but cannot compute itself, ready for packing.
+"""Statistics that a page shows but cannot compute itself.
 
 Intervals cover all runs and each label of each axis; comparisons cover all runs only, because every
 further selection would increase the risk of a false finding.
@@ -67,7 +67,7 @@ class Figures:
 
     @property
     def planners(self) -> tuple[str, ...]:
-        """Sorted."""
+        """Return the labels of all planners, sorted."""
         return self.headline.planners
 
 

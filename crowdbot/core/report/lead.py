@@ -1,4 +1,4 @@
-"""The first lines of a report: one plain verdict, and the main scores of each planner."""
+"""The head of a report: a verdict in one sentence, and the main scores of each planner."""
 
 from __future__ import annotations
 

@@ -32,13 +32,13 @@ def pack(numbers: NDArray[np.float64]) -> str:
 
 
 class PackedNumbers:
-    """Numbers that are packed as by `pack`, part by part: the whole need not be in memory."""
+    """Numbers packed as by `pack`, in parts, to limit memory."""
 
     def __init__(self, count: int) -> None:
         self._planes = np.empty((_PLANES, count), np.uint8)
 
     def put(self, start: int, numbers: NDArray[np.float64]) -> None:
-        """Set some numbers (n,) from a place on."""
+        """Set some numbers (n,) from an index on."""
         words = (_rounded(numbers) >> np.uint64(8 * _PLANES)).astype(">u4")
         self._planes[:, start : start + len(words)] = words.reshape(-1, 1).view(np.uint8).T
 

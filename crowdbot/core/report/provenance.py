@@ -49,7 +49,7 @@ def short(hash_: str) -> str:
 
 
 def planner_facts(runs: Sequence[RunRow]) -> dict[str, str]:
-    """Kind and parameters of one planner, from its runs."""
+    """Return kind and parameters of one planner, from its runs."""
     return _merged(run.provenance["planner"] for run in runs)
 
 

@@ -47,7 +47,7 @@ class Series(NamedTuple):
 
     @property
     def name(self) -> tuple[str, str]:
-        """Metric and variant."""
+        """Return metric and variant."""
         return self.metric, self.variant
 
 

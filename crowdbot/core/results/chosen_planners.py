@@ -1,4 +1,4 @@
-"""Results of chosen planners, which patterns name."""
+"""Filter results by patterns of planner names."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from crowdbot.errors import UnknownNameError
 
 
 def of_planners(found: Results, patterns: Sequence[str]) -> Results:
-    """Return the runs, scores and failures of planners.
+    """Return the runs, scores and failures of planners that match patterns.
 
-    A pattern stands for references, too; all of them stay where no pattern fits any.
+    Patterns apply to reference planners, too; if none matches one of those, all are kept.
 
     Args:
         found: any results.

@@ -1,4 +1,4 @@
-"""Records of failed runs: a file beside the place where the run would be."""
+"""Records of failed runs: one file each, beside the directory that the run would have."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SUFFIX = ".failure.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failure:
-    """A run that a campaign could not make, with what Python said; as its file has it.
+    """A run that a campaign could not make, with its error message, as stored in a file.
 
     Attributes:
         suite: as in `RunRow`: failures of altered scenarios are a suite of their own.

@@ -98,7 +98,7 @@ def unwritable(file: Path, error: sqlite3.OperationalError) -> InputError:
 
 
 def prepare(database: sqlite3.Connection) -> None:
-    """Make the tables where they are missing, and write their version."""
+    """Create missing tables, and write their version."""
     database.execute("PRAGMA foreign_keys = ON")
     database.executescript(_TABLES)
     database.execute(f"PRAGMA user_version = {VERSION}")

@@ -1,7 +1,7 @@
-"""Runs and scores in the rows of ``results.sqlite``: packed when written, columns when read.
+"""Conversion between runs and the rows of ``results.sqlite``.
 
-Texts that many runs share are stored once. A record is kept compressed and parsed when asked for:
-most questions need only the columns beside it.
+Texts that many runs share are stored once. A record is stored compressed and parsed on demand: most
+queries need only the other columns.
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ class _ParsedRecord:
 
 
 class IndexedRun(RunRow):
-    """A run from the index, whose record is parsed when asked for."""
+    """A run from the index, whose record is parsed on demand."""
 
     _packed: bytes = b""
 
     @staticmethod
     def of(known: Mapping[str, Any], more: Mapping[str, Any], packed: bytes) -> IndexedRun:
-        """Return a run from its own columns, shared ones, and its compressed record."""
+        """Return a run from its columns, the shared texts, and its compressed record."""
         run = object.__new__(IndexedRun)
         run.__dict__.update(known, **more, entry="", _packed=packed)
         return run
@@ -93,7 +93,7 @@ class Texts:
         self._numbers: dict[str, int] = {}
 
     def number(self, value: Any) -> int:
-        """Return the number of a value of JSON, which is added if it is new."""
+        """Return the index of a JSON value, which is added if it is new."""
         text = json.dumps(value)
         if text not in self._numbers:
             self._database.execute("INSERT OR IGNORE INTO texts (text) VALUES (?)", [text])
@@ -104,7 +104,7 @@ class Texts:
         return self._numbers[text]
 
     def value(self, number: int) -> Any:
-        """Return the value of a number, the same object each time."""
+        """Return the value with an index, the same object each time."""
         if not self._values:
             found = self._database.execute("SELECT id, text FROM texts")
             self._values = {i: json.loads(text) for i, text in found}

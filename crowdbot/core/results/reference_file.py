@@ -1,8 +1,8 @@
-"""Reference scores: runs of crowdbot's planners in one small file, with the hashes to remake them.
+"""Reference scores: runs of crowdbot's planners in one small file, with hashes to repeat them.
 
-What runs share (planners, scenarios, versions, metrics) is written once, a run is a short row. The
-file holds no recordings: each row has the hash of its trajectory, which `crowdbot verify` compares
-with that of the same run made again.
+Data shared by runs (planners, scenarios, versions, metrics) is written once, a run is a short row.
+The file holds no recordings: each row has the hash of its trajectory, which `crowdbot verify`
+compares with that of the repeated run.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class ReferenceScores:
 
     @cached_property
     def held(self) -> tuple[str, ...]:
-        """Return what it holds: one line for each suite."""
+        """Return a summary of the content: one line for each suite."""
         found = []
         for suite in dict.fromkeys(r.suite for r in self.results.runs):
             runs = [r for r in self.results.runs if r.suite == suite]

@@ -37,13 +37,13 @@ class RunRow:
 
     @property
     def run_id(self) -> str:
-        """Hash of everything that decides what happens in it; in a leaderboard with the entry."""
+        """Return the hash of all that determines the run; in a leaderboard, of the entry, too."""
         own = self.record.run_id
         return f"{self.entry}\0{own}" if self.entry else own
 
     @property
     def suite(self) -> str:
-        """The suite; runs of altered scenarios are a suite of their own."""
+        """Return the suite; runs of altered scenarios count as a suite of their own."""
         return self.record.suite + altered_suffix(self.record.altered)
 
     @property
@@ -73,7 +73,7 @@ class RunRow:
 
     @property
     def status(self) -> str:
-        """The word of its `Ending`; a run without a robot cannot run out of time."""
+        """Return the word of its `Ending`; a run without a robot cannot time out."""
         return str(Ending.PEOPLE_ALONE if self.record.people_alone else self.record.status)
 
     @property
@@ -150,7 +150,7 @@ class RunRow:
 
     @property
     def trajectory_hash(self) -> str:
-        """Hash of what happened."""
+        """Return the hash of all simulated numbers."""
         return self.record.hashes.trajectory
 
     @property
@@ -165,7 +165,7 @@ class RunRow:
 
     @property
     def crowd(self) -> str:
-        """Fingerprint of what its people do; empty without people."""
+        """Return the fingerprint of the crowd's behaviour; empty without people."""
         return self.record.crowd or ""
 
     @property
@@ -189,9 +189,9 @@ class RunRow:
 
     @cached_property
     def provenance(self) -> Mapping[str, Any]:
-        """Its provenance: ``versions``, ``machine``, ``plugins``, ``planner``, ``process``.
+        """Return ``versions``, ``machine``, ``plugins``, ``planner``, ``process`` of the run.
 
-        Each is a mapping of names to texts but ``process``, which says where the planner ran.
+        Each is a mapping of names to texts but ``process``, a text on where the planner ran.
         """
         record = self.record
         plugins = {p.name: p.distribution + ("" if p.pinned else ", not pinned")

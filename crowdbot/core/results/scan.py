@@ -1,4 +1,4 @@
-"""Scan: the runs and failures below a root, with stamps that change when their files do."""
+"""Scan: the runs and failures in a folder, with stamps that change when their files do."""
 
 from __future__ import annotations
 

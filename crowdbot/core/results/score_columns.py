@@ -39,7 +39,7 @@ class ScoreLabel(NamedTuple):
 
 
 class ColumnState(NamedTuple):
-    """Status of a value, and its reason."""
+    """Status and reason of a value."""
 
     status: str
     reason: str
@@ -67,7 +67,7 @@ class ScoreColumns(Sequence[ScoreRow]):
 
     @staticmethod
     def of(rows: Sequence[ScoreRow]) -> ScoreColumns:
-        """Return rows as columns; columns as they are."""
+        """Return rows as columns; columns are returned unchanged."""
         if isinstance(rows, ScoreColumns):
             return rows
         runs, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[ColumnState]()
@@ -166,10 +166,10 @@ class ScoreColumns(Sequence[ScoreRow]):
 
 
 class Numbered(dict[_Value, int]):
-    """Values in the order of first appearance, with their places."""
+    """Values with indices in the order of first appearance."""
 
     def place(self, value: _Value) -> int:
-        """Return the place of a value, which is added if it is new."""
+        """Return the index of a value, which is added if it is new."""
         return self.setdefault(value, len(self))
 
 

@@ -199,7 +199,7 @@ class Store:
             self._insert(directory + SUFFIX, stamp_of(self._root / (directory + SUFFIX)))
 
     def rows(self, scan: Scan | None = None) -> StoredRows:
-        """Return everything, in the documented order; with what ``scan`` has found missing."""
+        """Return everything, in the documented order, with the damaged runs that ``scan`` found."""
         order = "ORDER BY suite, position, scenario, planner, seed"
         runs, scores = read_all(self._database, order)
         columns = ", ".join(_FAILURE)

@@ -1,4 +1,4 @@
-"""Quality of the tracks of people in the runs of a folder."""
+"""Quality of people tracking in the runs of a folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results beside reference scores, and the place of planners among these."""
+"""Results beside reference scores, and the rank of planners among these."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def reference_results(text: str) -> Results:
 def with_reference(results: Results, given: Results | None) -> tuple[Results, tuple[str, ...]]:
     """Return results with reference results, under separate names, in the scenarios of both.
 
-    Scenarios without a reference run are left out, with a warning: means over different scenarios
-    would stand side by side.
+    Scenarios without a reference run are left out, with a warning, since means over different
+    scenarios cannot be compared.
 
     Returns:
         both; names of the reference planners.
@@ -90,9 +90,10 @@ def _in_scenarios(results: Results, wanted: set[tuple[str, str]]) -> Results:
 
 
 def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
-    """Yield a line for each own planner: its place among the references, by the primary score.
+    """Yield a line for each own planner: its rank among the references by the primary score.
 
-    Compared are means over the scenarios that all of them have run; a mean alone proves nothing.
+    Compared are means over the scenarios that all of them have run; without a test this proves
+    nothing.
 
     Args:
         results: from `with_reference`.

@@ -20,7 +20,7 @@ _ROUNDED = 0.01  # share of the largest moment; files are rounded
 
 
 def check_masses(described: Description) -> None:
-    """Check that Drake takes each link's mass as it stands; it makes 1 kg of what it cannot take.
+    """Check that Drake uses each link's mass as given; it replaces invalid ones by 1 kg.
 
     Raises:
         PluginError: a mass is below 0; or 0 in SDFormat, with moments of inertia, or of a part that
@@ -76,7 +76,7 @@ def _resists(described: Description, link: str) -> bool:
 
 
 def impossible_moments(described: Description) -> Iterator[str]:
-    """Yield a note for each link whose moments of inertia no body can have; Drake takes others."""
+    """Yield a note for each link with impossible moments of inertia, which Drake replaces."""
     for name, link in described.links.items():
         inertia = link.find("inertial/inertia")
         if inertia is None or not described.mass_of(name) > 0.0:
@@ -93,7 +93,7 @@ def _moment(inertia: Xml.Element, name: str) -> float:
 
 
 def below_floor(described: Description, base: str, height: float) -> Iterator[str]:
-    """Yield a note for each link, wheels aside, whose shape reaches below the floor.
+    """Yield a note for each link other than a wheel whose shape reaches below the floor.
 
     Args:
         base: link whose frame lies ``height`` (m) above the floor.

@@ -1,4 +1,4 @@
-"""Hold joints of a published robot, such as those of an arm, elsewhere than at zero."""
+"""Fix joints of a published robot, such as those of an arm, at angles other than zero."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _TURNS, _SLIDES = ("revolute", "continuous"), ("prismatic",)
 
 
 def hold_at(robot: Xml.Element, positions: Mapping[str, float]) -> None:
-    """Move the origins of joints to where they are held, and of those that mimic them.
+    """Move the origins of joints to their fixed angles, and of joints that mimic them.
 
     Args:
         robot: a URDF; it is changed.

@@ -18,7 +18,7 @@ _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 def check_inertia(
     inertial: Xml.Element, radius: float | None
 ) -> Literal["impossible", "implausible"] | None:
-    """Return what is wrong with the ``<inertial>`` of a URDF link; None if nothing.
+    """Return the error in the ``<inertial>`` of a URDF link; None if there is none.
 
     Moments must be positive, and none may exceed the sum of the other two. A wheel's radius of
     gyration must fit its radius.
@@ -41,9 +41,9 @@ def check_inertia(
 
 
 def rolling(inertial: Xml.Element, radius: float) -> None:
-    """Set the inertia of a ball that turns like a disc of this radius (m): m r^2 / 2.
+    """Set the inertia of a sphere that rolls like a disc of this radius (m): m r^2 / 2.
 
-    A ball's inertia is equal about all axes, so the link's orientation does not matter.
+    A sphere's inertia is equal about all axes, so the link's orientation does not matter.
     """
     moment = 0.5 * _value(inertial.find("mass"), "value", "a mass") * radius**2
     inertia = inertial.find("inertia")

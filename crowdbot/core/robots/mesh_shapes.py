@@ -15,7 +15,7 @@ from crowdbot.core.robots.xml import matrix, name_of, pose_of
 
 @dataclass
 class MeshNotes:
-    """The collision meshes that were simplified, by what became of them."""
+    """The collision meshes that were simplified, by the shape that replaced them."""
 
     boxed: list[str] = field(default_factory=list)
     hulls: list[str] = field(default_factory=list)
@@ -29,7 +29,7 @@ def simplify_mesh(
     link: Xml.Element, collision: Xml.Element, mesh: Xml.Element, file: Path, shape: MeshShape,
     notes: MeshNotes,
 ) -> bool:  # fmt: skip
-    """Replace a collision mesh, and note it; return False if the file is of no use.
+    """Replace a collision mesh, and note it; return False if its file cannot be used.
 
     Args:
         link, collision, mesh: the elements.

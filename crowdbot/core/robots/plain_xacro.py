@@ -1,8 +1,7 @@
-"""Write out xacro's properties and arguments where no program has to be run for it.
+"""Expand xacro's properties and arguments without running xacro.
 
-Makers publish files that need xacro for nothing but a name or a number: ``xacro:property``,
-``xacro:arg``, ``${NAME}`` and ``$(arg NAME)``. Macros, conditions, includes and sums are left to
-xacro.
+Makers publish files that need xacro only for a name or a number: ``xacro:property``, ``xacro:arg``,
+``${NAME}`` and ``$(arg NAME)``. Macros, conditions, includes and sums are left to xacro.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The drive of a published robot: an axle beside the base, more driven wheels than two."""
+"""The drive of a published robot: axles that are not at the base, more than two driven wheels."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _PARTS = ("inertial", "visual", "collision")
 
 
 def places_of(robot: Xml.Element, base: str, joints: Sequence[str]) -> dict[str, Array]:
-    """Return the places (3,) of wheels by joint, in the base's frame, m."""
+    """Return the positions (3,) of wheels by joint, in the base's frame, m."""
     described = Description("", "urdf", robot)
     return {name: described.pose(described.joint(name).child, base)[:3, 3] for name in joints}
 
 
 def sides(places: Mapping[str, Array]) -> list[list[str]]:
-    """Return the joints of wheels on the left and on the right, in their order."""
+    """Return the joints of the left and of the right wheels, in the given order."""
     return [
         [n for n, at in places.items() if at[1] > 0.0],
         [n for n, at in places.items() if at[1] <= 0.0],
@@ -32,7 +32,7 @@ def sides(places: Mapping[str, Array]) -> list[list[str]]:
 
 
 def put(robot: Xml.Element, base: str, joint: str, place: Array) -> None:
-    """Move a wheel to a place in the base's frame, without turning it."""
+    """Move a wheel to a position in the base's frame, keeping its orientation."""
     described = Description("", "urdf", robot)
     element = next(j for j in robot.findall("joint") if name_of(j) == joint)
     pose = described.pose(child_of(element), base)
@@ -41,7 +41,7 @@ def put(robot: Xml.Element, base: str, joint: str, place: Array) -> None:
 
 
 def add_support(robot: Xml.Element, base: str, name: str, place: Array, radius: float) -> None:
-    """Add a sphere to the base that slides on the floor where a wheel was."""
+    """Add a sphere without friction to the base where a wheel was."""
     link = next(e for e in robot.findall("link") if name_of(e) == base)
     shape = Xml.SubElement(link, "collision", name=name)
     Xml.SubElement(shape, "origin", xyz=" ".join(f"{x:.9g}" for x in place.tolist()))
@@ -49,9 +49,9 @@ def add_support(robot: Xml.Element, base: str, name: str, place: Array, radius: 
 
 
 def onto_axle(robot: Xml.Element, base: str, driven: Sequence[str]) -> str:
-    """Move the base's frame ahead or back onto the axle of the driven wheels; return a note.
+    """Move the base's frame along x onto the axle of the driven wheels; return a note.
 
-    Links above the base that are on its vertical, such as base_footprint, move along.
+    Parent links of the base at the same x and y, such as base_footprint, move along.
     """
     ahead = float(np.mean([at[0] for at in places_of(robot, base, driven).values()]))
     if abs(ahead) <= _SAME:

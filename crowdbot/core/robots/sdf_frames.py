@@ -1,7 +1,7 @@
-"""Write out the frames of an SDFormat model: each link's frame where its joint is.
+"""Convert the frames of an SDFormat model so that each link's frame is that of its joint.
 
-In SDFormat the pose of a joint is relative to its child, and poses may be relative to links,
-joints and frames. URDF, checks and models need one frame for a link and its joint.
+In SDFormat the pose of a joint is relative to its child, and poses may be relative to links, joints
+and frames. URDF, checks and models need one frame for a link and its joint.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _BALLS = ("ball", "universal")
 
 
 def written_out(model: Xml.Element, version: str) -> tuple[Xml.Element, list[str]]:
-    """Return a model without joint poses, frames and ball joints, and notes on what was changed.
+    """Return a model without joint poses, frames and ball joints, and notes on the changes.
 
     A model without any of these is returned itself.
 

@@ -1,7 +1,7 @@
-"""Models inside a model of SDFormat, written out: their parts become the outer model's.
+"""Flatten nested models of SDFormat: their parts become those of the outer model.
 
-A part of the model ``arm`` gets a name such as ``arm__wheel``, since simulators keep ``::`` for
-themselves. Frames stay what they were: the inner model's frame becomes a frame named ``arm``.
+A part of the model ``arm`` gets a name such as ``arm__wheel``, since simulators reserve ``::``. The
+inner model's frame becomes a frame named ``arm``.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _ATTRIBUTES = ("relative_to", "attached_to", "expressed_in")
 
 
 def without_nested(model: Xml.Element) -> tuple[Xml.Element, list[str]]:
-    """Return a model without models inside, and notes; the model itself if it has none.
+    """Return a model without nested models, and notes; the model itself if it has none.
 
     Raises:
         PluginError: a model includes a file, or is placed by a frame that is not its own.

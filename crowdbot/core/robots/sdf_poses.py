@@ -1,4 +1,4 @@
-"""Poses of SDFormat as they may be written: in degrees, as quaternions, with the older `frame`."""
+"""Normalise poses of SDFormat: degrees, quaternions, and the older attribute ``frame``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The gain of wheel motors, and what joints' damping leaves of a commanded speed."""
+"""Velocity gain of wheel motors, and the speed reached against the damping of joints."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def wheel_gain(mass: float, radius: float) -> float:
 
 
 def reached_speed(model: RobotModel, drive: DifferentialDrive, described: Description) -> float:
-    """Return the speed, m/s, that wheels under velocity control hold if ``v_max`` is commanded.
+    """Return the steady speed of wheels under velocity control when ``v_max`` is commanded, m/s.
 
     Their motors work against the damping of all joints that turn. Other losses are not counted.
     """

@@ -1,4 +1,4 @@
-"""Excused runs: a robot that is struck from behind without fault and topples gets another draw."""
+"""Excused runs: a robot that topples after being struck without its fault gets another draw."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class Trial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prepared:
-    """The parts of a run that depend neither on planner nor on seed.
+    """The parts of a run that do not depend on planner and seed.
 
     Attributes:
         run: the scenario.
@@ -83,12 +83,12 @@ class Reference:
 
     @property
     def run_id(self) -> str:
-        """Its id."""
+        """Return its id."""
         return self.identity.id()
 
     @property
     def finished(self) -> ReferenceRecord | None:
-        """Record of the calibration run if complete, even if the planner failed; None otherwise."""
+        """Return its record if complete, even if the planner failed; None otherwise."""
         record = ReferenceRecord.find(self.directory)
         if record is None or record.run_id != self.run_id:
             return None
@@ -159,7 +159,7 @@ def prepare(
 
 
 def run_identity(request: Request, run: Trial) -> RunIdentity:
-    """Everything that decides what happens in a run."""
+    """Return everything that determines the course of a run."""
     return RunIdentity(
         scenario=run.scenario.id,
         suite=request.entry.suite,
@@ -173,7 +173,7 @@ def run_identity(request: Request, run: Trial) -> RunIdentity:
 
 
 def planner_part(choice: PlannerChoice) -> PlannerPart:
-    """A planner as records have it."""
+    """Return the planner's entry in a record."""
     return PlannerPart(**{**choice.spec_dump, "name": choice.name, "label": choice.label})
 
 
@@ -230,7 +230,7 @@ def _reference(
 
 
 def reusable_record(request: Request, run_id: str, *, compared: bool) -> RunRecord | None:
-    """The record of the run if it is complete and holds as much as is wanted now.
+    """Return the run's record if it is complete and holds all that is requested now, else None.
 
     Args:
         request: what is wanted.

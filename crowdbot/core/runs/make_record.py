@@ -1,4 +1,4 @@
-"""Makes the record of a run from what was asked for and what came of it."""
+"""Makes the record of a run from its request and its outcome."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def make_record(
     *,
     parts: EnvironmentParts,
 ) -> RunRecord:
-    """The record of a run of one robot or of several, but for the sizes of its files."""
+    """Return the record of a run with one robot or several, without the sizes of its files."""
     scenario, registry = request.scenario, request.registry
     run = max(runs.values(), key=lambda one: len(one.t))  # sees the people to the end
     hashes = HashesPart(

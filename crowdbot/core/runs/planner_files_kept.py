@@ -1,4 +1,4 @@
-"""Files that planners read, such as weights, kept once beside the runs that they drove."""
+"""Planners' files, such as weights, stored once beside the runs that used them."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def keep_planner_files(root: Path, files: Mapping[str, Path]) -> None:
 
 
 def kept_file(root: Path, digest: str) -> Path:
-    """Return where a file with some SHA-256 is kept."""
+    """Return the path of the stored file with some SHA-256."""
     return root / FOLDER / f"{digest}{KEPT}"
 
 

@@ -119,9 +119,9 @@ def remarks(record: RunRecord) -> dict[str, str]:
 
 
 def runs_inside(record: RunRecord) -> bool:
-    """True if a planner that is not crowdbot's own ran inside the simulator.
+    """Return True if a planner that is not crowdbot's own ran inside the simulator.
 
-    Runs of before planners had processes do not say where theirs ran.
+    Runs from before planners had processes do not say where theirs ran.
     """
     if record.planner_process != IN_PROCESS or "planner_process" not in record.model_fields_set:
         return False

@@ -1,4 +1,4 @@
-"""Parts of the records of runs and calibration runs: types, ranges, and the mark of identity."""
+"""Parts of records of runs and calibration runs: types, ranges, and fields of their identity."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class RecordPart(BaseModel):
     model_config = ConfigDict(extra="allow", strict=True, frozen=True)
 
     def document(self) -> dict[str, Any]:
-        """The part as JSON has it: what was given, defaults left out."""
+        """Return the part as JSON values, without defaults."""
         return self.model_dump(mode="json", exclude_unset=True)
 
     def identity(self) -> dict[str, Any]:
@@ -52,7 +52,7 @@ class RecordPart(BaseModel):
 
 
 class PlannerPart(RecordPart):
-    """The planner; its parameters stand beside these.
+    """The planner; its parameters are further keys of the record.
 
     Attributes:
         sha256: of the file of a planner that comes from no plugin.
@@ -128,14 +128,14 @@ class MomentPart(RecordPart):
 
 
 class StopPart(RecordPart):
-    """The moment at which a person's hand left the stick, which was centred."""
+    """The moment at which a person released the stick, which was then centred."""
 
     t: Seconds
     why: Annotated[str, Field(max_length=100)]
 
 
 class WaitPart(StopPart):
-    """A stretch of real time, s, in which a run stood still until a person was back."""
+    """An interval of real time, s, in which a run was paused until a person was back."""
 
     seconds: Seconds
 

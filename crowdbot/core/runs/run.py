@@ -88,12 +88,12 @@ class Run:
 
     @property
     def status(self) -> str:
-        """Ending of the run: ``arrived``, ``timeout``, …, a word of the table of endings."""
+        """Return the ending of the run: ``arrived``, ``timeout``, or another word of the table."""
         return str(self.record.status)
 
     @property
     def failed(self) -> bool:
-        """True if it counts as failed: its planner did something wrong."""
+        """Return True if the run failed because of its planner."""
         return has_failed(self.status)
 
     @cached_property
@@ -120,7 +120,7 @@ class Run:
 
     @cached_property
     def robots(self) -> Mapping[str, Trajectories]:
-        """Return the run of each of several robots, by name; empty in a run of one."""
+        """Return the run of each robot by name, if there are several; else empty."""
         if not self.record.robots:
             return {}
         with Recording(self.directory / files.RECORDING) as recording:

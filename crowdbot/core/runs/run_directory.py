@@ -54,7 +54,7 @@ def checked_record(directory: Path) -> dict[str, Any]:
 
 
 def is_bag(folder: str | Path) -> bool:
-    """Return True for a run that was exported as a bag: its record, but another recording."""
+    """Return True for a run that was exported as a bag: the same record, another recording."""
     if os.path.lexists(f"{folder}/{RECORDING}"):
         return False
     try:
@@ -159,7 +159,7 @@ def changed(directory: Path, record: Mapping[str, Any], names: Sequence[str]) ->
 
 
 def check_whole(directory: Path, record: Mapping[str, Any], *, recording: bool = False) -> None:
-    """Refuse a run that is damaged.
+    """Raise an error for a damaged run.
 
     Raises:
         InputError: what is missing, cut or changed.

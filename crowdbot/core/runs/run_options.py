@@ -1,4 +1,4 @@
-"""RunOptions: how runs are made, one value from the command line down to the recorder."""
+"""RunOptions: how runs are made, passed unchanged from the command line to the recorder."""
 
 from __future__ import annotations
 

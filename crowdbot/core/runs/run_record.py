@@ -1,4 +1,4 @@
-"""RunRecord: what a run says about itself, as it is written to ``run.json``, read and hashed."""
+"""RunRecord: the facts about a run, as written to ``run.json``, read and hashed."""
 
 from __future__ import annotations
 
@@ -147,12 +147,12 @@ class RunRecord(_Record, RunIdentity):
 
     @property
     def by_person(self) -> bool:
-        """True if a person drove, with an assistant or without: the run cannot be repeated."""
+        """Return True if a person drove, alone or with an assistant: the run cannot be repeated."""
         return self.planner.kind == BY_PERSON
 
     @property
     def classed(self) -> Literal["privileged", "sensors only", "driven by a person"]:
-        """Return the class in which runs like this are ranked."""
+        """Return the leaderboard class of the run."""
         if self.by_person:
             return "driven by a person"
         return "privileged" if self.knows_truth else "sensors only"
@@ -169,7 +169,7 @@ class RunRecord(_Record, RunIdentity):
 
     @property
     def uncontained(self) -> str:
-        """Return what a planner in a separate process was not kept from; empty: nothing.
+        """Return the accesses that a planner's separate process was not denied; empty: none.
 
         Planners were not contained before records said so.
         """

@@ -1,4 +1,4 @@
-"""The words of a scenario's id in plain English: ``late`` of challenge-2026 is what people do."""
+"""Plain English for the words of a scenario's id, such as ``late`` of challenge-2026."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ORDER = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "ei
 
 
 def scenario_words(record: RunRecord, scenario: Scenario) -> str:
-    """Return one sentence that says what the words of a scenario's id mean; empty without any.
+    """Return one sentence on the meaning of a scenario's id; empty without known words.
 
     Args:
         record: of the run, with the labels of the suite's axes.

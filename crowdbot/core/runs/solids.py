@@ -1,4 +1,4 @@
-"""Pack what the view in three dimensions shows besides the plan: heights, bodies, cameras."""
+"""Encode data of the replay page's 3-D view: heights, bodies, cameras."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def solids_of(
     robots: Mapping[str, tuple[RobotModel, Mapping[str, SensorInfo]]],
     people: SolidPeople | None,
 ) -> dict[str, Any]:
-    """Return the numbers for JSON; walls say what they stop, as in `encode.scenery_numbers`.
+    """Return the numbers for JSON; for walls see `encode.scenery_numbers`.
 
     Args:
         robots: model and sensors of each, in the order of the page's robots.

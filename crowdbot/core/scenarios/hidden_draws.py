@@ -114,7 +114,7 @@ def commit(spec: str, registry: Registry, seed: int | None = None) -> tuple[Secr
 
 
 def expanded(document: OpenDocument, registry: Registry) -> Expansion:
-    """Return the scenarios of a document, whose files are those that were committed to.
+    """Return the scenarios of a document, after checking its files against the commitment.
 
     Raises:
         SpecError: a scenario is invalid, or a file is missing or was changed.

@@ -51,7 +51,7 @@ def spec_of(scenario: Scenario, registry: Registry) -> str:
 
 
 def check_revealed(scenario: Scenario) -> None:
-    """Check that the people of a scenario are known.
+    """Raise an error if the people of a scenario are still hidden.
 
     Raises:
         InputError: their seed is hidden; the message explains how to practise.
@@ -64,7 +64,7 @@ def check_revealed(scenario: Scenario) -> None:
 
 
 def values_of(scenario: Scenario) -> Values:
-    """Return what is hashed of a scenario, by dotted path."""
+    """Return the hashed fields of a scenario, by dotted path."""
     return flatten({k: v for k, v in plain(scenario).items() if k not in OUTSIDE_HASH})
 
 

@@ -57,7 +57,7 @@ def names_crowd(text: str, registry: Registry) -> bool:
 
 
 def open_crowd(text: str, registry: Registry, overrides: Sequence[str] = ()) -> Crowd:
-    """Return the crowd that a text names; its default speeds are those of recorded people.
+    """Return the crowd that a text names, with speeds of recorded people by default.
 
     Args:
         text: the name of a part, the path of one, or the kind of a crowd policy.

@@ -1,4 +1,4 @@
-"""Replace the crowds of scenarios: decisions change, starts and goals do not."""
+"""Replace the crowds of scenarios: behaviour changes, starts and goals do not."""
 
 from __future__ import annotations
 

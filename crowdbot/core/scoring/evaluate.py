@@ -82,7 +82,7 @@ class Scores(Sequence[Score]):
         return iter(self.items)
 
     def find(self, metric: str, variant: str = "corrected") -> Score:
-        """The score of one metric and variant.
+        """Return the score of one metric and variant.
 
         Raises:
             UnknownNameError: there is none.
@@ -98,7 +98,7 @@ class Scores(Sequence[Score]):
         return of_metric[variant]
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row per score: scenario, planner, seed, metric, variant, value, and so on.
+        """Return one row per score: scenario, planner, seed, metric, variant, value, and so on.
 
         Missing values are NaN; ``status`` and ``reason`` say why.
 

@@ -1,8 +1,8 @@
-"""The four main scores, which show if a planner is good; everything else is detail.
+"""The four main scores, which show if a planner is good; all others are details.
 
-One is primary and orders planners. The other three show who pays for it. Each has an adversary that
-fools the other three, see docs/explanation/four_scores.md. The correction for multiple tests covers
-these four: among 120 numbers, some differ by chance.
+One is primary and orders planners. The other three show side effects on people. Each prevents a
+cheat that the other three miss, see docs/explanation/four_scores.md. The correction for multiple
+tests covers these four: among 120 numbers, some differ by chance.
 """
 
 from __future__ import annotations

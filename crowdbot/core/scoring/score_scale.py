@@ -1,4 +1,4 @@
-"""Known properties of a score before any run: bounds, and the exposure of a rate."""
+"""Properties of a score that its metric declares: bounds, and the exposure of a rate."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Appearances of people to sensors: legs of their own, wheelchairs, what they push.
+"""Individual appearances of people to sensors: stride, wheelchairs, pushed objects.
 
-All upright cylinders, as in `crowdbot.core.sensing.body_model`. For the sources of the sizes, see
-docs/reference/people.md.
+All are upright cylinders, as in `crowdbot.core.sensing.body_model`. For the sources of the sizes,
+see docs/reference/people.md.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def heights(appearance: Appearance, usual: float) -> Array:
 
 
 def gaits(appearance: Appearance, height: Array) -> Array:
-    """Return the gaits of people (M,), columns as above."""
+    """Return hip height (m), stride (m), phase, swing and lead of people's legs (M, 5)."""
     found = np.zeros((len(height), 5))
     for i, (look, tall) in enumerate(zip(appearance.look, height.tolist(), strict=True)):
         hip = appearance.leg_length[i] or _USUAL_HIP * tall
@@ -64,7 +64,7 @@ def gaits(appearance: Appearance, height: Array) -> Array:
 
 
 def things(appearance: Appearance) -> Array:
-    """Return people's objects (T, 6), columns as above."""
+    """Return people's objects (T, 6): index of the person, then columns as in `_THINGS`."""
     rows = [
         (i, *thing) for i, look in enumerate(appearance.look) for thing in _THINGS.get(look, ())
     ]
@@ -82,7 +82,7 @@ def place_looks(
     gait: Array,
     out: Array,
 ) -> None:
-    """As `place_people`, for people with individual gaits.
+    """Write the cylinders of people with individual gaits, see `place_people`.
 
     Args:
         people, present, direction, walked, radius, height: as there.
@@ -117,7 +117,7 @@ def place_things(
     first: int,
     out: Array,
 ) -> None:
-    """Write people's objects; those of absent people are at infinity.
+    """Write the cylinders of people's objects; those of absent people are at infinity.
 
     Args:
         owned: (T, 6), see `things`.

@@ -1,8 +1,8 @@
-"""Walls that others hide from every point of a cell, compiled.
+"""Find walls that are hidden by others from every point of a square; compiled.
 
-All ways from a square to a straight wall lie in the hull of both. Walls that touch each other there
-and reach from one flank of the hull to the other, without touching the square or the wall, cross
-every such way.
+All lines of sight from a square to a straight wall lie in the convex hull of both. Connected walls
+that reach from one side of the hull to the other, without touching the square or the wall, block
+them all.
 """
 
 from __future__ import annotations
@@ -237,8 +237,8 @@ def hidden_walls(
 ) -> None:  # fmt: skip
     """Mark the walls that others hide from a square.
 
-    A wall that reaches as low and as high as another and as the sensors hides it: a line of sight
-    is there at a height between those of the sensor and of what it hits.
+    A hiding wall must span the heights of the hidden one and of the sensors: lines of sight pass it
+    at a height between those of the sensor and the hit.
 
     Args:
         square: its middle x, y, and half of its side, m.

@@ -18,7 +18,7 @@ FAR = 1e6
 
 @dataclass(frozen=True, slots=True)
 class OtherRobot:
-    """A robot as others see it: solid from the floor up to its height, m."""
+    """A robot as other robots' sensors see it: solid from the floor to its height, m."""
 
     footprint: Footprint
     height: float

@@ -55,7 +55,7 @@ class Lens(NamedTuple):
 
 
 class RenderPass(NamedTuple):
-    """One image of H rows and W columns during rendering.
+    """State of rendering one image of H rows and W columns.
 
     Attributes:
         lens: the camera's lens.

@@ -1,4 +1,4 @@
-"""Errors added to the readings of any sensor."""
+"""Errors added to the readings of a sensor of any kind."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from crowdbot.errors import InputError
 
 
 class ErringSensor:
-    """A sensor whose readings get errors; it draws after the sensor, whose own draws stay.
+    """A sensor with added errors, which are drawn after the sensor's own noise.
 
-    Numbers that are not finite, such as a beam without an echo, stay; a bumper's sectors are
-    rounded to 0 or 1, so that an error is a false touch or a missed one.
+    Infinite and NaN values, such as beams without an echo, stay unchanged; a bumper's sectors are
+    rounded to 0 or 1, so that an error is a false or a missed touch.
 
     Args:
         sensor: the sensor without errors.

@@ -211,7 +211,7 @@ class Scene:
 
     @property
     def walked(self) -> Array:
-        """Return the way that people have walked (M,), m."""
+        """Return the distance that people have walked (M,), m."""
         return immutable(self._walked)
 
     @property
@@ -240,7 +240,7 @@ class Scene:
         )
 
     def obstacles_near(self, x: float, y: float, reach: float) -> Obstacles:
-        """Return everything that rays from a point can hit within reach, m, and perhaps more."""
+        """Return a superset of everything that rays from a point can hit within a distance, m."""
         walls, (_, _, discs, owner) = self._near.near(x, y, reach), self.obstacles
         return Obstacles(walls.segments, walls.heights, discs, owner)
 

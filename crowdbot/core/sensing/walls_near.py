@@ -1,4 +1,4 @@
-"""The walls that a sensor can see, found once for each square metre that it stands on."""
+"""The walls that a sensor can see, cached for each square metre of its position."""
 
 from __future__ import annotations
 

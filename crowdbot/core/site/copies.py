@@ -1,4 +1,4 @@
-"""Copies of what a site links to: the suite with its files, and the bundles."""
+"""Copies of the files that a site links to: the suite with its files, and the bundles."""
 
 from __future__ import annotations
 

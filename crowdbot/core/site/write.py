@@ -75,7 +75,7 @@ class Site:
 
     @property
     def few_crowds(self) -> str:
-        """Return that even two planners would share a rank, whatever they do; mostly empty."""
+        """Return a warning if there are too few crowds to separate any ranks; usually empty."""
         scenarios = self.expansion.scenarios
         draws = len({s.id if s.crowd is None else population_inputs(s) for s in scenarios})
         least = least_draws(len(MAIN_SCORES), ALPHA)
@@ -163,13 +163,13 @@ def moment_text(text: str) -> str:
 
 
 def without_symbol(summary: str) -> str:
-    """Return the summary of a metric without the symbol before it, for readers of no formula."""
+    """Return the summary of a metric without its symbol."""
     text = re.sub(r"^[A-Z]+(_\w+)?: ", "", summary)
     return text[:1].upper() + text[1:]
 
 
 def take_part(site: Site) -> list[tuple[str, str]]:
-    """Return the commands with which a team takes part: what each does, and the command."""
+    """Return the commands for participants, each with its purpose."""
     version = metadata.version("crowdbot")
     install = (
         "Install the crowdbot of this page; where pip does not find it, from its wheel.",

@@ -1,4 +1,4 @@
-"""Audit of a suite: do its runs separate floors from baselines, and how far is the ceiling?"""
+"""Audit of a suite: check that its runs separate floor planners from baseline planners."""
 
 from __future__ import annotations
 

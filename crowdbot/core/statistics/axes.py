@@ -76,7 +76,7 @@ def axis_effects(table: Table, name: Name, planner: str) -> list[AxisEffect]:
 
 
 def densities(table: Table) -> tuple[DensityLevel, ...]:
-    """Realised densities by label of the axis ``density``, of all runs with people."""
+    """Return realised densities of all runs with people, by label of the axis ``density``."""
     by_label: dict[str, list[float]] = {}
     for run in table.runs.values():
         if run.density is not None:

@@ -140,7 +140,7 @@ def primary_name(table: Table) -> Name | None:
 
 
 def lead_over(table: Table, name: Name, planner: str, other: str, *, level: float = 0.95) -> Lead:
-    """Return how far a planner is ahead of another in one score."""
+    """Return the lead of a planner over another in one score."""
     found, _ = compare(table, name, planner, other, level=level)
     sign = 1.0 if found.better in ("higher", "none") else -1.0
     by = _turned(found.difference, sign)

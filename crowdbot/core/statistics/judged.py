@@ -1,11 +1,11 @@
-"""The gains on which a verdict rests: every pair of runs, with the worst in place of no value.
+"""Differences on which a verdict rests: every pair of runs, with missing values at their worst.
 
-A planner must not gain by a run that is not there. To find that planner ``a`` is better than ``b``,
-runs of ``a`` count as the worst if they are missing, failed, or have no rate because the robot did
-not get anywhere. The worst is the bound of the score, or, without one, the worst value of the two
-planners. Runs of ``b`` that failed or got nowhere count in the same way; its missing runs are left
-out, and are not evidence against it. Other scores without a value forbid a verdict in favour of
-their planner, unless bounds are known.
+A planner must not gain by a missing run. To find that planner ``a`` is better than ``b``, runs of
+``a`` count as the worst if they are missing, failed, or have no rate because the robot did not
+advance. The worst is the bound of the score, or, without one, the worst value of the two planners.
+Runs of ``b`` that failed or did not advance count in the same way; its missing runs are left out,
+and are not evidence against it. Other scores without a value forbid a verdict in favour of their
+planner, unless bounds are known.
 """
 
 from __future__ import annotations

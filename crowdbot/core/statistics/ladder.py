@@ -1,7 +1,7 @@
-"""Ladders of sensing: the same planner with better and better knowledge.
+"""Ladders of sensing: the same planner with increasingly better knowledge.
 
-What is lost by perception is the lead of the top rung over the planner as it is; what is lost by
-planning is what the top rung lacks to the best value of the score.
+The loss by perception is the lead of the top rung over the planner with real sensors; the loss by
+planning is the difference of the top rung to the best value of the score.
 """
 
 from __future__ import annotations

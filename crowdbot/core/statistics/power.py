@@ -1,8 +1,8 @@
-"""Power of runs at hand: how many tell a difference of two planners, and which conditions help.
+"""Power of existing runs: how many are needed to detect a difference, and which conditions help.
 
 Conditions are fixed and draws random, as in `clusters`. With variance V of a draw's mean difference
-within conditions, a sample of G draws finds the difference d with probability 0.8 if ``d >=
-sqrt(V / G) (t(1 - alpha/2) + t(0.8))``, with the degrees of freedom G - conditions.
+within conditions, a sample of G draws finds the difference d with probability 0.8 if ``d >= sqrt(V
+/ G) (t(1 - alpha/2) + t(0.8))``, with the degrees of freedom G - conditions.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ def planner_mean(
 def mean_of_rows(
     table: Table, name: Name, rows: Mapping[str, NDArray[np.bool_]], level: float = 0.95
 ) -> Estimate:
-    """Return the same for runs of several planners: planner -> (n,) its rows."""
+    """Return the mean and interval of several planners: planner -> (n,) its rows."""
     scale = table.scale(name)
     bounds, step = (scale.minimum, scale.maximum), 1.0 if scale.integer else 0.0
     parts = [_values(table, name, planner, chosen) for planner, chosen in rows.items()]

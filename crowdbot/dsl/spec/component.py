@@ -23,6 +23,8 @@ class Component(Generic[S_co]):
     Attributes:
         spec: pydantic model whose ``kind`` is a Literal, e.g. ``Literal["acme.swarm"]``.
         build: ``"package.module:function"``; imported when something is simulated or scored.
+            Default: ``build`` beside the spec; that of ``package.x:XSpec`` is
+            ``package.x_build:build``.
         summary: one line, shown by ``crowdbot plugins``.
         spec_version: raised when the meaning of a field changes.
         examples: valid documents without ``kind``, fed to docs and conformance checks.
@@ -35,7 +37,7 @@ class Component(Generic[S_co]):
     """
 
     spec: type[S_co]
-    build: str
+    build: str = ""
     summary: str
     spec_version: int = 1
     examples: tuple[Mapping[str, Any], ...] = ({},)
@@ -43,6 +45,11 @@ class Component(Generic[S_co]):
     successor: str = ""
     card: str = ""
     exceptions: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Fill in the default build function."""
+        if not self.build:
+            object.__setattr__(self, "build", f"{self.spec.__module__}_build:build")
 
     @property
     def kind(self) -> str:

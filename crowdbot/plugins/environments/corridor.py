@@ -76,7 +76,6 @@ class CorridorSpec(EnvironmentSpec):
 
 CORRIDOR = Component(
     spec=CorridorSpec,
-    build="crowdbot.plugins.environments.corridor_build:build",
     summary="straight corridor, with pillars or without; people walk through its ends into portals",
     examples=(
         {},

@@ -19,7 +19,6 @@ class GaussianSpec(NoiseSpec):
 
 GAUSSIAN = Component(
     spec=GaussianSpec,
-    build="crowdbot.plugins.noise.gaussian_build:build",
     summary="normally distributed errors",
     examples=({"std": "1 mm"},),
 )

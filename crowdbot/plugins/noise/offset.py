@@ -16,9 +16,4 @@ class OffsetSpec(NoiseSpec):
     value: Length = Field(description="Added to every hit, m.")
 
 
-OFFSET = Component(
-    spec=OffsetSpec,
-    build="crowdbot.plugins.noise.offset_build:build",
-    summary="the same error always",
-    examples=({"value": "2 cm"},),
-)
+OFFSET = Component(spec=OffsetSpec, summary="the same error always", examples=({"value": "2 cm"},))

@@ -21,8 +21,4 @@ class PeakSpec(NoiseSpec):
     std: NonNegativeLength = Field(default=1.0, description="Standard deviation of heights, m.")
 
 
-PEAK = Component(
-    spec=PeakSpec,
-    build="crowdbot.plugins.noise.peak_build:build",
-    summary="rare, large errors",
-)
+PEAK = Component(spec=PeakSpec, summary="rare, large errors")

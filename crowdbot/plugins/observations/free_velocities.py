@@ -62,6 +62,5 @@ class FreeVelocitiesSpec(ObservationSpec):
 
 FREE_VELOCITIES = Component(
     spec=FreeVelocitiesSpec,
-    build="crowdbot.plugins.observations.free_velocities_build:build",
     summary="how long each of a fan of velocities is free of people and walls",
 )

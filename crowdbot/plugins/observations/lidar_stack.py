@@ -41,8 +41,4 @@ class LidarStackSpec(ObservationSpec):
         return (self.sensor, *self.others)
 
 
-LIDAR_STACK = Component(
-    spec=LidarStackSpec,
-    build="crowdbot.plugins.observations.lidar_stack_build:build",
-    summary="last scans of a lidar, goal and own motion",
-)
+LIDAR_STACK = Component(spec=LidarStackSpec, summary="last scans of a lidar, goal and own motion")

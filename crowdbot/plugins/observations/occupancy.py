@@ -31,8 +31,4 @@ class OccupancySpec(ObservationSpec):
         return (self.sensor,)
 
 
-OCCUPANCY = Component(
-    spec=OccupancySpec,
-    build="crowdbot.plugins.observations.occupancy_build:build",
-    summary="grid of what a lidar hits around the robot",
-)
+OCCUPANCY = Component(spec=OccupancySpec, summary="grid of what a lidar hits around the robot")

@@ -28,8 +28,4 @@ class TracksSpec(ObservationSpec):
     goal_range: PositiveLength = Field(default=10.0, description="Farther goals are this far, m.")
 
 
-TRACKS = Component(
-    spec=TracksSpec,
-    build="crowdbot.plugins.observations.tracks_build:build",
-    summary="nearest people in the robot's frame, as they are",
-)
+TRACKS = Component(spec=TracksSpec, summary="nearest people in the robot's frame, as they are")

@@ -27,8 +27,4 @@ class TruthSpec(ObservationSpec):
     fastest: PositiveSpeed = Field(default=3.0, description="Faster people are this fast, m/s.")
 
 
-TRUTH = Component(
-    spec=TruthSpec,
-    build="crowdbot.plugins.observations.truth_build:build",
-    summary="everything, in the world's frame",
-)
+TRUTH = Component(spec=TruthSpec, summary="everything, in the world's frame")

@@ -38,8 +38,4 @@ class GoalSeekSpec(PlannerSpec):
     )
 
 
-GOAL_SEEK = Component(
-    spec=GoalSeekSpec,
-    build="crowdbot.plugins.planners.goal_seek_build:build",
-    summary="straight to the goal, blind",
-)
+GOAL_SEEK = Component(spec=GoalSeekSpec, summary="straight to the goal, blind")

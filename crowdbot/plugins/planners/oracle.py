@@ -53,6 +53,5 @@ class OracleSpec(CrowdPredictionSpec):
 
 ORACLE = Component(
     spec=OracleSpec,
-    build="crowdbot.plugins.planners.oracle_build:build",
     summary="plans with the truth among people who give way in each plan, privileged",
 )

@@ -16,8 +16,4 @@ class StandStillSpec(PlannerSpec):
     kind: Literal["stand_still"] = "stand_still"
 
 
-STAND_STILL = Component(
-    spec=StandStillSpec,
-    build="crowdbot.plugins.planners.stand_still_build:build",
-    summary="never moves",
-)
+STAND_STILL = Component(spec=StandStillSpec, summary="never moves")

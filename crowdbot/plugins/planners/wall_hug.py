@@ -50,8 +50,4 @@ class WallHugSpec(PlannerSpec):
     )
 
 
-WALL_HUG = Component(
-    spec=WallHugSpec,
-    build="crowdbot.plugins.planners.wall_hug_build:build",
-    summary="to the border of the goal zone and along it, blind",
-)
+WALL_HUG = Component(spec=WallHugSpec, summary="to the border of the goal zone and along it, blind")

@@ -20,8 +20,4 @@ class BurdenSpec(ProgressSpec):
     work: Amount = Field(default=0.01, description="Taken off for each joule, 1/J.")
 
 
-BURDEN = Component(
-    spec=BurdenSpec,
-    build="crowdbot.plugins.rewards.burden_build:build",
-    summary="progress that demands little of people",
-)
+BURDEN = Component(spec=BurdenSpec, summary="progress that demands little of people")

@@ -23,8 +23,4 @@ class ComfortSpec(ProgressSpec):
     )
 
 
-COMFORT = Component(
-    spec=ComfortSpec,
-    build="crowdbot.plugins.rewards.comfort_build:build",
-    summary="progress that leaves people their room",
-)
+COMFORT = Component(spec=ComfortSpec, summary="progress that leaves people their room")

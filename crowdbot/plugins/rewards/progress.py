@@ -40,8 +40,4 @@ class ProgressSpec(RewardSpec):
     )
 
 
-PROGRESS = Component(
-    spec=ProgressSpec,
-    build="crowdbot.plugins.rewards.progress_build:build",
-    summary="progress to the goal, at each step",
-)
+PROGRESS = Component(spec=ProgressSpec, summary="progress to the goal, at each step")

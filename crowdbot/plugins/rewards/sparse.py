@@ -31,8 +31,4 @@ class SparseSpec(RewardSpec):
     slope: Amount = Field(default=0.5, description="Taken off besides, for each metre of gap, 1/m.")
 
 
-SPARSE = Component(
-    spec=SparseSpec,
-    build="crowdbot.plugins.rewards.sparse_build:build",
-    summary="arrival, contact and little room, as in CADRL",
-)
+SPARSE = Component(spec=SparseSpec, summary="arrival, contact and little room, as in CADRL")

@@ -46,6 +46,5 @@ class CuybotSpec(LimitedRobotSpec):
 
 CUYBOT = Component(
     spec=CuybotSpec,
-    build="crowdbot.plugins.robots.cuybot_build:build",
     summary="base with a column and a soft skin, goes sideways too, gives way when pushed",
 )

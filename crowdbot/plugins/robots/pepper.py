@@ -38,6 +38,5 @@ class PepperSpec(LimitedRobotSpec):
 
 PEPPER = Component(
     spec=PepperSpec,
-    build="crowdbot.plugins.robots.pepper_build:build",
     summary="humanoid on three omni wheels, goes sideways too, 0.55 m/s",
 )

@@ -42,6 +42,5 @@ class QoloSpec(LimitedRobotSpec):
 
 QOLO = Component(
     spec=QoloSpec,
-    build="crowdbot.plugins.robots.qolo_build:build",
     summary="standing wheelchair with a rider, differential drive, capsule of 1.37 m, 1.5 m/s",
 )

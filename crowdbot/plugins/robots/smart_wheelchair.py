@@ -44,6 +44,5 @@ class SmartWheelchairSpec(LimitedRobotSpec):
 
 SMART_WHEELCHAIR = Component(
     spec=SmartWheelchairSpec,
-    build="crowdbot.plugins.robots.smart_wheelchair_build:build",
     summary="powered wheelchair with its driver, mid-wheel drive, 1.1 m x 0.61 m, 1.5 m/s",
 )

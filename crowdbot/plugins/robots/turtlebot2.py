@@ -35,6 +35,5 @@ class Turtlebot2Spec(LimitedRobotSpec):
 
 TURTLEBOT2 = Component(
     spec=Turtlebot2Spec,
-    build="crowdbot.plugins.robots.turtlebot2_build:build",
     summary="Kobuki base with hexagon stack, differential drive, 0.65 m/s",
 )

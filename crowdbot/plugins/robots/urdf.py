@@ -208,7 +208,6 @@ _JOINTS = ("left_wheel_joint", "right_wheel_joint")
 
 URDF = Component(
     spec=UrdfSpec,
-    build="crowdbot.plugins.robots.urdf_build:build",
     summary="any robot on two driven wheels, from its URDF",
     examples=(
         {

@@ -48,6 +48,5 @@ class BumperSpec(SensorSpec):
 
 BUMPER = Component(
     spec=BumperSpec,
-    build="crowdbot.plugins.sensors.bumper_build:build",
     summary="sectors around the robot that touch people, walls or pillars",
 )

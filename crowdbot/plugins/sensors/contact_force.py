@@ -28,6 +28,5 @@ class ContactForceSpec(SensorSpec):
 
 CONTACT_FORCE = Component(
     spec=ContactForceSpec,
-    build="crowdbot.plugins.sensors.contact_force_build:build",
     summary="force and torque with which people push the robot",
 )

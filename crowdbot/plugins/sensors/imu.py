@@ -44,6 +44,5 @@ class ImuSpec(SensorSpec):
 
 IMU = Component(
     spec=ImuSpec,
-    build="crowdbot.plugins.sensors.imu_build:build",
     summary="angular rate and specific force with noise, bias and bias random walk",
 )

@@ -34,7 +34,6 @@ class InfraredSpec(RangeSensorSpec):
 
 INFRARED = Component(
     spec=InfraredSpec,
-    build="crowdbot.plugins.sensors.infrared_build:build",
     summary="narrow beam that sees what faces it",
     exceptions={"check_exact_without_noise": "its rays are random for each reading"},
 )

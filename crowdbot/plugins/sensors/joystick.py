@@ -90,7 +90,6 @@ class JoystickSpec(SensorSpec):
 
 JOYSTICK = Component(
     spec=JoystickSpec,
-    build="crowdbot.plugins.sensors.joystick_build:build",
     summary="velocity that the robot's driver asks for: scripted, or recorded",
     examples=(
         {},

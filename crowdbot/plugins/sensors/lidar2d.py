@@ -14,8 +14,4 @@ class Lidar2dSpec(LidarSpec):
     kind: Literal["lidar2d"] = "lidar2d"
 
 
-LIDAR2D = Component(
-    spec=Lidar2dSpec,
-    build="crowdbot.plugins.sensors.lidar2d_build:build",
-    summary="planar laser scanner",
-)
+LIDAR2D = Component(spec=Lidar2dSpec, summary="planar laser scanner")

@@ -56,8 +56,4 @@ class Lidar3dSpec(LidarSpec):
         return self
 
 
-LIDAR3D = Component(
-    spec=Lidar3dSpec,
-    build="crowdbot.plugins.sensors.lidar3d_build:build",
-    summary="laser scanner of several layers",
-)
+LIDAR3D = Component(spec=Lidar3dSpec, summary="laser scanner of several layers")

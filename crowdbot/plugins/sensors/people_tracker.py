@@ -61,6 +61,5 @@ class PeopleTrackerSpec(SensorSpec):
 
 PEOPLE_TRACKER = Component(
     spec=PeopleTrackerSpec,
-    build="crowdbot.plugins.sensors.people_tracker_build:build",
     summary="privileged: people around the robot, with noise, misses and occlusion",
 )

@@ -81,6 +81,5 @@ class RgbdCameraSpec(SensorSpec):
 
 RGBD_CAMERA = Component(
     spec=RgbdCameraSpec,
-    build="crowdbot.plugins.sensors.rgbd_camera_build:build",
     summary="pinhole camera with depth, and colour if wanted",
 )

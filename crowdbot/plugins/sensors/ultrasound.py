@@ -39,8 +39,4 @@ class UltrasoundSpec(RangeSensorSpec):
         return -self.half_angle, self.half_angle, self.range_max
 
 
-ULTRASOUND = Component(
-    spec=UltrasoundSpec,
-    build="crowdbot.plugins.sensors.ultrasound_build:build",
-    summary="sonar with a drop-shaped zone",
-)
+ULTRASOUND = Component(spec=UltrasoundSpec, summary="sonar with a drop-shaped zone")

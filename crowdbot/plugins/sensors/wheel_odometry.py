@@ -81,12 +81,10 @@ BASE_ODOMETRY = Component(
 
 WHEEL_ODOMETRY = Component(
     spec=WheelOdometrySpec,
-    build="crowdbot.plugins.sensors.wheel_odometry_build:build",
     summary="pose and twist integrated from quantised wheel encoders, or encoders and gyro",
 )
 
 HOLONOMIC_ODOMETRY = Component(
     spec=HolonomicOdometrySpec,
-    build="crowdbot.plugins.sensors.wheel_odometry_build:build",
     summary="the same for a robot that goes sideways: three measuring wheels, and vy",
 )

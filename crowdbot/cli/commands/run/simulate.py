@@ -135,7 +135,7 @@ def simulate(
 
 
 def one_or_several(planners: Sequence[str] | None) -> str:
-    """Return the planner of all robots, or of each, in the format of `resolve_planner`.
+    """Return one planner for all robots, or one for each, in the format of `resolve_planner`.
 
     Raises:
         UsageError: there are several, and one does not name its robot.

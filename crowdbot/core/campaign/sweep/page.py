@@ -1,4 +1,4 @@
-"""The page of a sweep: the best trial, sensitivity, and what is left of it on other people."""
+"""The page of a sweep: the best trial, sensitivities, and the best score on other people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The search: campaigns on people of another seed, and the best trials on a third."""
+"""The search of a sweep: trials on people of one seed; the best are checked on another."""
 
 from __future__ import annotations
 
@@ -70,13 +70,13 @@ class SweepRequest:
 
     @property
     def rounds(self) -> int:
-        """Return how often a planner runs in all scenarios, checks included."""
+        """Return how often the planner runs through all scenarios, checks included."""
         checks = min(self.check, self.trials)
         return self.trials + 1 + checks + bool(checks)
 
     @property
     def document(self) -> dict[str, Any]:
-        """Everything that decides the trials, for the file of the sweep."""
+        """Return everything that determines the trials, as stored in the sweep's file."""
         plain = asdict(self)
         for name in ("out", "check", "plugins", "count"):  # more of the same is the same sweep
             del plain[name]
@@ -100,13 +100,16 @@ class Tried:
 
     @property
     def met_others(self) -> bool:
-        """Return False if the check had the people of the search, as where all have a place."""
+        """Return False if the check had the same people as the search, as with fixed positions."""
         return not self.motions or self.motions != self.motions_elsewhere
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sweep:
-    """The result, best first; trials without a score last. ``usual``: the planner's defaults."""
+    """The result: trials sorted from best to worst, those without a score last.
+
+    ``usual``: the planner's defaults.
+    """
 
     request: SweepRequest
     tried: tuple[Tried, ...]
@@ -308,7 +311,7 @@ def rows_of(sweep: Sweep) -> list[Mapping[str, Any]]:
 
 
 def known_metric(registry: Registry, metric: str) -> tuple[str, str]:
-    """Return the variant that stands for a metric, and its direction.
+    """Return the variant that represents a metric, and its better direction.
 
     Raises:
         UnknownNameError: there is no such metric.

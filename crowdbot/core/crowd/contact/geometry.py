@@ -82,7 +82,7 @@ def time_to_segment(
 def crossing_time(
     vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """As `time_to_segment`, computed like the original engine.
+    """Return the time as `time_to_segment`, computed like the original engine.
 
     There the interior of a segment counts if the centre will cross it, not the point of contact.
     """
@@ -119,5 +119,5 @@ def single_angle(ax: float, ay: float, bx: float, by: float) -> float:
 
 @kernel
 def opposite_taken_for_parallel(ax: float, ay: float, bx: float, by: float) -> bool:
-    """Return True if the original takes the angle between two opposite vectors for 0."""
+    """Return True if the original engine's rounding gives angle 0 for two opposite vectors."""
     return ax * bx + ay * by < 0.0 and single_angle(ax, ay, bx, by) == 0.0

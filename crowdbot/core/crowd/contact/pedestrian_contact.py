@@ -19,7 +19,7 @@ from crowdbot.core.types.arrays import Array, Indices
 
 
 class PlacedRecord:
-    """A person who is present, in `push_apart`'s scratch: along x, close together in memory."""
+    """A person who is present, in scratch memory of `push_apart` that is sorted by x."""
 
     x: float
     y: float
@@ -54,7 +54,7 @@ def push_apart(
     placed: Rows[PlacedRecord],
     room: Array,
 ) -> None:
-    """Push of overlapping people, walls and fixed discs, m/s^2, into ``push_x`` and ``push_y``.
+    """Write contact accelerations by people, walls and fixed discs, m/s^2.
 
     Args:
         order: (N,) all agents in any order; sorted by x afterwards.

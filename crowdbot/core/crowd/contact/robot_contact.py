@@ -28,7 +28,7 @@ RX, RY, RVX, RVY, R_BODY, R_SEEN, R_YAW, R_W = range(8)
 
 
 class RobotRecord:
-    """A robot as people feel it.
+    """State and shape of a robot, for contacts with people and their perception.
 
     Attributes:
         x, y, vx, vy: position, velocity.
@@ -67,7 +67,7 @@ def robot_contacts(
     dt: float,
     reaction: Array,
 ) -> None:
-    """Compute `robot_contact` for each robot present.
+    """Compute the contact forces of each robot that is present, see `robot_contact`.
 
     Args:
         contacts: what each of all robots feels, changed in place: the last part of the crowd's
@@ -155,7 +155,7 @@ def robot_contact(
 
 @kernel
 def corners_of(outlines: Array, r: int) -> int:
-    """Return how many corners robot r has; outlines (R, K, 2) with fewer end with NaN."""
+    """Return the number of corners of robot r; shorter outlines (R, K, 2) are padded with NaN."""
     count = 0
     while count < outlines.shape[1] and outlines[r, count, 0] == outlines[r, count, 0]:
         count += 1
@@ -166,7 +166,7 @@ def corners_of(outlines: Array, r: int) -> int:
 def overlap(
     yaw: float, outline: Array, dx: float, dy: float, reach: float
 ) -> tuple[float, float, float, float, float]:
-    """Overlap of a robot and a person's disc.
+    """Return the overlap of a robot's outline and a person's disc.
 
     Args:
         yaw: heading of the robot, rad.
@@ -188,7 +188,9 @@ def overlap(
 
 @kernel
 def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, float, float, float]:
-    """Place of a point beside a segment (K = 2) or a convex polygon, counter-clockwise.
+    """Return a point's place relative to a segment (K = 2) or a convex polygon.
+
+    Corners are counter-clockwise.
 
     Returns:
         distance (m), negative inside a polygon; unit vector outwards; nearest point.

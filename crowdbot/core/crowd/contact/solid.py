@@ -1,4 +1,4 @@
-"""Walls and pillars as limits: where a person's centre cannot go, however hard others push."""
+"""Walls and pillars as hard limits for people's centres, whatever the contact forces."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def keep_out(
     agents: People, i: int, x0: float, y0: float, room: float,
     walls: Array, frame: Array, first: Indices, near: Indices, discs: Array, pillars: int,
 ) -> None:  # fmt: skip
-    """Correct a step of agent i that ends too close to something solid, or behind a wall.
+    """Correct a step of agent i that ends too close to a solid, or behind a wall.
 
-    A centre that was closer at the start of the step may stay as close. Motion into what is solid
-    is lost, motion along it stays.
+    A centre that was closer at the start of the step may stay as close. Motion into a solid is
+    removed, motion along it stays.
 
     Args:
         x0, y0: start of the step, m.

@@ -1,4 +1,4 @@
-"""Evasion of robots that people have noticed: sideways in time, and by braking.
+"""Evasion of robots that people have noticed: sideways where time allows, and by braking.
 
 Computed at each decision, so that the desired acceleration plus evasion stays within human limits.
 """

@@ -41,9 +41,9 @@ def reacts(
     response: DecisionResponse,
     now: float,
 ) -> bool:
-    """Return True if agent i has noticed robots for long enough to react; keep account of it.
+    """Return True if agent i noticed robots longer ago than its reaction time; updates its state.
 
-    An agent that has noticed one robot looks out for all, until none is within sight.
+    An agent that has noticed one robot watches all, until none is within sight.
 
     Args:
         radius: of the agent, m.

@@ -1,4 +1,4 @@
-"""Parameters of the response to robots, as an object and as the records that kernels take."""
+"""Parameters of people's response to robots: one object, and records for compiled code."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crowdbot.core.support.records import Rows, record_type, record_values, rows
 
 
 class DecisionResponse:
-    """Parameters of `crowdbot.core.crowd.response.evasion`; as of `Human`, where not said.
+    """Parameters of `crowdbot.core.crowd.response.evasion`; meanings as in `Human`.
 
     Attributes:
         view_cosine: of half the field of view.
@@ -48,7 +48,7 @@ class DecisionResponse:
 
 
 class TickResponse:
-    """Parameters of `crowdbot.core.crowd.step.tick`; as of `Human`."""
+    """Parameters of `crowdbot.core.crowd.step.tick`; meanings as in `Human`."""
 
     standing_speed: float
     moving_speed: float
@@ -131,7 +131,7 @@ class Human:
     intent: float = 0.0
 
     def by_decision(self, dt: float) -> Rows[DecisionResponse]:
-        """(1,) the numbers for decisions that come every ``dt`` seconds."""
+        """Return the record (1,) for decisions every ``dt`` seconds."""
         numbers = record_values(
             DECISION_RESPONSE,
             sight=self.sight,
@@ -165,7 +165,7 @@ class Human:
 
     @property
     def by_tick(self) -> Rows[TickResponse]:
-        """(1,) the numbers for ticks."""
+        """Return the record (1,) for ticks."""
         numbers = record_values(
             TICK_RESPONSE,
             standing_speed=self.standing_speed,

@@ -1,8 +1,7 @@
-"""Stopping in front of a standing robot, noticed or not.
+"""Stopping in front of a standing robot, even if it was not noticed.
 
-A person who would have to brake harder than people do by choice is braked as hard as it takes, no
-harder: a last step. One who is pushed against the robot by others leans back, the harder the
-nearer.
+A person who would have to brake harder than people choose to is braked just as hard as needed. A
+person whom others push against the robot leans back, the more the nearer.
 """
 
 from __future__ import annotations
@@ -67,7 +66,7 @@ def stop_short(
 
 @kernel
 def stands(robot: RobotRecord, extent: float, standing: float, moving: float) -> float:
-    """1 for a robot that stands, 0 for one that moves, between the two in between.
+    """Return 1 for a standing robot, 0 for a moving one; slow robots have values in between.
 
     Args:
         extent: distance of its farthest corner from the base, m.

@@ -86,7 +86,10 @@ def _look_out(table: Array, sight: Sight) -> None:
 
 @kernel
 def bends_past(table: Array, v: int, x: float, y: float) -> bool:
-    """Return True if a path to or from a point can bend at corner v, its outline on one side."""
+    """Return True if a shortest path from or to a point may bend at corner v.
+
+    It may if both edges at the corner are on one side of the line from the corner to the point.
+    """
     dx, dy = x - table[v, X], y - table[v, Y]
     before = dx * (table[v, BEFORE_Y] - table[v, Y]) - dy * (table[v, BEFORE_X] - table[v, X])
     after = dx * (table[v, AFTER_Y] - table[v, Y]) - dy * (table[v, AFTER_X] - table[v, X])

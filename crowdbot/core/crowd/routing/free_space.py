@@ -104,7 +104,7 @@ class FreeSpace:
 
 
 def taken_by(walls: Array, pillars: Array, margin: float) -> Any:
-    """The space within a margin of walls and pillars, as a (multi)polygon.
+    """Return the space within a margin of walls and pillars, as a (multi)polygon.
 
     Its corners exceed the margin by at most a tenth: round ones would have more corners.
     """

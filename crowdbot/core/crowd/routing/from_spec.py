@@ -9,7 +9,7 @@ from crowdbot.dsl.scenario.seeds import stream_seed
 
 
 def routing_of(crowd: Crowd) -> WayFinding | None:
-    """Way finding; None: straight to the goals. Draws are those of the stream "routing"."""
+    """Return path finding with draws of the stream "routing"; None: straight to the goals."""
     spec = crowd.routing
     if not isinstance(spec, dsl.MeshRouting):
         return None

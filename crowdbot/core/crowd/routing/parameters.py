@@ -1,4 +1,4 @@
-"""Parameters of finding a way."""
+"""Parameters of path finding."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ MOST_CORNERS = 12_000
 
 @dataclass(frozen=True, slots=True)
 class RouteMap:
-    """A map for bodies of one radius.
+    """Shortest paths for bodies of one radius.
 
     Attributes:
         space: free floor for their centres.

@@ -1,4 +1,4 @@
-"""Router: keeps the shortest ways to the goals of a crowd, and says where people walk next."""
+"""Router: caches shortest paths to a crowd's goals, and computes people's next waypoints."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ _SPARE_TREES = 64
 
 
 class Router:
-    """Finds the waypoints of all people. What it keeps follows from goals: it is a cache, no state.
+    """Finds the waypoints of all people.
+
+    Its cache follows from the goals alone, so it has no state.
 
     Args:
         agents: all, present or to come.
@@ -64,7 +66,7 @@ class Router:
 
 
 def rounded(radius: Array) -> Array:
-    """Return radii (N,) of the maps: rounded up, with few different values, m."""
+    """Return the radii (N,) for maps: rounded up to few different values, m."""
     steps = np.ceil(radius / _RADIUS_STEP - _SLACK)
     one = len(radius) > 0 and np.all(radius == radius[0])
     return radius.copy() if one else np.round(steps * _RADIUS_STEP, 9)

@@ -1,4 +1,4 @@
-"""Sight between points, along which people can walk straight: edges in the cells of a grid."""
+"""Line of sight between points, along which people can walk: edges in the cells of a grid."""
 
 from __future__ import annotations
 

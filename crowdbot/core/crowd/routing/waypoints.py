@@ -1,4 +1,4 @@
-"""Waypoints: each person walks straight to the goal, or to a place beside the next corner."""
+"""Waypoints: each person walks straight to the goal, or to a point beside the next corner."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _NEAR_GOAL = 1.5
 
 
 class Habits(NamedTuple):
-    """Habits of people who choose among ways.
+    """People's habits in choosing among several paths.
 
     Attributes:
         spread: largest distance from a corner when passing, m.
@@ -176,7 +176,7 @@ def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habit
 def squeeze(agents: People, max_acceleration: Array) -> None:
     """Set the accelerations of people who step aside, as `find_waypoints` has decided.
 
-    They do so slowly, and into others: none of those gives way without it.
+    They move slowly and may push others, who would not give way otherwise.
     """
     for i in range(agents.shape[0]):
         if agents[i].corner != _ASIDE_OF_ALL or agents[i].waiting != PRESENT:

@@ -1,4 +1,4 @@
-"""Moment: what steering parts see of a crowd when people decide."""
+"""Moment: input of the steering parts at one decision."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Steering: the parts that a crowd has, as a world holds them."""
+"""Steering: the steering parts of a crowd."""
 
 from __future__ import annotations
 

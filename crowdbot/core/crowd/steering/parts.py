@@ -34,7 +34,7 @@ Part = Callable[[Moment, Array], None]
 
 
 def parts_of(steering: Steering) -> list[Part]:
-    """Return what is done to accelerations, one after the other."""
+    """Return the functions of a crowd's steering parts, in order of application."""
     specs = {name: getattr(steering.spec, name) for name in PARTS}
     return [partial(PARTS[n], spec) for n, spec in specs.items() if spec is not None]
 

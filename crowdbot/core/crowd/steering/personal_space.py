@@ -57,7 +57,7 @@ def push_by(
     anticipation: float,
     behind: float,
 ) -> tuple[float, float]:
-    """Push of row b on row a, m/s^2; none where it would be below 1 % of ``strength``."""
+    """Return the push of row b on row a, m/s^2; 0 where it would be below 1 % of ``strength``."""
     dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
     qx = dx + (discs[b].vx - discs[a].vx) * anticipation
     qy = dy + (discs[b].vy - discs[a].vy) * anticipation

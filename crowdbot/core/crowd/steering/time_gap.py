@@ -1,7 +1,7 @@
-"""Time gap: people walk no faster than the room ahead allows.
+"""Time gap: people walk no faster than the space ahead allows.
 
-Without it no model here slows down in a dense crowd. Oncoming people are stepped around rather
-than followed, so the gap to them is nearly off.
+Without it no model here slows down in a dense crowd. Oncoming people are stepped around rather than
+followed, so the gap to them is nearly zero.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _ONCOMING = 0.2
 
 
 def limit_speed(part: TimeGapSpec, now: Moment, wanted: Array) -> None:
-    """Shorten, in place, the velocities that accelerations lead to within the relaxation time.
+    """Reduce accelerations so that speeds after the relaxation time leave the time gap, in place.
 
     Args:
         wanted: (N, 2) accelerations, m/s^2.
@@ -38,7 +38,7 @@ def limit_all(
     time: float, oncoming_time: float, room: float, half_width: float, relaxation: float,
     wanted: Array,
 ) -> None:  # fmt: skip
-    """Shorten the velocities of people who decide to what the room ahead allows, in place."""
+    """Reduce the speeds of people who decide to what the space ahead allows, in place."""
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue

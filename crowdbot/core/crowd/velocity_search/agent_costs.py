@@ -43,7 +43,7 @@ class AgentCosts(NamedTuple):
 def prepare(
     around: Surroundings, b: int, functions: Functions, weights: Array, active: Indices
 ) -> int:
-    """Prepare all functions for the agent in row b of the table, after `describe`.
+    """Prepare all cost functions for the agent in row b of the table; call `describe` first.
 
     Returns:
         number of functions with an excess; their indices are in ``active`` (K,).

@@ -1,4 +1,4 @@
-"""Accelerations towards the velocities that a search has found."""
+"""Accelerations that lead to the velocities chosen by a search."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def approach(
     relaxation: float,
     dt: float,
 ) -> None:
-    """Convert what was found to accelerations, in place; agents that have arrived stop at once.
+    """Convert chosen velocities to accelerations, in place; agents that have arrived stop.
 
     Args:
         found: (N, 2) velocities to approach, m/s; or accelerations, m/s^2, if ``descend``.

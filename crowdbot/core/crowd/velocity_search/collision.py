@@ -74,7 +74,7 @@ def list_approaching(
     spread: float,
     horizon: float,
 ) -> int:
-    """As `list_obstacles`, without what cannot be touched until ``horizon``, s.
+    """Write what can be touched within ``horizon`` (s) to ``work``, as `list_obstacles`.
 
     Most discs in a range of 100 m move away or are too far. With parity all are written, since
     `first_contact` uses them.
@@ -197,10 +197,10 @@ def soonest_disc(
     work: Pointer,
     out: Pointer,
 ) -> None:
-    """Write one over the time until a disc is touched, 1/s, for many velocities at once.
+    """Write the inverse time to the first contact with a disc, 1/s, for many velocities at once.
 
-    Only for the few discs that could be first; zero if none is touched. Exact up to rounding. See
-    `time_to_disc`.
+    Only the few discs that could be first are tried; zero without contact. Exact up to rounding.
+    See `time_to_disc`.
 
     Args:
         count, ux, uy: velocities; ``factor * u - v`` is kept, m/s.

@@ -17,7 +17,7 @@ SORTED_SEGMENTS = 32
 
 @array_kernel
 def swept_width(ux: float, uy: float, radius: float) -> float:
-    """Return half the width of a disc's way, and a little for rounding, times its speed, m^2/s."""
+    """Return half the width that a disc sweeps, with a margin for rounding, times speed, m^2/s."""
     return (1.0 + 1e-6) * radius * math.sqrt(ux * ux + uy * uy) + 1e-9
 
 
@@ -25,7 +25,7 @@ def swept_width(ux: float, uy: float, radius: float) -> float:
 def is_passed(
     ux: float, uy: float, width: float, ax: float, ay: float, bx: float, by: float
 ) -> bool:
-    """Return True if a disc clearly never touches segment a-b: it is beside its way, or behind it.
+    """Return True if a moving disc clearly never touches segment a-b.
 
     Args:
         width: as of `swept_width`.
@@ -40,7 +40,7 @@ def is_passed(
 def is_behind(
     ux: float, uy: float, way: float, width: float, ax: float, ay: float, bx: float, by: float
 ) -> bool:
-    """Return True if a disc touches segment a-b later than it has gone a way, or never.
+    """Return True if a disc does not touch segment a-b within a travelled distance.
 
     Args:
         way: time times squared speed, m^2/s.
@@ -83,7 +83,7 @@ def list_segments(
     most: float,
     work: Pointer,
 ) -> tuple[int, int]:
-    """Write the segments after the discs, the soonest ones sorted; return how many, and touched.
+    """Write the nearest wall segments after the discs, sorted by time of contact.
 
     Args:
         limit: largest distance, m.

@@ -73,9 +73,9 @@ NEAR_WALLS = 4.0
 
 
 def work_rows(others: int) -> int:
-    """Return the rows of ``work`` for this many neighbours and walls.
+    """Return the number of rows of ``work`` for this many neighbours and walls.
 
-    The header, two each, and 8 spare ones.
+    One header row, two rows for each, and 8 spare ones.
     """
     return 1 + 2 * others + 8
 

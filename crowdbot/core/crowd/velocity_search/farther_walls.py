@@ -1,4 +1,4 @@
-"""Walls that a decision was not given, looked up where they matter."""
+"""Walls beyond those given to a decision, looked up where they matter."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _NEARER = 1.0 - 1e-9
 def first_farther(
     ux: float, uy: float, until: float, first: float, limit: float, agent: AgentRecord
 ) -> float:
-    """Return the time until a wall that was not given is touched, s; or ``first``, if that is less.
+    """Return the time until a farther wall is touched, s; or ``first``, if that is less.
 
-    The cells on the way are searched one after another, until nothing in the next can come first.
+    The grid cells along the path are searched in order, until no later one can be touched sooner.
 
     Args:
         ux, uy: velocity, m/s.
@@ -91,7 +91,7 @@ def _in_rows(
 
 @array_kernel
 def walls_closer_than(agent: AgentRecord, limit: float) -> int:
-    """Return the number of all walls if each is clearly closer than a limit (m); otherwise -1."""
+    """Return the number of walls if all are clearly closer than a limit (m); otherwise -1."""
     floor = rows_at(agent.floor, FLOOR)[0]
     dx = max(agent.px - floor.x0, floor.x1 - agent.px)
     dy = max(agent.py - floor.y0, floor.y1 - agent.py)

@@ -1,4 +1,4 @@
-"""All walls of a floor for decisions that look farther than the walls they are given."""
+"""All walls of a floor, for decisions that look beyond the walls they are given."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Kept = tuple[Rows[FloorRecord], Array, SegmentGrid]
 
 
 def floor_of(walls: Array, radius: float) -> tuple[Kept, int]:
-    """Return arrays that the caller keeps, and the address of their `FloorRecord`.
+    """Return the address of a `FloorRecord`, and its arrays, which the caller keeps alive.
 
     Args:
         walls: (S, 4), m.

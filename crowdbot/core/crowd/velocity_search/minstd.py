@@ -23,7 +23,7 @@ def seeds(ids: NDArray[np.int64]) -> NDArray[np.float64]:
 
 @inline_kernel
 def following(state: int) -> int:
-    """Return the next state."""
+    """Return the next state of the generator."""
     product = np.int64(state) * np.int64(16807)
     folded = (product & np.int64(_MODULUS)) + (product >> np.int64(31))
     return int(folded - np.int64(_MODULUS) if folded >= np.int64(_MODULUS) else folded)
@@ -31,7 +31,7 @@ def following(state: int) -> int:
 
 @inline_kernel
 def between(state: int, low: float, high: float) -> float:
-    """Return the number in [low, high) for a state."""
+    """Return the number in [low, high) that belongs to a state."""
     unit = np.float32(state - 1) * np.float32(1.0 / 2147483648.0)  # a power of two: exact
     unit = min(unit, np.float32(1.0 - 2.0**-24))
     return float(np.float32(unit * (np.float32(high) - np.float32(low))) + np.float32(low))

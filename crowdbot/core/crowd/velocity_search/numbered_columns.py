@@ -1,7 +1,7 @@
-"""Column numbers, and tables for them: deprecated access to records, kept until 1.0.
+"""Column numbers in place of record fields: deprecated, kept until 1.0.
 
-Cost functions of other packages import them from `crowdbot.core.interfaces`. An entry of an agent
-is read as ``agent[PX]`` as before: numba converts a constant number to the field at that position.
+Cost functions of other packages import them from `crowdbot.core.interfaces`. ``agent[PX]`` still
+works: numba converts a constant index to the field at that position.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ _NO_GRID = SegmentGrid(np.zeros(5), np.zeros(2, np.int64), np.zeros(0, np.int64)
 
 
 class Optimum:
-    """The closed form if the costs are one function that has one; otherwise `EVERYWHERE`."""
+    """The closed form if there is one cost function that has one; otherwise a fine search."""
 
     def __init__(self, costs: WeightedCosts) -> None:
         self.costs = costs

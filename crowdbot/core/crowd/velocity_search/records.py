@@ -133,7 +133,7 @@ class FloorRecord:
 
 
 class CostParams:
-    """The first fields of every ``params``; a cost function's own record adds fields.
+    """Fields with which every ``params`` begins; a cost function's own record adds more.
 
     Attributes:
         range: range of the function, m.

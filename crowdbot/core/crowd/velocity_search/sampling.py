@@ -79,7 +79,7 @@ class SearchArguments(NamedTuple):
 
 
 class Sampler:
-    """Weighted costs over candidates, ready to decide for one set of agents."""
+    """Weighted costs over candidate velocities, for the decisions of one set of agents."""
 
     def __init__(self, sampling: Sampling, costs: WeightedCosts) -> None:
         self.costs = costs
@@ -120,7 +120,7 @@ class Sampler:
         return chosen
 
     def arguments(self, dt: float) -> SearchArguments:
-        """Return what `choose_velocities` takes for decisions every ``dt`` seconds."""
+        """Return the arguments of `choose_velocities` for decisions every ``dt`` seconds."""
         self._tabulate(dt, None)
         return SearchArguments(
             self._options, self.costs.ordered, self._tabulated, self._candidates, self._polar,
@@ -208,7 +208,7 @@ def choose_velocities(
     indices: Indices, first: Indices, frame: Array, world: Array, active: Indices, tried: Array,
     chosen: Array,
 ) -> None:  # fmt: skip
-    """Write the choices of all agents.
+    """Write the chosen velocity of each agent, m/s.
 
     Args:
         table to deciding: fields of `Surroundings`.

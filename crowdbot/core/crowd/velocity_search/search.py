@@ -31,13 +31,13 @@ _STEP = 8
 
 @inline_kernel
 def turned(frame: Array, x: float, y: float) -> tuple[float, float]:
-    """Return a velocity of the unit fan in the world frame (or in the given frame), m/s."""
+    """Return a velocity of the unit fan, scaled and rotated to the world (or given) frame, m/s."""
     return frame[0] + x * frame[2] - y * frame[3], frame[1] + x * frame[3] + y * frame[2]
 
 
 @inline_kernel
 def in_world(frame: Array, candidates: Array, c: int) -> tuple[float, float]:
-    """Return candidate number c of the unit fan, as `turned`."""
+    """Return candidate number c of the unit fan in the world (or given) frame, m/s."""
     return turned(frame, candidates[c, 0], candidates[c, 1])
 
 
@@ -226,7 +226,7 @@ def try_in_order(
 
 @kernel
 def least_forbidden(frame: Array, candidates: Array, costs: AgentCosts) -> int:
-    """Return the original's choice if every candidate is forbidden; -1 if it finds none.
+    """Return the original engine's choice if every candidate is forbidden; -1 if it finds none.
 
     There a forbidden candidate costs the largest single-precision number times the function's
     weight, which is less than the worst cost for a weight below 1.

@@ -88,7 +88,7 @@ _PARTS = (
 
 
 class DecisionTables(NamedTuple):
-    """Records for one set of agents; scratch, but for the settings.
+    """Records for the decisions of one set of agents; all but the settings are scratch.
 
     Attributes:
         discs, table, near, found, deciding, settings: as of `Surroundings`; ``discs`` are those of
@@ -181,7 +181,7 @@ class WeightedCosts:
         return max((c.reach(self.largest, largest) for c in self._all), default=0.0)
 
     def wall_grid(self, walls: Array, largest: float) -> SegmentGrid:
-        """Return the grid in which decisions look for walls, and note how far they look.
+        """Return the grid for looking up walls; its range becomes that of later decisions.
 
         Args:
             walls: (S, 4), m.

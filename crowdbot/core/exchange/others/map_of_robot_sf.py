@@ -1,4 +1,4 @@
-"""A map of robot_sf, as its SVG and its YAML or JSON both say it, and scenes of it."""
+"""A map of robot_sf, the same for SVG, YAML and JSON, and its conversion to scenes."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Person:
 
 @dataclass(slots=True)
 class RobotSfMap:
-    """Everything in a map; zones by their number.
+    """Contents of a map; zones by their number.
 
     Attributes:
         item: the whole.

@@ -1,4 +1,4 @@
-"""Our usual policies, in place of the models that scenes of others leave to their simulator."""
+"""Default policies for imported scenes that name no pedestrian model."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from crowdbot.core.exchange.scene import Data
 
 
 def social_forces() -> Data:
-    """Return the policy that stands for social force models."""
+    """Return the policy that replaces social force models."""
     return {
         "policy": {"kind": "velocity_space", "method": "gradient", "relaxation_time": 0.5},
         "costs": {
@@ -18,7 +18,7 @@ def social_forces() -> Data:
 
 
 def vision() -> Data:
-    """Return the policy that stands for models that crowdbot has nothing like."""
+    """Return the policy that replaces models without a counterpart in crowdbot."""
     return {
         "policy": {"kind": "velocity_space"},
         "costs": {

@@ -32,7 +32,7 @@ class SpawnTimes:
 
 
 def read_times(source: Item, report: Report) -> SpawnTimes:
-    """Return the times of a source, and record the parts that say them.
+    """Return the spawn times of a source, and record which parts of the file gave them.
 
     Raises:
         SpecError: E402, a parameter is not a number, or is out of bounds.

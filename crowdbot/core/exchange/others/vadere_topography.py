@@ -1,4 +1,4 @@
-"""Parts that all elements of a topography of Vadere share: targets by id, and the scene."""
+"""Data shared by all elements of a Vadere topography: targets by id, and the scene."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class Topography:
 
 
 def take_ids(item: Item, report: Report) -> None:
-    """Record names and the like."""
+    """Record names and ids as used."""
     report.others(item, "its name, or its look", "id", "visible", "reference")
 
 
 def way_of(item: Item, into: Topography) -> list[int]:
-    """Return the targets of a source or person, in turn.
+    """Return the targets of a source or person, in order of visit.
 
     Raises:
         SpecError: E402, there is no such target.

@@ -48,7 +48,7 @@ class Trials:
 
 
 def find_trials(files: Sequence[OpenedScene], context: Context) -> Trials:
-    """Return the trials that files are, or name.
+    """Return the trials among given files, and those that given config files refer to.
 
     Raises:
         SpecError: a named file is missing or is not what it should be.

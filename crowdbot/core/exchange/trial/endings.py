@@ -1,4 +1,4 @@
-"""Ending conditions of a trial as limits of the robot's task."""
+"""End conditions of a trial as limits of the robot's task."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _ROOT = "the original tests a point that never moves; meant is the robot's place
 
 
 def read_endings(root: Item | None, scene: Draft, report: Report) -> None:
-    """Set time limits and goal zones of a scene's robots; any condition ends a trial.
+    """Set time limits and goal zones of a scene's robots; each condition alone ends a trial.
 
     Raises:
         SpecError: E402, a condition is not known.

@@ -1,4 +1,4 @@
-"""The control law of each person of a trial: where its people want to go, and how fast."""
+"""The control law of a person of a trial: goal and speed."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ CONTROL_LAWS: Mapping[str, RowTable] = {
 
 @dataclass(slots=True)
 class Motion:
-    """The way of one person or robot.
+    """The planned motion of one person or robot.
 
     Attributes:
         kind: tag of the law.
@@ -101,7 +101,7 @@ class Motion:
 
 
 def place(item: Item, report: Report | None = None) -> list[float]:
-    """Return our x and y of an element with the trial's x, y and z, m.
+    """Return crowdbot's x and y of an element with a trial's x, y and z, m.
 
     Raises:
         SpecError: E402, one is missing or is not a number.
@@ -116,7 +116,7 @@ def place(item: Item, report: Report | None = None) -> list[float]:
 
 
 def heading(item: Item) -> float:
-    """Return our heading of a ``Rotation`` in degrees, rad in [-pi, pi)."""
+    """Return the heading in crowdbot's frame of a ``Rotation`` in degrees, rad in [-pi, pi)."""
     for name in ("@x", "@y"):
         if (part := item.find(name)) is not None:
             part.number()
@@ -140,7 +140,7 @@ def only_child(wrapper: Item, known: Mapping[str, object]) -> Item:
 
 
 def read_law(wrapper: Item | None, start: list[float], facing: float, report: Report) -> Motion:
-    """Return the motion of a ``controlLaw``; without one, of a person who stands.
+    """Return the motion of a ``controlLaw``; without one, that of a standing person.
 
     Args:
         wrapper: the element, if there is one.

@@ -1,4 +1,4 @@
-"""Robots of a trial: the model by its mesh, the sensors of its packaged part, a goal."""
+"""Robots of a trial: the model found by its mesh, the sensors of its prefab, a goal."""
 
 from __future__ import annotations
 

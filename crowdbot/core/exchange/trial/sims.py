@@ -1,4 +1,4 @@
-"""Control sims of a trial: which of our policies moves a person, with which parameters."""
+"""Control sims of a trial: the policy and parameters that move a person."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ def _umans(item: Item, number: int, policies: Mapping[int, tuple[Data, Item]]) -
 
 
 def law_alone() -> Data:
-    """Return the policy of people whom a law alone moves: they evade no one."""
+    """Return the policy of people who follow their control law and avoid no one."""
     return _in_space("gradient", 0.1, drive={"kind": "goal_reaching_force"})
 
 

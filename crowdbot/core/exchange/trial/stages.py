@@ -1,6 +1,6 @@
-"""Stages of the original that are known: facts about its public scenes, in our frame.
+"""Known stages of the original's public scenes, converted to crowdbot's frame.
 
-Our x is Unity's Z, our y is -X. A stage that is not here is made of the trial's own obstacles.
+Crowdbot's x is Unity's Z, its y is -X. Other stages are made of the trial's own obstacles.
 """
 
 from __future__ import annotations

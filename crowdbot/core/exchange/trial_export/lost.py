@@ -1,4 +1,4 @@
-"""Fields of a scenario that a trial has no word for."""
+"""Fields of a scenario that a trial cannot express."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SAID: Mapping[str, frozenset[str]] = {
 
 
 def name_lost(scenario: Scenario, report: Report) -> None:
-    """Record what a scenario says beyond the defaults, and a trial cannot."""
+    """Record all non-default fields of a scenario that a trial cannot express."""
     parts: dict[str, BaseModel | None] = {"": scenario, "environment": scenario.environment}
     if scenario.crowd is not None:
         crowd = scenario.crowd

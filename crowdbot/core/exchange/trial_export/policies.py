@@ -1,4 +1,4 @@
-"""Our policies as those of UMANS: the presets by number, others in a file beside the trial."""
+"""Crowdbot's policies as UMANS policies: presets by number, others in a file beside the trial."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Policies:
         return self.kept.index(data)
 
     def numbers(self) -> tuple[dict[int, int], str]:
-        """Return our number -> PolicyID, and the file of policies; empty if presets will do."""
+        """Return policy number -> PolicyID, and the file of policies; empty if presets suffice."""
         presets = {
             k: n for k, data in enumerate(self.kept) for n in PRESETS if _same(data, preset(n))
         }

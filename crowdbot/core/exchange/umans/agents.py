@@ -15,7 +15,7 @@ UNLIMITED = 1e3
 
 
 def limited(item: Item) -> float:
-    """Return a limit; values that mean none become `UNLIMITED`."""
+    """Return a limit; values that mean "no limit" become `UNLIMITED`."""
     return min(item.number(1e-9, 3.5e38), UNLIMITED)
 
 

@@ -1,4 +1,4 @@
-"""Policies of UMANS: optimisation methods, sampling and cost functions as ours."""
+"""Policies of UMANS as ours: optimisation methods, sampling and cost functions."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The three policies that the original's scenes share: facts from its presets.xml.
+"""The three policies that the original's scenes share, from its presets.xml.
 
-All use the gradient: their costs are sums of those below, as kind, weight, range and parameters.
+All use gradient descent. Each entry lists a cost's kind, weight, range and parameters.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 class FoxgloveDoor:
     """A live connection for Foxglove.
 
-    What it publishes on ``/cmd_vel``, or ``/NAME/cmd_vel``, drives, as from any client.
+    Commands that Foxglove publishes on ``/cmd_vel``, or ``/NAME/cmd_vel``, drive the robot.
     """
 
     def __init__(
@@ -136,7 +136,7 @@ class FoxgloveDoor:
             self._server.broadcast_time(max(m.ns for m in messages))
 
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
-        """A run begins whose robots and people are shown, as a watcher shows them."""
+        """Start showing a run's robots and people; see `crowdbot.core.recording.watcher`."""
         agents = shared.agents
         spaces = namespaces(robots)
         self._poses = {robot_topic(str(Topic.POSE), s): name for name, s in spaces.items()}
@@ -147,7 +147,7 @@ class FoxgloveDoor:
         self._arrows = None if agents is None else PeopleArrows(agents.id, agents.radius)
 
     def sample(self, t: float, robots: Mapping[str, Sequence[float]], agents: Array | None) -> None:
-        """Show the truth to those who look: people, and where the robots really are."""
+        """Publish the ground truth to viewers: people, and the true poses of robots."""
         ns = self._epoch + ros.nanoseconds(t)
         for topic, name in self._poses.items():
             if name in robots and self.wants(topic):
@@ -167,7 +167,7 @@ class FoxgloveDoor:
         columns: Array,
         texts: Sequence[str] | None = None,
     ) -> None:
-        """Show what a planner drew to those who look, as lines or texts."""
+        """Publish a planner's drawing to viewers, as lines or texts."""
         topic = self._thoughts.get(robot)
         if topic is None or not self.wants(topic):
             return

@@ -1,4 +1,4 @@
-"""A gate before Foxglove's server, which itself lets every website in.
+"""A gate before Foxglove's server, which itself accepts every website.
 
 The gate reads the first request of a connection, admits or refuses it, and passes bytes on. The
 server behind it listens at a random loopback address and port (on Linux one of 16 million

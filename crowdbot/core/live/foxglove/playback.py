@@ -1,7 +1,7 @@
 """Play back a finished run in Foxglove, with pause and seek from the viewer.
 
-What planners drew is in their robot's frame, of a type of our own: it is placed in the world and
-shown as markers, on the topics of a live run.
+Planners' drawings are recorded in the robot's frame, in a message type of crowdbot; they are
+transformed to the world and shown as markers, on the topics of a live run.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""A person in a run through a page in the browser: at a robot's stick, or walking in the crowd."""
+"""A person in a run, through a page in the browser: driving a robot, or walking in the crowd."""

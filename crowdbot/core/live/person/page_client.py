@@ -1,4 +1,4 @@
-"""One page that is connected: what it asks for, and what waits to be sent to it."""
+"""One connected page: its requests, and the messages queued for it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class PageClient:
         self.say_role(seat.sit(self))
 
     def take(self, frame: str | bytes) -> None:
-        """Do what a message asks for; tell the page where it is wrong."""
+        """Handle a message of the page; reply with an error if it is invalid."""
         if not self._may():
             return
         try:
@@ -71,7 +71,7 @@ class PageClient:
         self.say("role", drives=drives, taken=drives or self._seat.taken)
 
     def close(self) -> None:
-        """Handle a page that is gone."""
+        """Handle a disconnected page."""
         self._seat.leave(self)
 
     @property

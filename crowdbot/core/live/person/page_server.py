@@ -29,7 +29,7 @@ _FAREWELL = 2.0  # s
 
 
 class PageServer:
-    """Serves pages that sit in one seat, or watch.
+    """Serves pages, one of which drives while the others watch.
 
     Attributes:
         token: what a page has to know; part of its address.
@@ -70,12 +70,12 @@ class PageServer:
 
     # ---------------------------------------------------------------- the simulation's thread
     def show_scene(self, scene: Any) -> None:
-        """Send all pages, and those that come later, what does not move."""
+        """Send the static scene to all pages, also to those that connect later."""
         self._loop.soon(self._keep, "_scene", json.dumps({"op": "scene", "scene": scene}), "scene")
         self._loop.soon(self._forget_end)
 
     def show_frame(self, frame: Any) -> None:
-        """Send all pages what moves; a page that is slow gets only the latest."""
+        """Send the moving parts to all pages; a slow page gets only the latest."""
         self._loop.soon(self._keep, "_frame", json.dumps({"op": "frame", **frame}), "frame")
 
     def show_end(self, **fields: Any) -> None:
@@ -87,7 +87,7 @@ class PageServer:
         self._loop.soon(self._send_all, json.dumps({"op": op, **fields}))
 
     def close(self) -> None:
-        """Send what is queued, then say goodbye to all pages."""
+        """Send what is queued, then close all connections."""
         if self._loop.is_closed:
             return
         self._watch.cancel()

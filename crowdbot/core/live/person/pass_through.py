@@ -1,4 +1,4 @@
-"""The planner of a robot that does exactly what the person at its stick asks for."""
+"""Planner of a robot that executes exactly the commands of the person at its stick."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class StickPlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Do nothing: the stick knows the limits."""
+        """Do nothing: the stick's readings are within the limits already."""
         del task, limits, sensors, seed
 
     def step(self, obs: Observation) -> Command:
-        """Return what the stick asks for."""
+        """Return the stick's command."""
         v, w, *aside = obs.readings[self._stick].values.tolist()
         return Command(v, w, aside[0] if aside else 0.0)

@@ -1,4 +1,4 @@
-"""The picture of a run on the person's page while it goes on: the replay page's numbers, live."""
+"""Live picture of a run on the person's page, in the data format of the replay page."""
 
 from __future__ import annotations
 
@@ -68,15 +68,15 @@ class LivePicture:
         }
 
     def begin_run(self, look: Callable[[], Mapping[str, Observation]]) -> None:
-        """A recording begins; ``look`` returns what all robots see."""
+        """Start a recording; ``look`` returns the observations of all robots."""
         self.look = look
 
     def show(self) -> None:
-        """Show what stands, before the run begins."""
+        """Show the static scene before the run begins."""
         self._server.show_scene(self._scene)
 
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
-        """Show the scene of a recording that begins."""
+        """Show the scene at the start of a recording."""
         del shared, robots
         self._drawn.clear()
         self.show()
@@ -103,7 +103,7 @@ class LivePicture:
         columns: Array,
         texts: Sequence[str] | None = None,
     ) -> None:
-        """Show what a planner drew last with the next sample."""
+        """Show a planner's latest drawing with the next sample."""
         self._drawn[robot, name] = {
             "robot": robot, "name": name, "t": t, "tracks": name == TRACKS,
             "columns": np.round(columns, 2).tolist(),

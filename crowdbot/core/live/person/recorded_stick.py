@@ -1,4 +1,4 @@
-"""The stick of a run that was recorded: the same commands at the same steps, without a person."""
+"""Stick of a recorded run: replays the same commands at the same steps, without a person."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _HEADER, _TWIST = "crowdbot_msgs/msg/RunHeader", "geometry_msgs/msg/TwistStamped
 
 
 class RecordedStick:
-    """Reading: the recorded command of each step; after the last one the stick is centred."""
+    """Sensor whose reading is the recorded command of each step; zero after the last one."""
 
     def __init__(self, commands: dict[int, Command], limits: RobotLimits, info: SensorInfo) -> None:
         """Take commands by the time of their step, ns."""
@@ -44,7 +44,7 @@ class RecordedStick:
 def recorded_sticks(
     run: Path, robot: str = ""
 ) -> Callable[[RobotLimits, SensorInfo], RecordedStick]:
-    """Return what makes the stick of a recorded run.
+    """Return a factory for the sticks of a recorded run.
 
     Args:
         run: a run directory, or a recording.

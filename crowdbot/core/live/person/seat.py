@@ -1,9 +1,9 @@
-"""The seat of the person in a run: one page at a time, with a dead man's switch, in real time.
+"""The place of the person in a run: one page at a time, with a dead man's switch, in real time.
 
-The person's page says each tenth of a second that it is there and where its stick is. When it loses
+Each tenth of a second the page reports that it is active, and its stick's position. When it loses
 the focus, is hidden, falls silent or disconnects, the stick is centred at once: the robot brakes,
-the person stands. Unless only the focus is lost, the run waits from `GRACE` seconds later on until
-a page is back, and its record says so.
+the walking person stands. Unless only the focus is lost, the run is paused `GRACE` seconds later
+until a page is back, which its record says.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _LOOK = 0.02  # s
 
 @dataclass
 class SeatLog:
-    """The events at the seat in one recording.
+    """The events at the person's place in one recording.
 
     Attributes:
         steps: how often the stick was read; ``centred``: how often with no hand on it.
@@ -50,10 +50,10 @@ class SeatLog:
 
 
 class Seat:
-    """The driver, and the position of the stick.
+    """The person's page that drives, and the position of its stick.
 
     Pages call `sit`, `attend`, `move`, `begin` and `leave`, in another thread than the simulation,
-    which calls `pace` and `take`. The session says who else drives, such as a program by rosbridge.
+    which calls `pace` and `take`. The session knows other drivers, such as a program by rosbridge.
 
     Attributes:
         log: of the current recording.
@@ -91,7 +91,7 @@ class Seat:
         return True
 
     def attend(self, who: Hashable, away: Away) -> None:
-        """Note that the page that drives has a hand on the stick, or why not."""
+        """Store if the driving page is attended, and why not."""
         with self._lock:
             if self._page != who:
                 return
@@ -164,7 +164,7 @@ class Seat:
         self.session.sleep(self._zero + t / self._rate)
 
     def take(self, t: float) -> Stick | Command:
-        """Return the driving page's stick at a step, or the command of a program that drives."""
+        """Return the stick's command at a step, or that of an external program that drives."""
         self.log.steps += 1
         command, fresh = self.session.newest(self._robot)
         if self._from_outside:

@@ -1,4 +1,4 @@
-"""The stick of the person at a robot's controls, as a sensor of the robot: a stream of its own."""
+"""The stick of the person who drives a robot, as one of the robot's sensors."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ JOYSTICK = "joystick"
 
 
 class SeatStick:
-    """Reading: v (m/s), w (rad/s), and vy (m/s) of a robot that is driven sideways, too.
+    """Sensor whose reading is v (m/s), w (rad/s), and vy (m/s) if the drive can move sideways.
 
-    A reading waits until its time has come on the clock of the person.
+    A reading waits until its simulated time has come in real time.
     """
 
     def __init__(self, seat: Seat, limits: RobotLimits, info: SensorInfo) -> None:
@@ -34,7 +34,7 @@ class SeatStick:
         return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
-        """Return the command that the stick asks for now."""
+        """Return the command at the stick's present position."""
         del scene, pose, rng
         self._seat.pace(t)
         taken = self._seat.take(t)
@@ -53,10 +53,9 @@ def reading_of(command: Command, limits: RobotLimits, info: SensorInfo) -> Array
 
 
 def with_stick(built: BuiltRun, make: Any, *, sideways: bool) -> BuiltRun:
-    """Return the run of a robot with a stick that the person holds.
+    """Return the run of a robot with a stick that a person holds.
 
-    It takes the place of the robot's own joystick, if it has one, and is read at each step of the
-    planner.
+    It replaces the robot's joystick, if it has one, and is read at each step of the planner.
 
     Args:
         make: function from limits and description to a sensor.
@@ -85,7 +84,7 @@ def with_stick(built: BuiltRun, make: Any, *, sideways: bool) -> BuiltRun:
 
 
 def stick_name(built: BuiltRun) -> str:
-    """Return the name of the robot's joystick, or one for a robot without."""
+    """Return the name of the robot's joystick, or a default name."""
     own = (n for n, info in built.infos.items() if info.category == "joystick")
     return next(own, JOYSTICK)
 

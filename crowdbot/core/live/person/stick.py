@@ -1,4 +1,4 @@
-"""The position of a stick that a person holds, read from untrusted messages."""
+"""Position of a person's stick, read from untrusted messages."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def stick_of(message: Mapping[str, Any]) -> Stick:
 
 
 def command_of(stick: Stick, limits: RobotLimits) -> Command:
-    """Return the velocities that a stick asks a robot for: full deflection is its limit."""
+    """Return the velocities for a stick's position: full deflection is the robot's limit."""
     v, w, _ = stick_command(stick.ahead, stick.left, limits)
     return Command(v, w, stick.aside * limits.vy_max)
 

@@ -1,4 +1,4 @@
-"""A run with a person at the stick of a robot: an ordinary run, whose joystick is a hand."""
+"""Runs in which a person drives a robot with a stick: ordinary runs with a special joystick."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def controls_of(
     others: Mapping[str, str] | None = None,
     name: str = "",
 ) -> Controls:
-    """Return who drives which robot of a scenario.
+    """Return which robot of a scenario the person drives, and the planners of the others.
 
     Args:
         robot: with the stick; default: the first.
@@ -95,7 +95,7 @@ def controls_of(
 def choice_of(
     controls: Controls, scenario: Scenario, stick: str, lidars: Sequence[str]
 ) -> PlannerChoice:
-    """Return the planner of a run: the person, with an assistant or without.
+    """Return the planner of the driven robot: the person alone, or with an assistant.
 
     Args:
         stick: name of the sensor that is the stick.
@@ -131,7 +131,7 @@ def choice_of(
 def built_with_stick(
     request: Request, controls: Controls, make: StickMaker
 ) -> tuple[Request, dict[str, BuiltRun]]:
-    """Return the request with its planners, and the runs of all robots, one with a stick."""
+    """Return the request with built planners, and the runs of all robots, one with a stick."""
     scenario, registry = request.scenario, request.registry
     bare = replace(request.choice, needs=(), fleet={})
     every = build_run(scenario, registry, bare, "all", controls.robot)
@@ -152,7 +152,7 @@ def seat_at(robot: str, interrupted: Callable[[], bool], rate: float = 1.0) -> S
 
 
 def drive(request: Request, builts: Mapping[str, BuiltRun], seat: Seat, robot: str) -> Run:
-    """Make the run of a person at a stick; people alone are simulated for its scores before.
+    """Make the run with the person; the calibration run of people alone is simulated before.
 
     Raises:
         Interrupted: the user stopped the run; a ``.partial`` directory is left.
@@ -170,7 +170,7 @@ def drive(request: Request, builts: Mapping[str, BuiltRun], seat: Seat, robot: s
 
 
 def repeat(request: Request, builts: Mapping[str, BuiltRun]) -> Run:
-    """Make the run of a stick that needs no person."""
+    """Repeat the run with recorded stick commands, without a person."""
     from crowdbot.core.sim.simulate import make_run
 
     prepared = prepare(request.scenario, request.registry, references=request.options.references)
@@ -199,5 +199,5 @@ def _latency(times: Sequence[float]) -> LatencyPart:
 
 
 def seat_stick(seat: Seat) -> StickMaker:
-    """Return what makes the stick of a seat."""
+    """Return a factory for the stick of a person's place."""
     return lambda limits, info: SeatStick(seat, limits, info)

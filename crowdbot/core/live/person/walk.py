@@ -1,4 +1,4 @@
-"""A run with a person who walks in the crowd: an ordinary run with one more person."""
+"""Runs in which a person walks in the crowd: ordinary runs with one more pedestrian."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from crowdbot.errors import InputError
 
 
 def seat_in_the_crowd(interrupted: Callable[[], bool], rate: float = 1.0) -> Seat:
-    """Return the seat of a person who walks."""
+    """Return the place of a person who walks in the crowd."""
     session = LiveSession(interrupted=interrupted, robots={"": LiveRobot(name="person")})
     return Seat(session, rate=rate)
 
@@ -53,7 +53,7 @@ def walk(
 def walk_again(
     request: Request, builts: Mapping[str, BuiltRun], without: Scenario, folder: Path
 ) -> Run:
-    """Make the run with the velocities that a recorded one asked for.
+    """Repeat a recorded walk with its velocities, without a person.
 
     Raises:
         InputError: it cannot be read, or no person walked in it.

@@ -1,4 +1,4 @@
-"""A person who walks in the crowd: body, place, and the velocities that are asked for.
+"""A person who walks in the crowd: body, position and commanded velocities.
 
 Limits of a healthy adult: fastest walk 2.5 m/s, comfortable walk 1.4 m/s (Bohannon, "Comfortable
 and maximum walking speed of adults aged 20-79 years", Age and Ageing 26, 1997, pp. 15-19: 2.53 and
@@ -140,7 +140,7 @@ def _places(parts: EnvironmentParts) -> Iterator[Point]:
 
 @dataclass
 class Steps:
-    """The velocities that a person's stick asks for, m/s, world frame; a wait for each step.
+    """Velocities that a person's stick commands, m/s, world frame; each step waits for real time.
 
     Attributes:
         yaw: direction of the view, rad.
@@ -163,7 +163,7 @@ class Steps:
 
 
 def led_by(source: Callable[[float], tuple[float, float]]) -> Callable[[Any, Any], None]:
-    """Return what lets a source lead the person of a run, and records what it asks for."""
+    """Return a hook by which a source of velocities moves the person; its commands are recorded."""
 
     def on_crowd(engine: Any, signal: Callable[[float, str, float], None]) -> None:
         walker = next(p for p in engine.policies if getattr(p, "commanded", False))

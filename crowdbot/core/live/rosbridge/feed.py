@@ -105,7 +105,7 @@ class Feed:
         )
 
     def take(self, message: LiveMessage) -> None:
-        """Send a message now, later or never."""
+        """Send a message to the client at once, delayed, or not at all, by its rate and queue."""
         wish = self.wishes
         if wish.throttle <= 0.0:
             self._send(message, wish)

@@ -1,4 +1,4 @@
-"""A limit for what clients send, since one thread serves all of them."""
+"""Rate limit for clients' messages, since one thread serves all clients."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ Frame = str | bytes
 
 
 def cost_of(frame: Frame) -> float:
-    """Return what a frame costs, in messages."""
+    """Return the cost of a frame in messages: long frames count several times."""
     return 1.0 + len(frame) * (_TEXT if isinstance(frame, str) else _BINARY)
 
 
 class Pace:
-    """A bucket of messages that is filled at a constant rate."""
+    """Token bucket that is filled at a constant rate."""
 
     def __init__(
         self, rate: float, burst: float, clock: Callable[[], float] = time.monotonic
@@ -26,7 +26,7 @@ class Pace:
         self._left, self._filled = burst, clock()
 
     def take(self, cost: float) -> float:
-        """Take messages; return the time to wait before the next one, s."""
+        """Take tokens; return the time to wait before the next message, s."""
         now = self._clock()
         self._left = min(self._burst, self._left + (now - self._filled) * self._rate) - cost
         self._filled = now

@@ -122,7 +122,7 @@ class RosbridgeServer:
         self._loop.soon(self._opened, mine)
 
     def wants(self, topic: str) -> bool:
-        """Return True if a client listens to a topic, or the next client needs it."""
+        """Return True if a client subscribes to a topic, or new clients get its latest message."""
         return topic in self._wanted or topic in self._latched
 
     def publish(self, messages: Sequence[LiveMessage]) -> None:

@@ -1,4 +1,4 @@
-"""Needs of planners as they declare them: files beside them, data, libraries of their own."""
+"""Files and access that planners declare: files beside them, data, libraries of their own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits of what a planner may keep in its folder, beyond the largest size of one file.
+"""Limit of the disk space that a planner may use in its folder.
 
 Uses only the standard library.
 """
@@ -29,7 +29,7 @@ class DiskUse:
         self._bytes, self._files = _free(folder)
 
     def excess(self) -> str:
-        """Describe by what the folder is too large; empty if it is not."""
+        """Return how the folder exceeds its limit; empty if it does not."""
         free_bytes, free_files = _free(self._folder)
         shrunk = self._bytes - free_bytes > MOST_BYTES // _SHARE
         if not shrunk and self._files - free_files <= MOST_FILES // _SHARE:

@@ -1,4 +1,4 @@
-"""The files of Pythons and their libraries, which every planner may read."""
+"""Files of Python installations and libraries, which every planner may read."""
 
 from __future__ import annotations
 

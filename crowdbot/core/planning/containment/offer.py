@@ -1,4 +1,4 @@
-"""Means of this kernel to contain planners, and the request that makes a process do it."""
+"""Containment that this kernel supports, and the request with which a process contains itself."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ class Offer:
 
     @property
     def contained(self) -> tuple[Aspect, ...]:
-        """Return what planners cannot reach beyond what is theirs.
+        """Return which accesses the kernel can deny planners.
 
-        Files need both: Landlock leaves modes and owners of files alone. Signals need Landlock, or
-        the filter, which then denies signals to a planner's own children, too.
+        Files need Landlock and the filter: Landlock does not restrict modes and owners of files.
+        Signals need Landlock, or the filter, which then denies signals to a planner's own children,
+        too.
         """
         files: tuple[Aspect, ...] = ("files",) if self.landlock and self.filter else ()
         signals = self.filter or self.landlock >= landlock.ABI_SIGNALS
@@ -46,7 +47,7 @@ class Offer:
 
     @property
     def missing(self) -> str:
-        """Describe what is not contained, and why; empty if all is."""
+        """Return which accesses cannot be denied, and why; empty if all can."""
         missing = [aspect for aspect in ALL if aspect not in self.contained]
         if not missing:
             return ""
@@ -59,7 +60,7 @@ class Offer:
 
 @cache
 def kernel_offer() -> Offer:
-    """Return what this kernel offers; a program may ask for less, to imitate an older one.
+    """Return what this kernel supports; a variable can lower it, to imitate an older kernel.
 
     ``CROWDBOT_LANDLOCK`` is the newest version of Landlock to use; 0 uses neither Landlock nor the
     filter.
@@ -73,7 +74,7 @@ def kernel_offer() -> Offer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Needs:
-    """Files and network that a planner asks for.
+    """Files and network access that a planner needs.
 
     Attributes:
         files: files and folders that it reads.
@@ -88,7 +89,7 @@ class Needs:
     chosen: Sequence[str] = ()
 
     def beyond(self, folder: Path) -> str:
-        """Describe what goes beyond the files of a folder; empty if nothing does."""
+        """Return which needs exceed the files of a folder; empty if none does."""
         if self.network:
             return "asks for the network"
         inside = folder.resolve()

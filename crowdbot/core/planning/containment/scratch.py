@@ -37,7 +37,7 @@ def make_folder(within: str = "") -> str:
 
 
 def use_scratch(folder: str) -> None:
-    """Let this process, and all that it starts, keep everything in its folder."""
+    """Let this process and its children keep temporary files in its folder only."""
     compiled = str(Path(folder, _COMPILED))
     os.environ.update(
         HOME=folder, TMPDIR=folder, TMP=folder, TEMP=folder, XDG_CACHE_HOME=folder,

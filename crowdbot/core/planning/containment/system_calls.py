@@ -1,4 +1,4 @@
-"""A filter of system calls: what Landlock does not deny.
+"""A seccomp filter of system calls that Landlock does not deny.
 
 Denied are calls that reach other processes (limits, priorities, memory), sockets, shared memory of
 System V, and changes of modes, owners and times of files. A denied call returns EPERM. See

@@ -1,1 +1,1 @@
-"""Trained policies as planners: files of weights, with what they observe and how they act."""
+"""Trained policies as planners: files of weights with their observation and action conventions."""

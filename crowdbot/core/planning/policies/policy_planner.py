@@ -1,4 +1,4 @@
-"""A planner that asks a trained policy."""
+"""A planner that runs a trained policy."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _UNKNOWN = RobotBody(
 
 
 class PolicyPlanner:
-    """Observes as the policy was trained to, and turns its actions into commands.
+    """Computes the policy's observation, and turns its action into a command.
 
     Args:
         name: of its file, for messages.

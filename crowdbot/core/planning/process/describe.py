@@ -21,7 +21,7 @@ from crowdbot.errors import PlannerError
 
 @dataclass(frozen=True, slots=True)
 class NotLoaded:
-    """Stands for the builder of a planner that could not be loaded, and fails in its place.
+    """Builder in place of a planner that could not be loaded; it fails when it is called.
 
     Attributes:
         text: the error.

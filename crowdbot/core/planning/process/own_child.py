@@ -58,7 +58,7 @@ _Found = tuple[type, PluginCall, Callable[[], Planner]]
 
 
 class OwnSide:
-    """One planner in our Python: finds, builds and calls it.
+    """One planner in crowdbot's Python: finds, builds and calls it.
 
     Args:
         what: ``name`` and ``origin`` for messages; ``file`` and ``class``, or ``kind`` and where

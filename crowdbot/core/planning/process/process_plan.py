@@ -1,4 +1,4 @@
-"""ProcessPlan: the program of a planner process, and what is checked before it starts."""
+"""ProcessPlan: the program of a planner process, checked before it starts."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def check_plan(plan: ProcessPlan) -> None:
 
 
 def check_sealed(plan: ProcessPlan) -> None:
-    """Refuse a sealed planner that would reach more than what was sealed.
+    """Raise an error if a sealed planner needs files beyond the sealed ones.
 
     Raises:
         InputError: it declares other files, or asks for the network.

@@ -55,7 +55,7 @@ class ProcessDiedError(ProcessLostError):
 
 
 class ProcessPlanner:
-    """A planner that is called through messages only.
+    """A planner in a separate process, called through messages.
 
     Its process ends with `close`, on any failure, and with our own process.
 

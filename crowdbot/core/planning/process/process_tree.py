@@ -1,4 +1,4 @@
-"""Ends everything that a process started, however it tried to get away.
+"""End everything that a process started, even if it tried to escape.
 
 Linux: the process is a subreaper, so orphans of its descendants become its children. Where the
 kernel limits signals to a domain (Landlock), one call reaches all of it, also what is being forked

@@ -45,7 +45,7 @@ _RUNNING: set[int] = set()
 
 
 class ServerGone(PlannerError):  # noqa: N818 - what happened
-    """The fork server does not reply any more: it was ended."""
+    """The fork server no longer replies: it has ended."""
 
 
 class ServerHandle:
@@ -118,7 +118,7 @@ class ServerHandle:
         return answer
 
     def sweep(self) -> None:
-        """Kill what a server and its guard left that were both killed."""
+        """Kill the remaining processes of a server that was killed together with its guard."""
         self.close()
         if os.getpid() == self._owner:
             end_strays(_RUNNING)

@@ -21,10 +21,11 @@ _F_ADD_SEALS = 1033
 
 
 class SharedMemory:
-    """One block, created and sealed before the planner's process: it could cut it or seal it first.
+    """One block of memory, created and sealed before the planner's process starts.
 
-    Pages that are not written to take no memory. Each place belongs to one array of one sensor. The
-    planner's side copies arrays, since the next reading overwrites them.
+    Otherwise the planner could truncate or seal it first. Unused pages take no memory. Each place
+    belongs to one array of one sensor. The planner's side copies arrays, since the next reading
+    overwrites them.
     """
 
     def __init__(self) -> None:

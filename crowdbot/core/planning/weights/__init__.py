@@ -1,1 +1,1 @@
-"""Weights of learned planners, read from files that may be hostile."""
+"""Weights of learned planners, read from untrusted files."""

@@ -1,8 +1,8 @@
-"""Tables of tensors in pickles, read by an interpreter of few opcodes: nothing is run or imported.
+"""Read pickled tables of tensors with an interpreter of few opcodes; no code is run or imported.
 
 A pickle is a program. Python's own reader runs it, and even with an allow list of names it takes
-memory that the program asks for. This one knows the opcodes that PyTorch's ``state_dict`` needs,
-and replaces the names that such a table calls by descriptions of tensors.
+memory that the program asks for. This interpreter knows the opcodes that PyTorch's ``state_dict``
+needs, and replaces the names that such a table calls by descriptions of tensors.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SILENT = ("PROTO", "FRAME")
 
 
 class TensorStorage(NamedTuple):
-    """The numbers that tensors share: key in the file, their type, and how many."""
+    """Memory shared by tensors: its key in the file, the type and number of its elements."""
 
     key: str
     dtype: str
@@ -37,7 +37,7 @@ class TensorStorage(NamedTuple):
 
 
 class TensorView(NamedTuple):
-    """A tensor: its storage, and the first number, size and strides in it, in numbers."""
+    """A tensor: its storage, and offset, shape and strides in elements."""
 
     storage: TensorStorage
     offset: int

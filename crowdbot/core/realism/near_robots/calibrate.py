@@ -53,7 +53,7 @@ class RobotFitTask:
 
     @property
     def what(self) -> list[Any]:
-        """Return what tells this fit from others in its log."""
+        """Return the values that identify this fit in its log."""
         return ["robot", self.crowd, self.overrides, [_digests(Path(f)) for f in self.files]]
 
     def loss(self, overrides: Sequence[str], seed: int) -> float:

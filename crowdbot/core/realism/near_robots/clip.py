@@ -106,7 +106,7 @@ def clip_from_arrays(
 
 
 def smoothed(values: Array, dt: float) -> Array:
-    """Return (T, C) values smoothed over time, each stretch without NaN by itself."""
+    """Return values (T, C) smoothed over time; stretches between NaN are smoothed separately."""
     out = np.full(values.shape, np.nan)
     known = np.isfinite(values).all(axis=1)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], known.astype(np.int8), [0]])))

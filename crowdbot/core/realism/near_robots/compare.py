@@ -72,7 +72,8 @@ def parts_of(own: CellStatistics, recorded: CellStatistics) -> dict[str, float]:
     """Return feature -> similarity: 1 minus the mean distance of quantiles over their range.
 
     The range is that of the recorded 10 % and 90 % quantiles. Shares differ by their difference.
-    Features that are unknown in the recordings are left out; unknown in the own, they score 0.
+    Features that are undefined in the recordings are left out; if undefined for the compared
+    people, they score 0.
     """
     found = {}
     for name in FEATURES:

@@ -1,4 +1,4 @@
-"""Numbers of one encounter, the same for recorded and simulated people."""
+"""Features of one encounter, the same for recorded and simulated people."""
 
 from __future__ import annotations
 

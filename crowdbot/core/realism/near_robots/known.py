@@ -1,4 +1,4 @@
-"""Realism of the kinds of response, known without a simulation: a line for the head of a report."""
+"""Stored realism of the kinds of response to robots, for the head of a report."""
 
 from __future__ import annotations
 

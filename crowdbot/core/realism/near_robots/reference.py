@@ -56,7 +56,7 @@ class RobotReference:
         return {cell: found.count for cell, found in self.whole.items()}
 
     def drawn(self, seed: int) -> list[RobotEncounter]:
-        """Return the encounters that people are simulated in: recorded, or scenes of a draw."""
+        """Return encounters to simulate: the recorded ones, or scenes of a random draw."""
         if self.encounters:
             return list(self.encounters)
         return [e for table in self.tables.values() for e in scenes_of(table, seed)]

@@ -96,7 +96,7 @@ def _engine(response: Response, e: RobotEncounter, attention: float, key: int) -
 
 
 def remaining(attention: float, ignoring: float) -> float:
-    """Return attention on a scale from 0 to 1 of those who do not ignore robots."""
+    """Return attention rescaled to 0 to 1 among people who do not ignore robots."""
     return max(0.0, attention - ignoring) / max(1.0 - ignoring, 1e-9)
 
 

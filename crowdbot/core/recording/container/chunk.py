@@ -77,7 +77,7 @@ class OpenChunk:
         self.size += _PREFIX + length
 
     def pack(self, at: int) -> PackedChunk:
-        """Compress what was collected, and begin a new one.
+        """Compress the collected records, and begin a new chunk.
 
         Args:
             at: position of the chunk in the file.

@@ -1,4 +1,4 @@
-"""A file that this process writes, hashed meanwhile, to notice if another process changes it."""
+"""A file that this process writes and hashes, to detect changes by other processes."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Written:
 
 
 class OwnFile:
-    """An unbuffered file for writing; errors name it. After one, each call raises it again.
+    """An unbuffered file for writing; errors name it. After an error, each call raises it again.
 
     Args:
         path: an existing file is replaced.
@@ -94,7 +94,7 @@ class OwnFile:
         self._size += len(data)
 
     def mark(self) -> None:
-        """Separate what comes before, which stays, from what may be replaced."""
+        """Mark the end of the fixed part of the file; what follows may be replaced later."""
         self._mark = self._sha.copy()
 
     def close(self) -> Written:

@@ -76,7 +76,7 @@ class Record(NamedTuple):
 
 
 class Records:
-    """Iterates over the messages of a file, once; then knows what else was in it.
+    """Iterates once over the messages of a file; afterwards it knows the file's other contents.
 
     Attributes:
         finished: True if it had its footer.

@@ -1,4 +1,4 @@
-"""The pose of a robot when it arrived, which a recording does not hold."""
+"""Extrapolated pose of a robot at its arrival, which lies between two recorded samples."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ def arrival_pose(
 ) -> tuple[float, float, float]:
     """Return x, y, yaw at ``goal_time`` (s), not before the last sample; m, rad.
 
-    The last velocity is held. A point that is still outside the goal, by what the robot gained in
-    speed, is moved towards the middle of the goal until it is inside.
+    The last velocity is kept. A point that is still outside the goal, since the robot accelerated,
+    is moved towards the middle of the goal until it is inside.
     """
     dt = goal_time - float(run.t[-1])
     x, y, yaw = (float(column[-1]) for column in (robot.x, robot.y, robot.theta))

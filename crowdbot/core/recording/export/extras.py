@@ -52,9 +52,9 @@ def extras(
 
 
 def arrival(header: RecordingHeader, run: Trajectories) -> Iterator[Extra]:
-    """Yield pose and frame of the robot when it arrived, if that is later than its last sample.
+    """Yield pose and frame of the robot at its arrival, if that is later than the last sample.
 
-    A run ends between two samples, so that no sample may lie in the goal.
+    A run ends between two samples, so no sample may lie in the goal.
     """
     robot = run.robot
     if robot is None or robot.goal_time is None or robot.goal_time <= run.t[-1]:

@@ -1,4 +1,4 @@
-"""Choices of people in a recording: the velocities they choose among, and their goals."""
+"""Velocity candidates and goals of people, from which the codec predicts their motion."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOST_CANDIDATES = 120
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Choosers:
-    """People who choose among the same candidates.
+    """People who choose among the same candidate velocities.
 
     Attributes:
         candidates: their candidate velocities.

@@ -106,7 +106,7 @@ class _Past(NamedTuple):
 
 
 class MotionCodec:
-    """Packs or unpacks the samples of one recording, in order.
+    """Compresses or decompresses the samples of one recording, in order.
 
     Args:
         people: how many there are.

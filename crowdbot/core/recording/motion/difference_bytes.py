@@ -33,7 +33,7 @@ def carry(
     difference: NDArray[np.int64],
     data: NDArray[np.uint8],
 ) -> None:
-    """Pack differences into ``data`` in the layout of `Packed`, or unpack them; without marks."""
+    """Convert differences to bytes in the layout of `Packed`, or back."""
     count, people = taken.size, taken.shape[1]
     rest, at = (data.shape[0] - count) // 32, count
     for place in range(count):

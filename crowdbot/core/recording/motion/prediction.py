@@ -1,4 +1,4 @@
-"""Predict the motion of people from their two samples before: compiled parts of the codec.
+"""Predict people's motion from their last two samples: compiled parts of the codec.
 
 Only float64 additions, multiplications, divisions and square roots are used, which round
 identically on every machine.
@@ -37,7 +37,7 @@ def best_speed(
     scratch: Array,
     scratch_bits: NDArray[np.int64],
 ) -> int:
-    """Number, from 1, of the speed that predicts the larger component best; 0: constant target."""
+    """Return the number of the speed that predicts the larger component best; 0: the target."""
     best, least = 0, _MOST
     for s in range(SPEEDS + 1):
         scratch[0] = predicted(s, v, up, uq, gain, ticks, speeds)
@@ -67,14 +67,14 @@ def predicted(
 
 @kernel
 def target_velocity(before: float, now: float, gain: float) -> float:
-    """The target velocity of a step; the present one where the step is unknown."""
+    """Return the target velocity of a step; the present velocity where the step is unknown."""
     target = before + gain * (now - before)
     return target if math.isfinite(target) else now
 
 
 @kernel
 def towards(v: float, target: float, gain: float, ticks: int) -> float:
-    """Velocity one step later, added up tick by tick."""
+    """Return the velocity one step later, summed tick by tick."""
     change = (target - v) / (gain * ticks)
     for _ in range(ticks):
         v += change
@@ -93,7 +93,7 @@ def moved(x: float, before: float, now: float, ticks: int) -> float:
 
 @kernel
 def known(value: float) -> float:
-    """Return 0 for non-finite values, since NaN has several bit patterns."""
+    """Return the value, or 0 if it is not finite, since NaN has several bit patterns."""
     return value if math.isfinite(value) else 0.0
 
 

@@ -88,7 +88,7 @@ class StatesWriter:
 
 
 class StatesReader:
-    """Puts the samples of one run together again."""
+    """Reassembles the samples of one run."""
 
     def __init__(
         self, people: int, candidates: Iterable[Any] = (), goals: Iterable[Any] = ()
@@ -147,7 +147,7 @@ class StatesReader:
 
 
 class SeriesRows:
-    """Values of named series, waiting to be written."""
+    """Values of named series that are not yet written."""
 
     def __init__(self) -> None:
         self._rows: dict[str, tuple[list[float], list[float]]] = {}

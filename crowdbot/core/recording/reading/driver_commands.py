@@ -1,4 +1,4 @@
-"""The commands of a robot's driver and of its planner, where a joystick was recorded."""
+"""Commands of a robot's driver and planner, in recordings with a joystick."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core.trajectories.commands import Commands
 
 
 class DriverCommands:
-    """Records of the first joystick and of the planner's commands; decoded when asked for."""
+    """Records of the first joystick and of the planner's commands, decoded on demand."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -21,12 +21,12 @@ class DriverCommands:
         self._final: list[Record] = []
 
     def open(self, header: RecordingHeader) -> None:
-        """Take the name of the joystick from the header, if the robot has one."""
+        """Set the joystick's name from the header, if the robot has one."""
         names = (n for n, s in header.sensors.items() if s.category == "joystick")
         self._joystick = next(names, None)
 
     def wants(self, topic: str) -> bool:
-        """Return True if a topic holds commands that are kept."""
+        """Return True if a topic holds these commands."""
         return self._is_user(topic) or (self._joystick is not None and topic == Topic.COMMAND)
 
     def add(self, topic: str, record: Record) -> None:
@@ -34,7 +34,7 @@ class DriverCommands:
         (self._user if self._is_user(topic) else self._final).append(record)
 
     def commands(self, header: RecordingHeader, end: int) -> Commands | None:
-        """Return the commands until a time (ns); None if one of both was not recorded.
+        """Return the commands until a time (ns); None if either kind was not recorded.
 
         Raises:
             InputError: a command is damaged.

@@ -1,4 +1,4 @@
-"""Read images from a recording, few and small, as the replay page shows them."""
+"""Read images from a recording, reduced in number and size for the replay page."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class ReplayImages:
 
 
 class Grid(NamedTuple):
-    """Remaining pixels: one of ``every`` in both directions, starting at row and column."""
+    """Pixels to keep: every n-th in both directions, starting at row and column."""
 
     every: int
     row: int
@@ -48,7 +48,7 @@ class Grid(NamedTuple):
 
 
 def grid_of(shape: tuple[int, ...], width: int) -> Grid:
-    """The pixels of an image (H, W, ...) that remain, so that at most ``width`` columns do."""
+    """Return the pixels to keep of an image (H, W, ...), at most ``width`` columns."""
     rows, columns = shape[:2]
     every = -(-columns // width)
     return Grid(every, min(every // 2, rows - 1), every // 2)
@@ -61,7 +61,7 @@ def thinned(pixels: NDArray[Any], width: int) -> NDArray[Any]:
 
 
 class ImageCollector:
-    """Collects images from the records of a recording, which another object reads.
+    """Collects images from a recording's records, which are read by `Recording`.
 
     Args:
         path: the recording.

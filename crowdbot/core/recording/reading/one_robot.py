@@ -1,4 +1,4 @@
-"""Records of one robot, or of what several robots share, put together into `Trajectories`."""
+"""Records of one robot, or of the parts shared by several, converted to `Trajectories`."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class PlannerDrawing(NamedTuple):
 
 
 class RobotRecords:
-    """Records in the order they come; decoded when they are asked for.
+    """Collected records of one robot, decoded on demand.
 
     Args:
         path: the recording, for messages.
@@ -87,22 +87,22 @@ class RobotRecords:
             self._driver.open(self.header)
 
     def wants(self, topic: str) -> bool:
-        """Return True if a topic holds readings of distances, or commands, that are kept."""
+        """Return True if a topic holds range readings or commands that are kept."""
         return self._scans.wants(topic) or self._driver.wants(topic)
 
     def add_reading(self, topic: str, record: Record) -> None:
-        """Take a reading of distances, or a command."""
+        """Add a range reading or a command."""
         (self._driver if self._driver.wants(topic) else self._scans).add(topic, record)
 
     # ------------------------------------------------------------------- what there is
     @property
     def names_header(self) -> bool:
-        """True if there is something on the topic of the header."""
+        """Return True if there is a record on the header's topic."""
         return bool(self._records[Topic.HEADER])
 
     @property
     def has_header(self) -> bool:
-        """True if the header is one of crowdbot's."""
+        """Return True if the header was written by crowdbot."""
         return any(r.msgtype == self.TOPICS[Topic.HEADER] for r in self._records[Topic.HEADER])
 
     @property
@@ -125,19 +125,19 @@ class RobotRecords:
 
     @property
     def end(self) -> Any | None:
-        """The ``crowdbot_msgs/RunEnd``; None in an interrupted run."""
+        """Return the ``crowdbot_msgs/RunEnd``; None for an interrupted run."""
         ends = self._messages(Topic.END)
         return ends[-1] if ends else None
 
     @property
     def ended(self) -> float | None:
-        """Time at which the run ended, s; None if it was interrupted."""
+        """Return the time at which the run ended, s; None if it was interrupted."""
         ends = self._records[Topic.END]
         return ends[0].ns / 1e9 if ends else None
 
     @property
     def complete(self) -> bool:
-        """True if the run came to its end, or does not say so."""
+        """Return True if the run was not interrupted, as far as the recording shows."""
         return all(bool(end.complete) for end in self._messages(Topic.END))
 
     @property
@@ -147,7 +147,7 @@ class RobotRecords:
         return states[-1].ns / 1e9 if states else 0.0
 
     def scans(self, sensor: str | None) -> list[ReplayScan]:
-        """Readings of one sensor of distances, or of all.
+        """Return the range readings of one sensor, or of all.
 
         Raises:
             InputError: there is no header, or a reading is damaged.
@@ -179,7 +179,7 @@ class RobotRecords:
 
     @cached_property
     def people(self) -> Trajectories | None:
-        """The people, where they are recorded apart from robots; None without any.
+        """Return the people if they are recorded apart from robots; None without any.
 
         Raises:
             InputError: as `trajectories`.

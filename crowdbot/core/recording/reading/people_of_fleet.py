@@ -1,4 +1,4 @@
-"""The people whom all robots of a fleet met, as part of the run of one of them."""
+"""Add the people of a recording with several robots to the run of one robot."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.errors import InputError
 
 
 def among(own: Trajectories, people: Trajectories, until: float) -> Trajectories:
-    """Return one robot's run with the people whom all robots met, until it ended.
+    """Return one robot's run with the people, cut at its end.
 
     Args:
         own: run of the robot alone.

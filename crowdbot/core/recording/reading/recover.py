@@ -1,4 +1,4 @@
-"""Make a complete file of a recording that was cut off."""
+"""Make a complete file of a truncated recording."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """The result: number of kept messages, and time of the last one, s."""
+    """The result: number of recovered messages, and time of the last one, s."""
 
     messages: int
     end: float

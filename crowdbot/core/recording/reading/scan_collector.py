@@ -1,4 +1,4 @@
-"""Read scans and cones from a recording: all messages of a sensor at once."""
+"""Read lidar scans and readings of ultrasound and infrared sensors from a recording."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ANY = 1.0625
 
 
 class ScanCollector:
-    """Keeps the readings of distances as they come; decodes them when they are asked for."""
+    """Collects range readings, and decodes them on demand."""
 
     def __init__(self, path: Path, max_rate: float | None) -> None:
         self._path, self._max_rate = path, max_rate
@@ -31,12 +31,12 @@ class ScanCollector:
         self._found: dict[str, list[Record]] = {}
 
     def open(self, header: RecordingHeader) -> None:
-        """Take the header, which lists the sensors."""
+        """Set the sensors from the header."""
         self._sensors = {**_lidars(header), **_cones(header)}
         self._thinning = {topic: Thinning(self._max_rate) for topic in self._sensors}
 
     def wants(self, topic: str) -> bool:
-        """Return True if a topic, without the robot's name, is one of a sensor of distances."""
+        """Return True if a topic, without the robot's name, is one of a range sensor."""
         return topic in self._sensors
 
     def add(self, topic: str, record: Record) -> None:
@@ -45,7 +45,7 @@ class ScanCollector:
             self._found.setdefault(topic, []).append(record)
 
     def scans(self, header: RecordingHeader, sensor: str | None) -> list[ReplayScan]:
-        """Return the collected scans: lidars before cones, sensors in order of their first reading.
+        """Return the collected readings: lidars before others, in order of their first reading.
 
         Raises:
             UnknownNameError: the header names no such sensor.

@@ -50,11 +50,11 @@ class Thinning:
         self._due = 0
 
     def due(self, ns: int) -> bool:
-        """Return True if a reading of this time (ns) would remain."""
+        """Return True if a reading at this time (ns) would be kept."""
         return ns >= self._due
 
     def keeps(self, ns: int) -> bool:
-        """Return True if the reading of this time (ns) remains; ask in the order of time."""
+        """Return True if the reading at this time (ns) is kept; call in order of time."""
         if not self.due(ns):
             return False
         self._due = ns - (ns % self._gap if self._gap else 0) + self._gap

@@ -1,1 +1,1 @@
-"""People tracker for planners: legs in lidar points, a map of what stands, tracks of people."""
+"""People tracker for planners: leg detection in lidar points, static map, tracks of people."""

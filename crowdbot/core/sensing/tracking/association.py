@@ -1,4 +1,4 @@
-"""Give legs to tracks: the nearest first, people before tracks that are new; compiled."""
+"""Assign detected legs to tracks: nearest first, people before new tracks; compiled."""
 
 from __future__ import annotations
 

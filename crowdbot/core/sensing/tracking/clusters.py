@@ -1,8 +1,8 @@
-"""Runs of lidar points as narrow as a leg, or as two legs side by side; compiled.
+"""Detect legs: runs of lidar points as narrow as a leg, or as two legs side by side; compiled.
 
 As leg detectors do (Arras, Mozos, Burgard, "Using boosted features for the detection of people in
-2D range data", ICRA 2007), but by three rules instead of a trained classifier: narrow, not an end
-of something that goes on behind an obstacle, and not a piece of a straight wall.
+2D range data", ICRA 2007), but by three rules instead of a trained classifier: narrow, not the
+visible end of a partly hidden object, and not a piece of a straight wall.
 """
 
 from __future__ import annotations

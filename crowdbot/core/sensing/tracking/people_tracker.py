@@ -1,4 +1,4 @@
-"""PeopleTracker: people around a robot from its lidars, with velocities and lasting numbers."""
+"""PeopleTracker: people around a robot from its lidars, with velocities and persistent ids."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ class Tracks(NamedTuple):
 
     @property
     def rows(self) -> Array:
-        """(N, 5) id, x, y, vx, vy, as recordings keep them."""
+        """Return (N, 5) id, x, y, vx, vy, as in recordings."""
         return np.column_stack([self.id, self.position, self.velocity])
 
 
 class PeopleTracker:
-    """Follows people by their legs, or bodies, in the points of all lidars.
+    """Tracks people by legs or bodies in the points of all lidars.
 
-    Runs of points as narrow as legs are given to tracks, the nearest first; each track is a Kalman
+    Runs of points as narrow as legs are assigned to tracks, nearest first; each track is a Kalman
     filter with constant velocity. A track counts as a person once it has moved or shows two legs.
-    Whatever stands for seconds goes into a map, and no track begins there. People who are hidden
-    are followed for two seconds.
+    Objects that stay for seconds enter a static map, and no track starts there. Hidden people are
+    predicted for two seconds.
 
     Args:
         reach: people farther than this are not looked for, m.

@@ -1,8 +1,8 @@
-"""A small map of what stands: cells in which lidars see something for seconds; compiled.
+"""A small static map: cells in which lidars see something for seconds; compiled.
 
-The map is a window of cells that repeats itself, so it goes with the robot without being moved. A
-cell belongs to the place at which it was last seen. Cells forget at a quarter of the rate
-at which they learn, when they are next looked at.
+The map is a window of cells that wraps around, so it follows the robot without being shifted. A
+cell belongs to the position at which it was last seen. Evidence decays at a quarter of the rate at
+which it grows, when a cell is next read.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def new_map() -> Array:
 
 @kernel
 def evidence_at(still: Array, x: float, y: float, t: float) -> float:
-    """Return the evidence at a place (m) at a time (s), s; 0 where nothing was seen."""
+    """Return the evidence at a position (m) and time, in s of observation; 0 if never seen."""
     i, j = math.floor(x / CELL), math.floor(y / CELL)
     cell = still[i % CELLS, j % CELLS]
     if cell[PLACE_X] != i or cell[PLACE_Y] != j:
@@ -40,7 +40,7 @@ def evidence_at(still: Array, x: float, y: float, t: float) -> float:
 
 @kernel
 def stands_at(still: Array, x: float, y: float, t: float) -> bool:
-    """Return True if something stands at a place (m), or in a cell beside it."""
+    """Return True if there is a static object at a position (m), or in a cell beside it."""
     for di in range(-1, 2):
         for dj in range(-1, 2):
             if evidence_at(still, x + di * CELL, y + dj * CELL, t) > _STANDS:
@@ -50,7 +50,7 @@ def stands_at(still: Array, x: float, y: float, t: float) -> bool:
 
 @kernel
 def notice(still: Array, x: float, y: float, t: float, since: float) -> None:
-    """Add evidence at a place (m) seen at a time (s), ``since`` seconds after the last scan."""
+    """Add evidence for a position (m) seen at a time (s), ``since`` seconds after the last scan."""
     i, j = math.floor(x / CELL), math.floor(y / CELL)
     cell = still[i % CELLS, j % CELLS]
     if cell[PLACE_X] != i or cell[PLACE_Y] != j:

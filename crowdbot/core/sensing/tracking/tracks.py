@@ -24,7 +24,7 @@ PAIR_NOISE, WIDE_NOISE, LEG_NOISE, PARTLY_NOISE = 0.03, 0.05, 0.16, 0.3
 
 @kernel
 def begin(track: Array, number: float, x: float, y: float, noise: float, t: float) -> None:
-    """Start a track at a place (m) measured with a noise (m) at a time (s)."""
+    """Start a track at a measured position (m) with some noise (m) at a time (s)."""
     track[:] = 0.0
     track[ID], track[X], track[Y], track[X0], track[Y0] = number, x, y, x, y
     track[PP], track[VV] = noise * noise, _FIRST_SPEED * _FIRST_SPEED
@@ -33,7 +33,7 @@ def begin(track: Array, number: float, x: float, y: float, noise: float, t: floa
 
 @kernel
 def predict(track: Array, dt: float) -> None:
-    """Move a track on by some seconds."""
+    """Predict a track by some seconds."""
     track[X] += dt * track[VX]
     track[Y] += dt * track[VY]
     q = _ACCELERATION * _ACCELERATION * dt
@@ -44,7 +44,7 @@ def predict(track: Array, dt: float) -> None:
 
 @kernel
 def correct(track: Array, x: float, y: float, noise: float) -> None:
-    """Correct a track by a measured place (m) with a noise (m)."""
+    """Correct a track with a measured position (m) with some noise (m)."""
     total = track[PP] + noise * noise
     place, velocity = track[PP] / total, track[PV] / total
     dx, dy = x - track[X], y - track[Y]

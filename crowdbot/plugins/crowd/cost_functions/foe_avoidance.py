@@ -24,7 +24,6 @@ class FoeAvoidanceSpec(CostFunctionSpec):
 
 FOE_AVOIDANCE = Component(
     spec=FoeAvoidanceSpec,
-    build="crowdbot.plugins.crowd.cost_functions.foe_avoidance_build:build",
     summary="focus of expansion of the optical flow (López et al. 2019)",
     exceptions={"check_gradient": "the model has a rule of its own for turning and braking"},
 )

@@ -24,6 +24,5 @@ class GoalReachingForceSpec(CostFunctionSpec):
 
 GOAL_REACHING_FORCE = Component(
     spec=GoalReachingForceSpec,
-    build="crowdbot.plugins.crowd.cost_functions.goal_reaching_force_build:build",
     summary="driving force to the preferred velocity (Helbing and Molnár 1995)",
 )

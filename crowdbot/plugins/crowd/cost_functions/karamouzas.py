@@ -37,6 +37,5 @@ class KaramouzasSpec(CostFunctionSpec):
 
 KARAMOUZAS = Component(
     spec=KaramouzasSpec,
-    build="crowdbot.plugins.crowd.cost_functions.karamouzas_build:build",
     summary="least effort within allowed deviations (Karamouzas and Overmars 2010)",
 )

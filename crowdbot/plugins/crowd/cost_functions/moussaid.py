@@ -25,6 +25,5 @@ class MoussaidSpec(CostFunctionSpec):
 
 MOUSSAID = Component(
     spec=MoussaidSpec,
-    build="crowdbot.plugins.crowd.cost_functions.moussaid_build:build",
     summary="heading by free way, speed by time to collision (Moussaïd et al. 2011)",
 )

@@ -32,6 +32,5 @@ class OrcaSpec(CostFunctionSpec):
 
 ORCA = Component(
     spec=OrcaSpec,
-    build="crowdbot.plugins.crowd.cost_functions.orca_build:build",
     summary="optimal reciprocal collision avoidance (van den Berg et al. 2009)",
 )

@@ -37,8 +37,4 @@ class ParisSpec(CostFunctionSpec):
     )
 
 
-PARIS = Component(
-    spec=ParisSpec,
-    build="crowdbot.plugins.crowd.cost_functions.paris_build:build",
-    summary="passing before or behind others (Paris et al. 2007)",
-)
+PARIS = Component(spec=ParisSpec, summary="passing before or behind others (Paris et al. 2007)")

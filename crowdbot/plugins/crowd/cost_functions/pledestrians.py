@@ -40,6 +40,5 @@ class PledestriansSpec(CostFunctionSpec):
 
 PLEDESTRIANS = Component(
     spec=PledestriansSpec,
-    build="crowdbot.plugins.crowd.cost_functions.pledestrians_build:build",
     summary="least effort to the goal (Guy et al. 2010)",
 )

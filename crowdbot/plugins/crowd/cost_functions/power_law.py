@@ -28,6 +28,5 @@ class PowerLawSpec(CostFunctionSpec):
 
 POWER_LAW = Component(
     spec=PowerLawSpec,
-    build="crowdbot.plugins.crowd.cost_functions.power_law_build:build",
     summary="power law of the time to collision (Karamouzas et al. 2014)",
 )

@@ -24,7 +24,6 @@ class RandomFunctionSpec(CostFunctionSpec):
 
 RANDOM_FUNCTION = Component(
     spec=RandomFunctionSpec,
-    build="crowdbot.plugins.crowd.cost_functions.random_function_build:build",
     summary="random cost between 0 and 2",
     exceptions={"check_gradient": "random costs per candidate have no slope"},
 )

@@ -23,8 +23,4 @@ class RvoSpec(CostFunctionSpec):
     w: Annotated[float, Ge(0)] = Field(default=1.0, description="Weight of the collision term, m.")
 
 
-RVO = Component(
-    spec=RvoSpec,
-    build="crowdbot.plugins.crowd.cost_functions.rvo_build:build",
-    summary="reciprocal velocity obstacles (van den Berg et al. 2008)",
-)
+RVO = Component(spec=RvoSpec, summary="reciprocal velocity obstacles (van den Berg et al. 2008)")

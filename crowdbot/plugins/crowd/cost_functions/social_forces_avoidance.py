@@ -37,6 +37,5 @@ class SocialForcesAvoidanceSpec(CostFunctionSpec):
 
 SOCIAL_FORCES_AVOIDANCE = Component(
     spec=SocialForcesAvoidanceSpec,
-    build="crowdbot.plugins.crowd.cost_functions.social_forces_avoidance_build:build",
     summary="repulsion by people and walls (Helbing and Molnár 1995)",
 )

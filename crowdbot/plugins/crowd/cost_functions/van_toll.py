@@ -27,6 +27,5 @@ class VanTollSpec(CostFunctionSpec):
 
 VAN_TOLL = Component(
     spec=VanTollSpec,
-    build="crowdbot.plugins.crowd.cost_functions.van_toll_build:build",
     summary="free way, deviation and inertia (van Toll et al. 2020)",
 )

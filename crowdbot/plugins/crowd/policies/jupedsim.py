@@ -46,7 +46,6 @@ class JuPedSimSpec(CrowdPolicySpec):
 
 JUPEDSIM = Component(
     spec=JuPedSimSpec,
-    build="crowdbot.plugins.crowd.policies.jupedsim_build:build",
     summary="collision-free-speed and anticipation-velocity models of JuPedSim",
     examples=({}, {"model": "anticipation_velocity"}),
     exceptions={

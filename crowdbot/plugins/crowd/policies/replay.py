@@ -40,7 +40,6 @@ class ReplaySpec(CrowdPolicySpec):
 
 REPLAY = Component(
     spec=ReplaySpec,
-    build="crowdbot.plugins.crowd.policies.replay_build:build",
     summary="recorded trajectories from a CSV file, as they were or reactive",
     examples=({"file": "people.csv"},),
     exceptions={

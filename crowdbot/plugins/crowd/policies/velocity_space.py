@@ -61,6 +61,5 @@ class VelocitySpaceSpec(CrowdPolicySpec):
 
 VELOCITY_SPACE = Component(
     spec=VelocitySpaceSpec,
-    build="crowdbot.plugins.crowd.policies.velocity_space_build:build",
     summary="costs in velocity space, minimised by samples, gradient or closed form",
 )

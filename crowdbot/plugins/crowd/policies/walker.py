@@ -47,7 +47,6 @@ class WalkerSpec(CrowdPolicySpec):
 
 WALKER = Component(
     spec=WalkerSpec,
-    build="crowdbot.plugins.crowd.policies.walker_build:build",
     summary="a person led by commands: live from a page, or recorded",
     examples=({}, {"recorded": ((0.0, 1.2, 0.0), (3.0, 0.0, 0.0))}),
     exceptions={

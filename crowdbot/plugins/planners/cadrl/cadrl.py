@@ -20,7 +20,6 @@ _UNTRAINED = Path(__file__).with_name("untrained.npz")
 
 CADRL = Component(
     spec=CadrlSpec,
-    build="crowdbot.plugins.planners.cadrl.cadrl_build:build",
     examples=({"weights": str(_UNTRAINED)},),
     summary="value network of pairs, weights from a file (Chen, Liu, Everett, How 2017)",
 )

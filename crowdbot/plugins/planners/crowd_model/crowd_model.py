@@ -27,6 +27,5 @@ class CrowdModelSpec(RungSpec):
 
 CROWD_MODEL = Component(
     spec=CrowdModelSpec,
-    build="crowdbot.plugins.planners.crowd_model.crowd_model_build:build",
     summary="the robot decides as a person of the crowd engine, privileged by default",
 )

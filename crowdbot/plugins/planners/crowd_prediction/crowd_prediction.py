@@ -31,6 +31,5 @@ class CrowdPredictionSpec(PeopleMpcSpec):
 
 CROWD_PREDICTION = Component(
     spec=CrowdPredictionSpec,
-    build="crowdbot.plugins.planners.crowd_prediction.crowd_prediction_build:build",
     summary="plans among people whom the crowd engine predicts on board, fitted to what is tracked",
 )

@@ -98,6 +98,5 @@ class DwaSpec(PlannerSpec):
 
 DWA = Component(
     spec=DwaSpec,
-    build="crowdbot.plugins.planners.dwa.dwa_build:build",
     summary="dynamic window approach on lidar points (Fox, Burgard, Thrun 1997)",
 )

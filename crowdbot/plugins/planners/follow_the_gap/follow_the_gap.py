@@ -31,6 +31,5 @@ class FollowTheGapSpec(RungSpec):
 
 FOLLOW_THE_GAP = Component(
     spec=FollowTheGapSpec,
-    build="crowdbot.plugins.planners.follow_the_gap.follow_the_gap_build:build",
     summary="steers into the widest gap between obstacles (Sezer, Gokasan 2012)",
 )

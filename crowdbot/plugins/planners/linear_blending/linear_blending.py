@@ -60,7 +60,6 @@ class LinearBlendingSpec(LadderSpec):
 
 LINEAR_BLENDING = Component(
     spec=LinearBlendingSpec,
-    build="crowdbot.plugins.planners.linear_blending.linear_blending_build:build",
     summary="weighted mean of user and planner (Dragan, Srinivasa 2013)",
     examples=({}, {"arbitration": "fixed", "autonomy": {"kind": "goal_seek"}}),
 )

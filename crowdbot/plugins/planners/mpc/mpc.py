@@ -56,6 +56,5 @@ class MpcSpec(RungSpec):
 
 MPC = Component(
     spec=MpcSpec,
-    build="crowdbot.plugins.planners.mpc.mpc_build:build",
     summary="nonlinear model-predictive control among predicted people (CasADi; crowdbot[mpc])",
 )

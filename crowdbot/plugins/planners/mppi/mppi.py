@@ -57,6 +57,5 @@ class MppiSpec(RungSpec):
 
 MPPI = Component(
     spec=MppiSpec,
-    build="crowdbot.plugins.planners.mppi.mppi_build:build",
     summary="model-predictive path integral control among predicted people, with nav2's defaults",
 )

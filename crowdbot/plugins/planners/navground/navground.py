@@ -34,7 +34,6 @@ class NavgroundSpec(RungSpec):
 
 NAVGROUND = Component(
     spec=NavgroundSpec,
-    build="crowdbot.plugins.planners.navground.navground_build:build",
     examples=({"behavior": "HL"},),
     summary="ORCA, HL, HRVO of the library navground, to check ours (crowdbot[navground])",
 )

@@ -35,6 +35,5 @@ class OrcaPlannerSpec(RungSpec):
 
 ORCA = Component(
     spec=OrcaPlannerSpec,
-    build="crowdbot.plugins.planners.orca.orca_build:build",
     summary="optimal reciprocal collision avoidance, non-holonomic (Alonso-Mora et al. 2013)",
 )

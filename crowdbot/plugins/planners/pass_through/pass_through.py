@@ -15,8 +15,4 @@ class PassThroughSpec(PlannerSpec):
     kind: Literal["pass_through"] = "pass_through"
 
 
-PASS_THROUGH = Component(
-    spec=PassThroughSpec,
-    build="crowdbot.plugins.planners.pass_through.pass_through_build:build",
-    summary="what the user asks for, without assistance",
-)
+PASS_THROUGH = Component(spec=PassThroughSpec, summary="what the user asks for, without assistance")

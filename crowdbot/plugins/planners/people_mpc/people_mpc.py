@@ -78,6 +78,5 @@ class PeopleMpcSpec(RungSpec):
 
 PEOPLE_MPC = Component(
     spec=PeopleMpcSpec,
-    build="crowdbot.plugins.planners.people_mpc.people_mpc_build:build",
     summary="the best of some hundred plans of four seconds among tracked, predicted people",
 )

@@ -63,7 +63,6 @@ class ProbabilisticSpec(LadderSpec):
 
 PROBABILISTIC = Component(
     spec=ProbabilisticSpec,
-    build="crowdbot.plugins.planners.probabilistic.probabilistic_build:build",
     summary="most likely way of user, robot and crowd together (Trautman 2015)",
     examples=({}, {"autonomy": {"kind": "goal_seek"}}),
 )

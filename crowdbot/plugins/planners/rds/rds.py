@@ -46,6 +46,5 @@ class RdsSpec(RungSpec):
 
 RDS = Component(
     spec=RdsSpec,
-    build="crowdbot.plugins.planners.rds.rds_build:build",
     summary="reactive driving support, for long robots (Gonon, Paez-Granados, Billard 2021)",
 )

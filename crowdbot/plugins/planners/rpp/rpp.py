@@ -52,6 +52,5 @@ class RppSpec(RungSpec):
 
 RPP = Component(
     spec=RppSpec,
-    build="crowdbot.plugins.planners.rpp.rpp_build:build",
     summary="regulated pure pursuit, nav2's (Macenski, Singh, Martín, Ginés 2023)",
 )

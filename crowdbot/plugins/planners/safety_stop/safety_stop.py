@@ -37,7 +37,6 @@ class SafetyStopSpec(LadderSpec):
 
 SAFETY_STOP = Component(
     spec=SafetyStopSpec,
-    build="crowdbot.plugins.planners.safety_stop.safety_stop_build:build",
     summary="what the user asks for, with brakes before a collision",
     examples=({}, {"autonomy": {"kind": "goal_seek"}}),
 )

@@ -20,7 +20,6 @@ _UNTRAINED = Path(__file__).with_name("untrained.npz")
 
 SARL = Component(
     spec=SarlSpec,
-    build="crowdbot.plugins.planners.sarl.sarl_build:build",
     examples=({"weights": str(_UNTRAINED)},),
     summary="value network with attention among people, weights from a file (Chen et al. 2019)",
 )

@@ -36,6 +36,5 @@ class SocialForceSpec(RungSpec):
 
 SOCIAL_FORCE = Component(
     spec=SocialForceSpec,
-    build="crowdbot.plugins.planners.social_force.social_force_build:build",
     summary="the social force model as a robot (Helbing, Farkas, Vicsek 2000)",
 )

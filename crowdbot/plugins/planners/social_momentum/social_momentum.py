@@ -37,6 +37,5 @@ class SocialMomentumSpec(RungSpec):
 
 SOCIAL_MOMENTUM = Component(
     spec=SocialMomentumSpec,
-    build="crowdbot.plugins.planners.social_momentum.social_momentum_build:build",
     summary="shows early on which side it will pass (Mavrogiannis, Thomason, Knepper 2018)",
 )

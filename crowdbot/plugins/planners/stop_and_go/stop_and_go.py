@@ -72,6 +72,5 @@ class StopAndGoSpec(PlannerSpec):
 
 STOP_AND_GO = Component(
     spec=StopAndGoSpec,
-    build="crowdbot.plugins.planners.stop_and_go.stop_and_go_build:build",
     summary="to the goal where there is room, stands while something is in the way",
 )

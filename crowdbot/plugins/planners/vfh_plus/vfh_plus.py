@@ -45,6 +45,5 @@ class VfhPlusSpec(RungSpec):
 
 VFH_PLUS = Component(
     spec=VfhPlusSpec,
-    build="crowdbot.plugins.planners.vfh_plus.vfh_plus_build:build",
     summary="vector field histogram with the robot's width (Ulrich, Borenstein 1998)",
 )

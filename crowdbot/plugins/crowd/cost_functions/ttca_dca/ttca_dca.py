@@ -40,7 +40,6 @@ class TtcaDcaSpec(CostFunctionSpec):
 
 TTCA_DCA = Component(
     spec=TtcaDcaSpec,
-    build="crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca_build:build",
     summary="time to and distance of closest approach (Dutra et al. 2017)",
     exceptions={
         "check_gradient": "Dutra et al. turn and speed up, which is not a derivative of this cost"
