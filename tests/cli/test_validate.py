@@ -24,6 +24,14 @@ def test_quiet(capsys: Captured) -> None:
     assert capsys.readouterr() == ("", "")
 
 
+def test_values_that_are_set(capsys: Captured) -> None:
+    start = ["validate", "challenge-2020", "--set"]
+    assert main([*start, "robots.robot.task.time_limit=5"]) == 0
+    assert capsys.readouterr().out == "challenge-2020: ok, 162 scenarios\n"
+    assert main([*start, "robots.robot.task.start=[99,0,0]"]) == 1
+    assert "--set:1:25: error[E132] the start (99, 0)" in capsys.readouterr().err
+
+
 def test_errors_of_all_files(capsys: Captured) -> None:
     other = str(DATA / "E131_count.yaml")
     assert main(["validate", BAD, "challenge-2020", other]) == 1

@@ -18,17 +18,20 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger(__name__)
 
 
-def check_documents(specs: Sequence[str], registry: Registry, form: str = "text") -> int:
+def check_documents(
+    specs: Sequence[str], registry: Registry, form: str = "text", overrides: Sequence[str] = ()
+) -> int:
     """Check documents and print errors: as text on stderr, other formats on stdout.
 
     Args:
         specs: files, or names of packaged suites.
         form: ``text``, ``json`` or ``github``.
+        overrides: ``KEY=VALUE`` for every scenario.
 
     Returns:
         The exit code: 1 if there are errors.
     """
-    results = {spec: _check(spec, registry) for spec in dict.fromkeys(specs)}
+    results = {spec: _check(spec, registry, overrides) for spec in dict.fromkeys(specs)}
     errors = [d for _, found in results.values() for d in found]
     if form == "json":
         say(_as_json(results))
@@ -40,20 +43,22 @@ def check_documents(specs: Sequence[str], registry: Registry, form: str = "text"
     return 1 if errors else 0
 
 
-def _check(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
+def _check(spec: str, registry: Registry, overrides: Sequence[str]) -> tuple[int, list[Diagnostic]]:
     """Return the number of scenarios, and the errors."""
     from crowdbot.core.support.gc_throttle import seldom_collected
 
     with seldom_collected():
-        return _check_all(spec, registry)
+        return _check_all(spec, registry, overrides)
 
 
-def _check_all(spec: str, registry: Registry) -> tuple[int, list[Diagnostic]]:
+def _check_all(
+    spec: str, registry: Registry, overrides: Sequence[str]
+) -> tuple[int, list[Diagnostic]]:
     from crowdbot.core.scenarios.library import open_suite
     from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
 
     try:
-        expansion, files = open_suite(spec, registry)
+        expansion, files = open_suite(spec, registry, overrides)
         return len(expansion.scenarios), list(_lock_problems(files))
     except SpecError as error:
         return 0, list(error.diagnostics)

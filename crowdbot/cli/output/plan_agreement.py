@@ -15,11 +15,14 @@ if TYPE_CHECKING:
     from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
-def check_against_images(specs: Sequence[str], registry: Registry, *, as_json: bool) -> int:
+def check_against_images(
+    specs: Sequence[str], registry: Registry, overrides: Sequence[str] = (), *, as_json: bool
+) -> int:
     """Print how the occupancy grids of documents agree with the floor made of them.
 
     Args:
         specs: files, or names of packaged suites, that are valid.
+        overrides: ``KEY=VALUE`` for every scenario.
 
     Returns:
         The exit code: 1 if a cell's centre is floor in one of both only.
@@ -32,7 +35,7 @@ def check_against_images(specs: Sequence[str], registry: Registry, *, as_json: b
     wrong: list[Diagnostic] = []
     for spec in specs:
         try:
-            found += [(spec, *one) for one in _agreements(spec, registry)]
+            found += [(spec, *one) for one in _agreements(spec, registry, overrides)]
         except SpecError as error:
             wrong += error.diagnostics
     if as_json:
@@ -45,12 +48,14 @@ def check_against_images(specs: Sequence[str], registry: Registry, *, as_json: b
     return 1 if any(one.wrong for *_, one in found) else 0
 
 
-def _agreements(spec: str, registry: Registry) -> Iterator[tuple[str, Agreement]]:
+def _agreements(
+    spec: str, registry: Registry, overrides: Sequence[str]
+) -> Iterator[tuple[str, Agreement]]:
     """Yield the first scenario of each place that is made of an image, and the comparison."""
     from crowdbot.core.scenarios.library import open_suite
 
     seen = set[str]()
-    expansion, _ = open_suite(spec, registry)
+    expansion, _ = open_suite(spec, registry, overrides)
     for scenario in expansion.scenarios:
         place = scenario.environment.model_dump_json(exclude={"zones", "portals"})
         if place not in seen:

@@ -22,8 +22,8 @@ FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
 #: Our name -> other names that are usual, in lower case; taken if ours is not there.
 _USUAL: Mapping[str, Sequence[str]] = {
     "t": ("time", "timestamp", "time_stamp", "stamp", "simsec", "simtime", *FRAMES),
-    "x": ("coordcentx", "startx", "pos_x", "position_x"),
-    "y": ("coordcenty", "starty", "pos_y", "position_y"),
+    "x": ("coordcentx", "startx", "pos_x", "position_x", "tx", "xcenter"),
+    "y": ("coordcenty", "starty", "pos_y", "position_y", "ty", "ycenter"),
     "vx": ("vel_x", "velocity_x", "v_x"),
     "vy": ("vel_y", "velocity_y", "v_y"),
     "theta": ("yaw", "heading"),
@@ -71,7 +71,7 @@ _ENDING = re.compile(
     re.IGNORECASE,
 )
 #: Columns that say nothing about the plane, or number the rows.
-_NEEDLESS = ("z", "point", "geometry", "", "index", "unnamed: 0")
+_NEEDLESS = ("z", "tz", "point", "geometry", "", "index", "unnamed: 0")
 #: Prefixes of numbers of people.
 _PERSON = re.compile(r"^(?:p|ped|pedestrian|person|agent|id|human)_?(\d+)$", re.IGNORECASE)
 

@@ -157,8 +157,9 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
     for comment in [*reversed(named), *reversed(comments)]:
         words = re.split(r"[\s,;]+", re.sub(r"\s*[\[(]", "[", comment.lstrip("#%/ \t")).strip())
         names = [without_unit(word.strip("\"':")).lower() for word in words if word]
-        if "x" in names and "y" in names:
-            starts = (names.index(name) for name in names if name in (*_STARTS, *"xyz"))
+        if any(x in names and y in names for x, y in _PLACES):
+            first = (*_STARTS, *(name for pair in _PLACES for name in pair))
+            starts = (names.index(name) for name in names if name in first)
             words = words if len(words) == width else words[min(starts) :]
             if len(words) >= width:
                 return [word.strip("\"':") for word in words[:width]]
@@ -171,11 +172,13 @@ def _of_petrack(comments: Sequence[str], width: int) -> bool:
     return known and 4 <= width <= 5
 
 
+#: Names of the two coordinates in comments; those of TUM's benchmark come second.
+_PLACES = (("x", "y"), ("tx", "ty"))
 _VISWALK = "$PEDESTRIAN:"
 #: How files begin that are not tables.
 _DOCUMENTS = {"{": "JSON", "[{": "JSON", "[[": "JSON", "<": "XML or HTML"}
 _STARTS = (
-    "id", "persid", "personid", "ped_id", "pers", "person", "t", "time", *FRAMES,
+    "id", "persid", "personid", "ped_id", "pers", "person", "t", "time", "timestamp", *FRAMES,
 )  # fmt: skip
 
 

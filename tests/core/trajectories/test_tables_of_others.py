@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -111,7 +112,7 @@ def test_trajectories_of_pedpy() -> None:
 def test_units_in_brackets(tmp_path: Path, unit: str) -> None:
     path, per = tmp_path / "a.csv", {"s": 1.0, "ms": 1e3, "ns": 1e9}[unit]
     head = f"time [{unit}],x [cm],y (cm),theta [deg]"
-    rows = [f"{0.1 * k * per:.1f},{5.0 * k:.1f},0,{30.0:.1f}" for k in range(10)]
+    rows = [f"{0.1 * k * per:.1f},{5.0 * k:.1f},{3.0 * k},{30.0:.1f}" for k in range(10)]
     path.write_text("\n".join([head, *rows]))
     run = READ.from_csv(path, **BODY)
     assert run.robot is not None
@@ -368,3 +369,34 @@ def test_an_id_that_is_used_again_is_told() -> None:
         READ.from_pandas(agents=people)
     jump = np.isclose(t, 2.1).astype(float)
     assert READ.from_pandas(agents={**people, "jump": jump}).implausible() == []
+
+
+@pytest.mark.parametrize(
+    "head", ["# timestamp tx ty tz qx qy qz qw\n", "# timestamp x y z qx qy qz qw\n"]
+)
+def test_poses_of_benchmarks_whose_comment_names_the_columns(tmp_path: Path, head: str) -> None:
+    rows = (f"{1.3e9 + 0.1 * k:.1f} {0.3 * k} {0.1 * k} 0 0 0 0.16 0.99\n" for k in range(9))
+    (tmp_path / "groundtruth.txt").write_text("# ground truth\n" + head + "".join(rows))
+    with pytest.warns(RecordingWarning, match="the columns qx, qy, qz, qw are not used"):
+        run = READ.from_csv(tmp_path / "groundtruth.txt", **BODY)
+    assert run.robot is not None
+    np.testing.assert_allclose(run.robot.x, 0.3 * np.arange(9))
+    np.testing.assert_allclose(run.robot.y, 0.1 * np.arange(9))
+    np.testing.assert_allclose(run.robot.theta, math.atan2(0.1, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("way", "off"),
+    [
+        (lambda k: (0.05 * k, 0.03 * k), "0.54"),
+        (lambda k: (0.05 * k, 0.05 * k), "0.79"),
+        (lambda k: (math.cos(0.1 * k), math.sin(0.1 * k)), "0.8"),
+    ],
+)
+def test_a_heading_that_was_not_filled_in_is_told(
+    tmp_path: Path, way: Callable[[int], tuple[float, float]], off: str
+) -> None:
+    rows = ("{:.1f},{:.4f},{:.4f},0\n".format(0.1 * k, *way(k)) for k in range(70))
+    (tmp_path / "r.csv").write_text("t,x,y,yaw\n" + "".join(rows))
+    with pytest.warns(RecordingWarning, match=rf"is 0 rad in all samples, {off}\S* rad off"):
+        READ.from_csv(tmp_path / "r.csv", **BODY)

@@ -36,6 +36,12 @@ def validate(
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."
+        ),
+    ] = None,
 ) -> None:
     """Check suites and scenarios; report every error with its position.
 
@@ -48,5 +54,7 @@ def validate(
     if against_image:
         from crowdbot.cli.output.plan_agreement import check_against_images
 
-        raise typer.Exit(check_against_images(specs, registry, as_json=form == "json"))
-    raise typer.Exit(check_documents(specs, registry, form))
+        raise typer.Exit(
+            check_against_images(specs, registry, overrides or (), as_json=form == "json")
+        )
+    raise typer.Exit(check_documents(specs, registry, form, overrides or ()))

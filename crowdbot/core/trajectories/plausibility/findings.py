@@ -33,6 +33,7 @@ _LEAP = 0.5  # m; a step from exactly (0, 0) that is longer began elsewhere
 _TOO_SLOW, _TOO_FAST = 0.5, 3.0
 _SPEEDS = {"km/h": 3.6, "cm/s": 100.0, "mm/s": 1000.0}
 _INEXACT = 0.1  # rad; usual deviation of a measured heading from the motion
+_NOT_FILLED_IN = 0.3  # rad; larger deviation of a heading that never changes
 
 
 def implausible(run: Trajectories) -> list[str]:
@@ -136,7 +137,7 @@ def _headings(run: Trajectories) -> Iterator[str]:
     motion, theta = np.arctan2(vy, vx)[moving], robot.theta[moving]
     as_radians = _agreement(motion, theta)
     if as_radians >= _AGREED:
-        yield from _degrees(motion, theta)
+        yield from list(_degrees(motion, theta)) or _constant(motion, theta)
         return
     seen = f"the heading agrees with the motion in {100 * as_radians:.0f} % of the samples"
     others = {
@@ -155,6 +156,19 @@ def _headings(run: Trajectories) -> Iterator[str]:
         yield f"the robot: {seen}: theta is in radians, from x to y"
     elif as_radians < 0.5 and float(np.max(np.abs(theta))) > 4.0 * np.pi:
         yield f"the robot: {seen}, and reaches {np.max(np.abs(theta)):.0f} rad: degrees?"
+    else:
+        yield from _constant(motion, theta)
+
+
+def _constant(motion: Array, theta: Array) -> Iterator[str]:
+    """Check a heading that never changes: a column that was not filled in agrees by chance only."""
+    off = float(np.median(_errors(motion, theta)))
+    if off > _NOT_FILLED_IN and np.ptp(theta) == 0.0:
+        yield (
+            f"the robot: the heading is {theta[0]:g} rad in all samples, {off:.2g} rad off the "
+            "motion (median): a column that was not filled in? Without it the heading is the "
+            "direction of motion"
+        )
 
 
 def _degrees(motion: Array, theta: Array) -> Iterator[str]:
