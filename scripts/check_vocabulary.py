@@ -70,7 +70,7 @@ RULES = (
     Rule(r"\bunder_way\b", "active", CODE),
     Rule(r"\bPhotographs?\b", "CameraFrame"),
     Rule(r"\b(?:[Pp]ainter|paint_depth)\b", "ColourRenderer, render_depth", CODE),
-    Rule(r"\bfault\.described\b|\bis_users\b", "describe_error, is_user_interrupt"),
+    Rule(r"\b(?:fault\.described|is_users)\b", "describe_error, is_user_interrupt"),
     Rule(rf"\b(?:is|are|was|were)\s+no\b(?!\s+(?:{_COMPARED})\b)(?!-)", "is not a, is not an",
          unless=r"\b[Tt]here\s+"),
     Rule(r"\b(?:is|are)\s+none\b(?!\s+of)", "is not one, has none", unless=r"\b[Tt]here\s+"),
@@ -116,12 +116,26 @@ def findings(
     for rule in rules:
         if suffix not in rule.suffixes:
             continue
-        for found in re.finditer(rule.pattern, text):
+        for found in matches(rule.pattern, text):
             before = text[max(0, found.start() - _BEFORE) : found.start()]
             if rule.unless and re.search(rf"(?:{rule.unless})\Z", before):
                 continue
             line = text.count("\n", 0, found.start()) + 1
             yield line, " ".join(found[0].split()), rule.instead
+
+
+def matches(pattern: str, text: str) -> Iterator[re.Match[str]]:
+    r"""Yield what `re.finditer` would, for a pattern that has at most one ``\b`` in front.
+
+    With that left out, and looked for where the rest is found, it takes a tenth of the time.
+    """
+    word = pattern.startswith(r"\b")
+    rest, place = re.compile(pattern.removeprefix(r"\b")), 0
+    while found := rest.search(text, place):
+        inside = word and found.start() > 0 and re.match(r"\w", text[found.start() - 1])
+        place = found.start() + 1 if inside else found.end()
+        if not inside:
+            yield found
 
 
 def prose(code: str) -> str:
@@ -155,8 +169,10 @@ def main(arguments: Sequence[str]) -> int:
         content = file.read_text("utf-8", errors="replace")
         all_findings = list(findings(content, file.suffix))
         if is_plain_place(file.resolve()):
-            text = prose(content) if file.suffix == ".py" else content
-            all_findings += findings(text, file.suffix, PLAIN)
+            plain = list(findings(content, file.suffix, PLAIN))
+            if plain and file.suffix == ".py":  # not before: it takes longer than all rules
+                plain = list(findings(prose(content), file.suffix, PLAIN))
+            all_findings += plain
         for line, text, instead in sorted(all_findings):
             place = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
             print(f"{place}:{line}: {text} -> {instead}")

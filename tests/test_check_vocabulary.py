@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,15 @@ def test_retired_words_are_found(text: str, words: list[str]) -> None:
 ])  # fmt: skip
 def test_other_meanings_are_left_alone(text: str) -> None:
     assert found(text) == []
+
+
+@pytest.mark.parametrize("rule", vocabulary.RULES + vocabulary.PLAIN, ids=lambda r: r.pattern[:20])
+def test_a_rule_finds_what_its_pattern_does(rule: vocabulary.Rule) -> None:
+    for file in ("tests/test_check_vocabulary.py", "scripts/check_vocabulary.py"):
+        text = (vocabulary.ROOT / file).read_text("utf-8")
+        text += text.replace(" ", "x") + text.replace(" ", "\n")
+        expected = [found.span() for found in re.finditer(rule.pattern, text)]
+        assert [found.span() for found in vocabulary.matches(rule.pattern, text)] == expected
 
 
 def test_a_rule_holds_in_its_files_only() -> None:
