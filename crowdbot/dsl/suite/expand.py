@@ -149,8 +149,10 @@ def expand_document(
 class Expanding:
     """A document's scenarios by index in the `Expansion`, each expanded on demand."""
 
-    def __init__(self, suite: ParsedSuite, scenario_model: type[Scenario]) -> None:
-        self._expander = _Expander(suite, scenario_model, ())
+    def __init__(
+        self, suite: ParsedSuite, scenario_model: type[Scenario], overrides: Sequence[str] = ()
+    ) -> None:
+        self._expander = _Expander(suite, scenario_model, overrides)
 
     def scenario(self, index: int) -> Scenario:
         """Return one scenario.

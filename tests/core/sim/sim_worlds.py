@@ -22,7 +22,7 @@ from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.robots import build_model
 from crowdbot.core.robots.task import sensor_context
-from crowdbot.core.scenarios.library import open_spec, pick
+from crowdbot.core.scenarios.library import open_document, open_spec, pick
 from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sim import ports
 from crowdbot.core.sim.build_crowd import build_crowd
@@ -32,6 +32,8 @@ from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.support.ticks import TICK
 from crowdbot.dsl.scenario.scenario import Scenario
+from crowdbot.dsl.suite.expand import Expanding, Expansion
+from crowdbot.dsl.suite.suite import ParsedSuite
 from crowdbot.plugin import CameraFrame, Command, Observation, Planner, Reading, RobotState
 
 Array = NDArray[np.float64]
@@ -43,9 +45,27 @@ def registry() -> Registry:
     return discover()
 
 
+@cache
+def challenge() -> Expansion:
+    return open_spec("challenge-2020", registry())
+
+
+@cache
+def document() -> ParsedSuite:
+    return open_document("challenge-2020", registry()).suite
+
+
 def scenario(*overrides: str, id_: str = EASY) -> Scenario:
-    """A scenario of the challenge with some fields changed."""
-    return pick(open_spec("challenge-2020", registry(), overrides), id_)
+    """A scenario of the challenge with some fields changed.
+
+    As `pick` of `open_spec` with these, for which all 162 would be expanded.
+    """
+    unchanged = pick(challenge(), id_)
+    index = challenge().scenarios.index(unchanged)
+    found = Expanding(document(), registry().scenario_model, overrides).scenario(index)
+    assert unchanged.locked is not None
+    found.lock_to(unchanged.locked)
+    return found
 
 
 def alone(*overrides: str) -> Scenario:
