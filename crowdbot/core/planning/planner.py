@@ -47,6 +47,11 @@ class Truth:
         people_notice: (N,) time to contact from which a person responds to a robot that moves, s:
             infinite for people who notice as soon as it is within sight, 0 for those who never do
             and for robots; empty if it is not known.
+        foresee: ``foresee(steps, step, path)`` returns where these people will be after each of
+            some steps (s), (T, N, 2) in m, and 1e6 where one is no longer there: the crowd itself
+            walks on, beside a robot on a path (T + 1, 3) of x, y and yaw, or as if there was none
+            (``path`` None). None in a process of its own, among several robots, and where people
+            are led or belong to others.
     """
 
     pose: Pose
@@ -56,13 +61,14 @@ class Truth:
     people_radius: Array
     people_id: NDArray[np.int64]
     people_notice: Array = field(default_factory=lambda: np.zeros(0))
+    foresee: Callable[[int, float, Array | None], Array] | None = None
 
     def copy(self) -> Truth:
         """Return a copy with its own read-only arrays."""
         arrays = {n: getattr(self, n).copy() for n in Truth.__slots__ if n.startswith("people")}
         for array in arrays.values():
             array.setflags(write=False)
-        return Truth(pose=self.pose, velocity=self.velocity, **arrays)
+        return Truth(pose=self.pose, velocity=self.velocity, foresee=self.foresee, **arrays)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -28,6 +28,7 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.bodies import SEEN, outlines_of, rows_of
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.control.controlled import Push
+from crowdbot.core.sim.foresight import Foresight
 from crowdbot.core.sim.person_targets import led_in
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
@@ -132,6 +133,14 @@ class CrowdSystem(LeafSystem):
             numbers=here,
             stiffnesses=self._stiffnesses if all_here else self._stiffnesses[here],
         )
+
+    @property
+    def foresight(self) -> Foresight | None:
+        """Return what foresees the people; None if that depends on more than their own state."""
+        foreign = any(group.foreign for group in self.engine.groups)
+        if len(self._rows) != 1 or self._led or foreign:
+            return None
+        return Foresight(self.engine, self._rows[0], self._outlines, float(self._stiffnesses[0]))
 
     @property
     def events(self) -> OutputPort:

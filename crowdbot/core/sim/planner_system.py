@@ -42,6 +42,7 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
+from crowdbot.core.sim.foresight import Foresight
 from crowdbot.core.sim.other_robots import OtherRobots
 from crowdbot.core.sim.person_targets import guide_of, relative_people
 from crowdbot.core.sim.sensor_bank import SensorBank
@@ -62,12 +63,14 @@ class People:
         notice: (N,) time to contact from which they respond to a robot that moves, s.
         robots: (R,) how far the other robots reach, m; they stand among the people,
             numbered -2, -3, ….
+        foresight: foresees them; None: nothing does.
     """
 
     id: NDArray[np.int64]
     radius: Array
     notice: Array = field(default_factory=lambda: np.zeros(0))
     robots: Array = field(default_factory=lambda: np.zeros(0))
+    foresight: Foresight | None = None
 
     def truth(
         self, robot: RobotState, crowd: Array, others: Sequence[RobotState | None] = ()
@@ -100,7 +103,21 @@ class People:
             people_radius=radius,
             people_id=ids,
             people_notice=notice,
+            foresee=self._foresee(crowd, there),
         )
+
+    def _foresee(
+        self, crowd: Array, there: NDArray[np.bool_]
+    ) -> Callable[[int, float, Array | None], Array] | None:
+        """Return what foresees the people who are there, from a state of the crowd on."""
+        seer = self.foresight
+        if seer is None:
+            return None
+
+        def foresee(steps: int, step: float, path: Array | None = None) -> Array:
+            return seer.places(crowd, steps, step, path)[:, there]
+
+        return foresee
 
 
 class Guided(NamedTuple):
@@ -353,4 +370,5 @@ def _people(crowd: CrowdSystem | None, others: Sequence[RobotModel]) -> People:
     if crowd is None:
         return People(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), reach)
     agents = crowd.engine.agents
-    return People(agents.id, agents.radius, notice_time(agents, crowd.engine.world.response), reach)
+    notice = notice_time(agents, crowd.engine.world.response)
+    return People(agents.id, agents.radius, notice, reach, crowd.foresight)

@@ -40,6 +40,7 @@ class Evasion:
         size: (N-1, M) magnitude of the acceleration, m/s².
         away: (N-1, M) the part that points away from the robot, never negative, m/s².
         approach: (N-1, M) speed of the robot towards the person, never negative, m/s.
+        nx, ny: (N-1, M) direction from the robot to the person.
     """
 
     dt: Array
@@ -47,6 +48,8 @@ class Evasion:
     size: Array
     away: Array
     approach: Array
+    nx: Array
+    ny: Array
 
     @property
     def met(self) -> Mask:
@@ -112,6 +115,8 @@ def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
         size=spread(np.where(near, np.hypot(ax, ay), 0.0)),
         away=spread(np.where(there, np.maximum(ax * nx + ay * ny, 0.0), 0.0)),
         approach=spread(np.where(there, np.maximum(rx * nx + ry * ny, 0.0), 0.0)),
+        nx=spread(nx),
+        ny=spread(ny),
     )
 
 

@@ -31,14 +31,19 @@ def touched(run: Trajectories, asked: Mask, jump_speed: float) -> Mask:
         asked: (N-1, M) steps; the others are False in the result.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
+    gap = encounter(run, jump_speed).gap
+    by_robot = (np.fmin(gap[:-1], gap[1:]) < SLACK) | _in_table(run)
+    return (touched_by_others(run, asked) | by_robot) & asked
+
+
+def touched_by_others(run: Trajectories, asked: Mask) -> Mask:
+    """As `touched`, by people and walls alone, not by the robot."""
     found = np.zeros(asked.shape, dtype=bool)
     step, who = np.nonzero(asked)
     found[step, who] = _by_people(run, step, who)
-    gap = encounter(run, jump_speed).gap
-    found |= (np.fmin(gap[:-1], gap[1:]) < SLACK) | _in_table(run)
     if run.walls is not None and len(run.walls):
         found[step, who] |= _by_walls(run, run.walls, step, who)
-    return found & asked
+    return found
 
 
 def _by_people(run: Trajectories, step: Indices, who: Indices) -> Mask:

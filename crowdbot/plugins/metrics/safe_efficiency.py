@@ -53,4 +53,5 @@ SAFE_EFFICIENCY = declare(
     minimum=0.0,
     maximum=1.0,
     more_people="down",
+    variants=("corrected", "by_robot"),
 )

@@ -25,6 +25,9 @@ from crowdbot.plugins.metrics.fault_build import fault_rule
 from crowdbot.plugins.metrics.safe_efficiency import SAFE_EFFICIENCY, SafeEfficiencySpec
 from crowdbot.plugins.metrics.walls_build import wall_contacts
 
+#: People regain their velocity within this time after they have bounced off others, s.
+_REBOUND = 1.0
+
 
 class SafeEfficiency(DeclaredMetric[SafeEfficiencySpec], declared=SAFE_EFFICIENCY):
     """Scores ``safe_efficiency``: shortest time over time taken; 0 without arrival.
@@ -40,18 +43,27 @@ class SafeEfficiency(DeclaredMetric[SafeEfficiencySpec], declared=SAFE_EFFICIENC
         found = person_contacts(run, spec.jump_speed, spec.contact_tol, spec.release_gap)
         faults = int(at_fault(run, found, fault_rule(spec), spec.jump_speed).sum())
         taken = travel_time(run, robot_of(run))
-        aside = np.isfinite(driven_aside(
-            run, push=spec.forced_push, headway=spec.forced_headway, reach=spec.evasion_reach,
-            jump_speed=spec.jump_speed,
-        )).sum()  # fmt: skip
+        aside, by_robot = (self._aside(run, rebound) for rebound in (0.0, _REBOUND))
         walls = wall_contacts(run, spec.contact_tol, spec.release_gap, spec.jump_speed)
         extras = {
             "contacts_at_fault": float(faults), "driven_aside": float(aside),
-            "wall_contacts": float(walls), "shortest_time": shortest, "time": taken,
+            "driven_aside_by_robot": float(by_robot), "wall_contacts": float(walls),
+            "shortest_time": shortest, "time": taken,
         }  # fmt: skip
         if shortest <= spec.zero_tol:
             raise UndefinedError("zero_denominator")
         if faults or robot_of(run).goal_time is None:
-            return [self.factory.ok("corrected", 0.0, extras)]
-        share = spec.forced_factor ** int(aside) * spec.wall_factor**walls
-        return [self.factory.ok("corrected", share * shortest / max(taken, shortest), extras)]
+            return [self.factory.ok("corrected", 0.0, extras), self.factory.ok("by_robot", 0.0)]
+        share = spec.wall_factor**walls * shortest / max(taken, shortest)
+        return [
+            self.factory.ok("corrected", spec.forced_factor**aside * share, extras),
+            self.factory.ok("by_robot", spec.forced_factor**by_robot * share),
+        ]
+
+    def _aside(self, run: Trajectories, rebound: float) -> int:
+        """Return how many people are driven aside; see `driven_aside`."""
+        spec = self.spec
+        return int(np.isfinite(driven_aside(
+            run, push=spec.forced_push, headway=spec.forced_headway, reach=spec.evasion_reach,
+            jump_speed=spec.jump_speed, rebound=rebound,
+        )).sum())  # fmt: skip

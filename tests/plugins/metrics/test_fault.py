@@ -282,3 +282,29 @@ def test_each_person_counts_once_and_others_shove_is_not_the_robots() -> None:
     overlapping = dataclasses.replace(run, agents=two)
     found = scores_of("safe_efficiency", overlapping, forced_headway="5 s")["corrected"]
     assert found.extras["driven_aside"] == 0  # they touch each other all the time
+
+
+def bounced(after: float, *, touched: bool = True) -> Trajectories:
+    """Somebody ahead bounces off another person at 1 m/s, goes on at 0.4, then at ``after``."""
+    t = grid(10.0, 1 / 16)
+    slowed = np.clip(1.0 - 6.0 * (t - 4.0), 0.4, 1.0)
+    speed = np.where(t < 4.5, slowed, np.minimum(0.4 + 1.2 * (t - 4.5), after))
+    x = REACH + 1.1 + np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2.0) / 16])
+    walker = Body(x, 0 * t, speed, 0 * t)
+    beside = line(t, (float(np.interp(4.1, t, x)), 0.49 if touched else 2.0), (0, 0))
+    return scene(t, line(t, (0, 0), (1, 0)), [walker, beside], goal_time=10.0, **GOAL)
+
+
+@pytest.mark.parametrize(
+    ("after", "touched", "counted", "by_robot"),
+    [(1.0, True, 1, 0), (1.0, False, 1, 1), (1.6, True, 1, 1), (1.2, True, 1, 0)],
+)
+def test_who_bounces_off_others_regains_the_speed(
+    after: float, touched: bool, counted: int, by_robot: int
+) -> None:
+    """The robot did not slow them; what they gain beyond their speed is for the robot."""
+    found = scores_of("safe_efficiency", bounced(after, touched=touched), forced_headway="5 s")
+    extras = found["corrected"].extras
+    assert (extras["driven_aside"], extras["driven_aside_by_robot"]) == (counted, by_robot)
+    assert found["corrected"].value == pytest.approx(0.5**counted)
+    assert found["by_robot"].value == pytest.approx(0.5**by_robot)

@@ -1,0 +1,1 @@
+"""Oracle: plans with the truth, people foreseen included."""

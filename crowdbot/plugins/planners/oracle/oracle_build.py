@@ -1,0 +1,113 @@
+"""Oracle: the people MPC with the truth; it foresees people, who give way in each plan."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from crowdbot.plugin import Array, Indices, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugins.planners.crowd_prediction.crowd_prediction_build import CrowdPrediction
+from crowdbot.plugins.planners.oracle import time_to_go_build as grid
+from crowdbot.plugins.planners.oracle.foreseen_build import Foreseen
+from crowdbot.plugins.planners.oracle.oracle import OracleSpec
+from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP, UNKNOWN, TimeToGo
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
+
+#: Predictions are drawn at intervals of this many steps.
+_SHOWN_STEP = 6
+
+
+class Oracle(CrowdPrediction):
+    """Foresees people as if the robot was not there; plans decide what they do for it."""
+
+    name = "oracle"
+
+    def __init__(self, spec: OracleSpec) -> None:
+        super().__init__(spec)
+        self._knows = spec
+        self._foreseen = Foreseen(spec.far_horizon, spec.look_again)
+        self._values, self._cost, self._cell = np.zeros((0, 0, 0)), np.zeros((0, 0)), 1.0
+        self._to_go, self._looked = UNKNOWN, 0.0
+
+    def reset(
+        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
+    ) -> None:
+        """Store the limits and mounts; compile kernels that are not compiled yet."""
+        super().reset(task, limits, sensors, seed)
+        spec = self._knows
+        self._radius = None
+        self._foreseen = Foreseen(spec.far_horizon, spec.look_again)
+        self._speed = spec.speed * limits.v_max
+        self._values, self._cost, self._cell = grid.blank(spec.far_horizon, self._speed)
+        self._to_go = UNKNOWN
+        self._fill(np.zeros((1, 1, 2)), np.ones((1, 2)), (0.0, 0.0), (1.0, 0.0), (9.0, 0.0))
+
+    def predicted(
+        self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
+    ) -> Array:
+        """Return where people will be, (T, N, 2); draw it."""
+        assert obs.truth is not None
+        if obs.truth.foresee is None:
+            return super().predicted(obs, scene, rows, aim)
+        looked = self._foreseen.look(obs.t, obs.truth)
+        ahead = self._foreseen.places(obs.t, obs.truth)
+        if looked:
+            self._look_far(obs, scene, ahead, aim)
+        found = ahead[: round(self._knows.horizon / STEP), rows]
+        shown = found[_SHOWN_STEP - 1 :: _SHOWN_STEP].reshape(-1, 2)
+        obs.draw("predicted people", in_base(scene.pose, shown))
+        return np.ascontiguousarray(found)
+
+    def _look_far(
+        self, obs: Observation, scene: PlannerScene, ahead: Array, aim: tuple[float, float]
+    ) -> None:
+        """Find the time to the goal from places ahead, as of now."""
+        assert obs.truth is not None
+        spec, count = self._knows, len(scene.people)
+        notice = self.yields(obs, np.arange(count))
+        costs = np.where(np.isinf(notice), spec.through, spec.into)
+        people = np.column_stack([scene.people[:, 4], costs])
+        x, y = scene.pose.x, scene.pose.y
+        distance = math.hypot(aim[0] - x, aim[1] - y)
+        if distance < 1e-6:
+            self._to_go = UNKNOWN
+            return
+        way = (aim[0] - x) / distance, (aim[1] - y) / distance
+        self._fill(np.ascontiguousarray(ahead), people, (x, y), way, aim)
+        self._looked = obs.t
+
+    def _fill(
+        self,
+        ahead: Array,
+        people: Array,
+        place: tuple[float, float],
+        way: tuple[float, float],
+        aim: tuple[float, float],
+    ) -> None:
+        corner = grid.corner_of(*place, way, self._cell)
+        radius = float(self._robot[:, 2].min()) + self._knows.far_margin
+        grid.fill(
+            self._values, self._cost, ahead, people, (*corner, *way, self._cell), aim,
+            (radius, self._speed), (self._field.values, self._field.corner),
+        )  # fmt: skip
+        self._to_go = TimeToGo(self._values, corner, way, self._cell, grid.LAYER * STEP, 0.0)
+
+    def to_go(self, obs: Observation, scene: PlannerScene, aim: tuple[float, float]) -> TimeToGo:
+        """Return the time to the goal from places ahead; unknown if nothing is foreseen."""
+        del scene, aim
+        if obs.truth is None or obs.truth.foresee is None:
+            return UNKNOWN
+        return self._to_go._replace(since=obs.t - self._looked)
+
+    def yields(self, obs: Observation, rows: Indices) -> Array:
+        """Return from which time to contact people give way, (N,) s; never if it is not known."""
+        assert obs.truth is not None
+        notice = obs.truth.people_notice
+        return notice[rows] if len(notice) else np.zeros(len(rows))
+
+
+def build(spec: OracleSpec) -> Oracle:
+    """Build a planner from its spec."""
+    return Oracle(spec)
