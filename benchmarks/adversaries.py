@@ -74,7 +74,7 @@ class Wiggle(Adversary):
     """Turns its head left and right twice a second, so that nobody knows where it goes."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command, turning to and fro."""
+        """Return the late command, turning left and right."""
         return self.late(self.room(points), v), w + 1.2 * math.sin(4.0 * math.pi * obs.t)
 
 

@@ -1,4 +1,4 @@
-"""What was foreseen last of the people of a run, moved to where they are by now."""
+"""The people of a run as they were foreseen last, moved to where they are by now."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Foreseen:
 
     Args:
         horizon: s.
-        again: time after which the crowd is asked anew, s.
+        again: time after which the crowd is asked again, s.
     """
 
     def __init__(self, horizon: float, again: float) -> None:

@@ -39,7 +39,7 @@ class OracleSpec(CrowdPredictionSpec):
         default=0.3, description="Clearance above which more is no better, m."
     )
     look_again: PositiveDuration = Field(
-        default=0.5, description="Time after which people are foreseen anew, s."
+        default=0.5, description="Time after which people are foreseen again, s."
     )
     far_horizon: PositiveDuration = Field(
         default=8.0,
