@@ -28,6 +28,8 @@ class GoalSeek:
         assert self._limits is not None
         spec = self._spec
         distance, error = bearing(obs.pose, obs.goal)
+        aim = [distance * math.cos(error), distance * math.sin(error)]
+        obs.draw("aim", [[0.0, 0.0], aim])
         if distance <= spec.tolerance:
             return Command(0.0, 0.0)
         w = max(-self._limits.w_max, min(self._limits.w_max, spec.heading_gain * error))

@@ -32,9 +32,11 @@ from crowdbot.plugins.planners.dwa.dead_ends.manoeuvring_build import Manoeuvrin
 from crowdbot.plugins.planners.dwa.direction_build import choose_direction
 from crowdbot.plugins.planners.dwa.dwa import DwaSpec
 from crowdbot.plugins.planners.dwa.parameters_build import PARAMETERS, PERIOD, parameters_of
+from crowdbot.plugins.planners.dwa.rollouts_build import STEP
 from crowdbot.plugins.planners.dwa.scene_build import REACH, PerceivedScene
 from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_aside
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.shared.driven_path_build import driven
 from crowdbot.plugins.planners.shared.heading_by_walls_build import HeadingByWalls, compile_heading
 from crowdbot.plugins.planners.shared.near_points_build import NearPoints
 from crowdbot.plugins.planners.shared.robot_outline_build import (
@@ -123,6 +125,16 @@ class Dwa:
             )
 
     def step(self, obs: Observation) -> Command:
+        """Return the next command, and draw where it leads; zero at the goal."""
+        command = self._command(obs)
+        now = (command.v, command.w, command.vy)
+        turning, steps = round(self._spec.turn_time / STEP), round(self._spec.horizon / STEP)
+        rows = np.tile(now, (max(steps, 1), 1))
+        rows[turning:, 1] = 0.0
+        obs.draw("plan", driven(rows, STEP))
+        return command
+
+    def _command(self, obs: Observation) -> Command:
         """Return the next command; zero at the goal."""
         seen = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
         pose = self._heading_by_walls.pose(obs.pose, seen)
@@ -150,6 +162,7 @@ class Dwa:
             velocities = np.concatenate([velocities, np.zeros_like(detour.beside)])
         direction, free = self._choose_direction(pose, detour, points, velocities)
         self._last = self._choose_velocity(obs, distance, detour, direction, points, velocities)
+        obs.draw("direction", [[0.0, 0.0], [math.cos(direction), math.sin(direction)]])
         obs.log("dwa/direction", direction)
         obs.log("dwa/free_time", free)
         return self._stuck.told(Command(*self._last), period)

@@ -24,6 +24,7 @@ from crowdbot.plugin import (
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.rpp.rpp import RppSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
+from crowdbot.plugins.planners.shared.driven_path_build import driven
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, PlannerSurroundings
 from crowdbot.plugins.planners.shared.way_build import Way
@@ -66,15 +67,16 @@ class Rpp:
             return self._surroundings.away
         aim = self._way.aim(obs.t, scene.pose, scene.seen, obs.goal)
         far, error = bearing(scene.pose, aim)
+        obs.draw("aim", [[0.0, 0.0], [far * math.cos(error), far * math.sin(error)]])
         if abs(error) > spec.turn_in_place:
-            return self._checked(scene, 0.0, _clamped(spec.turn_gain * error, limits.w_max))
+            return self._checked(obs, scene, 0.0, _clamped(spec.turn_gain * error, limits.w_max))
         ahead = max(spec.look_ahead_min, abs(scene.twist[0]) * spec.look_ahead_time)
         ahead = min(ahead, spec.look_ahead_max, max(far, 1e-3))
         curvature = 2.0 * math.sin(error) / ahead
         v = self._regulated(curvature, scene)
         v = min(v, braking_speed(distance, limits.a_max))
         obs.log("rpp/speed", v)
-        return self._checked(scene, v, _clamped(v * curvature, limits.w_max))
+        return self._checked(obs, scene, v, _clamped(v * curvature, limits.w_max))
 
     def _regulated(self, curvature: float, scene: PlannerScene) -> float:
         """Return the speed for a bend (1/m) and the nearest obstacle, m/s."""
@@ -90,12 +92,14 @@ class Rpp:
             close = top * spec.proximity_gain * max(near, 0.0) / spec.proximity
         return max(min(bend, close), min(spec.min_speed, top))
 
-    def _checked(self, scene: PlannerScene, v: float, w: float) -> Command:
-        """Return the command.
+    def _checked(self, obs: Observation, scene: PlannerScene, v: float, w: float) -> Command:
+        """Return the command, and draw its arc as far as it is checked.
 
         Raises:
             NoValidCommand: its arc hits something.
         """
+        steps = max(1, math.ceil(self._spec.collision_time / _STEP))
+        obs.draw("plan", driven(np.tile((v, w, 0.0), (steps, 1)), _STEP))
         discs = _discs(scene)
         now = arc_gap(discs, self._robot, v, w, 0.0)
         if arc_gap(discs, self._robot, v, w, self._spec.collision_time) < min(0.0, now - 1e-3):

@@ -107,9 +107,18 @@ class StopAndGo:
             seen = replace(seen, goal=(pose.x + c * x - s * y, pose.y + s * x + c * y))
         v, w, _ = self._seek.step(seen)
         most, room = self._safe_speed(scene, 0.0)
+        obs.draw("box", self._box(obs.twist[0]))
         obs.log("stop_and_go/room", min(room, 100.0))
         obs.log("stop_and_go/turn", turn)
         return Command(min(v, most), w)
+
+    def _box(self, v: float) -> Array:
+        """Return the corners (5, 2), closed, of the box that has to be empty at a speed, m."""
+        assert self._limits is not None
+        spec = self._spec
+        stopping = abs(v) * (spec.reaction_time + 0.5 * abs(v) / self._limits.a_max)
+        long, half = self._front + spec.front_margin + stopping, self._half_width + spec.side_margin
+        return np.array([[0.0, half], [long, half], [long, -half], [0.0, -half], [0.0, half]])
 
     def _scene(self, t: float, pose: Pose, points: Array) -> _Scene:
         """Return discs around legs, and their motion.

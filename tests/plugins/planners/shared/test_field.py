@@ -168,3 +168,17 @@ def test_mppi_draws_its_noise_from_the_seed() -> None:
 
     assert sixth(3) == sixth(3)
     assert sixth(3) != sixth(4)
+
+
+@pytest.mark.parametrize("kind", ["dwa", "stop_and_go", "goal_seek", "wall_hug", *KINDS])
+def test_it_draws_what_it_thinks(kind: str) -> None:
+    registry = discover()
+    component = registry.find("planner", kind)
+    planner: Any = load_build(component)(component.spec(**FAST.get(kind, {})))
+    driven = Driven(
+        planner, kind, COURSES["people in a room"], sensors_for(component.spec.needs, registry)
+    )
+    driven.run(12)
+    last = {d.name: d.rows for d in driven.drawings if d.name != "tracks"}
+    assert last
+    assert any(np.hypot(*rows[-1, :2]) > 0.05 for rows in last.values() if len(rows))
