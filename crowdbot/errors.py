@@ -20,7 +20,7 @@ from __future__ import annotations
 import difflib
 import unicodedata
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from crowdbot.dsl.text.diagnostics import Diagnostic
@@ -34,6 +34,19 @@ class CrowdbotError(Exception):
     """Base of all errors with a readable message."""
 
     exit_code = 1
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle without the arguments of ``__init__``, which pools would call with the message."""
+        return _as_raised, (type(self), self.args, self.__dict__)
+
+
+def _as_raised(
+    kind: type[CrowdbotError], args: tuple[Any, ...], state: dict[str, Any]
+) -> CrowdbotError:
+    error = kind.__new__(kind)
+    error.args = args
+    error.__dict__.update(state)
+    return error
 
 
 class InputError(CrowdbotError):

@@ -15,6 +15,7 @@ from crowdbot.core.registry.registry import blank_of, registry_of
 from crowdbot.core.registry.registry_source import whereabouts
 from crowdbot.dsl.spec.spec import ComponentSpec
 from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.errors import InputError, UnknownNameError
 
 IDS = ("in-d0125-slow-c01-r02", "counter-d0250-dispersed-c20-r05")
 
@@ -83,3 +84,23 @@ def test_classes_stay_while_a_registry_has_them() -> None:
     registry_of.cache_clear()
     found = pickle.loads(pickle.dumps(given))  # noqa: S301
     assert type(found) is type(given)
+
+
+def _fail(kind: str) -> None:
+    if kind == "unknown":
+        crowdbot.load("challenge-2020", "in-d0125-slow-c01-r03")
+    crowdbot.load("challenge-2020", IDS[0], set="robots.robot.task.tme_limit=2")
+
+
+@pytest.mark.parametrize("kind", ["unknown", "wrong"])
+def test_an_error_of_another_process_arrives_as_it_was_raised(kind: str) -> None:
+    """A pool whose workers raise what cannot be unpickled waits for ever."""
+    with pytest.raises(InputError) as here:
+        _fail(kind)
+    there = cloudpickle.loads(pickle.dumps(here.value))
+    assert type(there) is type(here.value)
+    assert str(there) == str(here.value)
+    assert vars(there).keys() == vars(here.value).keys()
+    if isinstance(here.value, UnknownNameError):
+        assert isinstance(there, UnknownNameError)
+        assert (there.name, there.near) == (here.value.name, here.value.near)
