@@ -8,7 +8,15 @@ from functools import cached_property
 
 from crowdbot.dsl.checks.facts import Facts, Path
 from crowdbot.dsl.checks.known_places import bodies_of, known_place, place_of
-from crowdbot.dsl.checks.reach import Box, Reach, areas_connected, has_room, reach_of
+from crowdbot.dsl.checks.reach import (
+    Box,
+    Reach,
+    areas_connected,
+    first_is_outside,
+    has_room,
+    reach_of,
+    spot,
+)
 from crowdbot.dsl.checks.robots import check_zones
 from crowdbot.dsl.scenario.routing import MeshRouting
 from crowdbot.dsl.scenario.spawning import Agent, Spawn
@@ -16,6 +24,7 @@ from crowdbot.dsl.scenario.stream import Stream
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.dsl.spec.areas import Place as PlaceName
 from crowdbot.dsl.spec.component_specs import EnvironmentSpec
+from crowdbot.dsl.spec.outlines import Point
 from crowdbot.dsl.spec.place import Place
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError
@@ -164,6 +173,11 @@ class _PathCheck:
             reach, at = self._reach(self._radius(agent)), (agent.x, agent.y)
             for k, goal in enumerate(agent.goals):
                 if not reach.connects(at, goal):
+                    free = reach.is_free(*at) and reach.is_free(*goal)
+                    outside = self._outside(agent, i, k, at, goal) if free else None
+                    if outside is not None:
+                        yield outside
+                        break
                     text = (
                         f"no way leads agent {agent.id} from ({at[0]:g}, {at[1]:g}) "
                         f"to its goal ({goal[0]:g}, {goal[1]:g})"
@@ -173,6 +187,20 @@ class _PathCheck:
                     yield Diagnostic("E143", text, mark, hint)
                     break
                 at = goal
+
+    def _outside(self, agent: Agent, i: int, k: int, at: Point, goal: Point) -> Diagnostic | None:
+        """Return the error for one end of a way that lies outside the walls around the other."""
+        bounds, radius = self.facts.bounds, self._radius(agent)
+        for what, end, other, *path in (
+            ("place", at, goal, *(("goals", k - 1) if k else ("x",))),
+            ("goal", goal, at, "goals", k),
+        ):
+            ends = spot(end), spot(other)
+            if bounds is not None and first_is_outside(self.place, radius, bounds, *ends):
+                text = f"the {what} ({end[0]:g}, {end[1]:g}) of agent {agent.id} lies outside the "
+                text += f"walls that enclose ({other[0]:g}, {other[1]:g})"
+                return Diagnostic("E132", text, self.facts.mark("crowd", "agents", i, *path))
+        return None
 
     def check_goals(self) -> Iterator[Diagnostic]:
         """Check, for people who walk straight, that no goal lies in something solid."""

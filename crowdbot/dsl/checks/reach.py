@@ -14,6 +14,7 @@ from functools import lru_cache
 from crowdbot.dsl.spec.areas import Area, places_in
 from crowdbot.dsl.spec.outlines import Outline, Point, sides
 from crowdbot.dsl.spec.place import Place
+from crowdbot.dsl.spec.spec import Rectangle
 
 #: Side of a cell, m; larger on floors with more than `_MOST` cells along a side.
 _CELL = 0.1
@@ -45,6 +46,22 @@ def areas_connected(place: Place, radius: float, box: Box, start: Outline, goal:
     if wide_reach_of(place, radius, box).connects_areas(start, goal):
         return True
     return reach_of(place, radius, box).connects_areas(start, goal)
+
+
+def first_is_outside(
+    place: Place, radius: float, bounds: Rectangle, first: Outline, other: Outline
+) -> bool:
+    """Return True if a body of a radius (m) can leave ``bounds`` from one outline alone."""
+    (x0, x1), (y0, y1), beside = bounds.x, bounds.y, 1.0 + 2.0 * radius
+    box = x0 - beside, x1 + beside, y0 - beside, y1 + beside
+    out = spot((x1 + 0.5 * beside, y1 + 0.5 * beside))
+    leaves = [areas_connected(place, radius, box, start, out) for start in (first, other)]
+    return leaves == [True, False]
+
+
+def spot(at: Point) -> Outline:
+    """Return a small outline around a point."""
+    return Area(centre=at, size=(0.01, 0.01)).corners
 
 
 def _middle(outline: Outline) -> Point:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from crowdbot.dsl.checks.facts import Facts
 from crowdbot.dsl.checks.known_places import known_place, standing_in
 from crowdbot.dsl.checks.person_goals import agents_of
-from crowdbot.dsl.checks.reach import areas_connected
+from crowdbot.dsl.checks.reach import areas_connected, first_is_outside, spot
 from crowdbot.dsl.scenario.person_goals import PersonGoal
 from crowdbot.dsl.scenario.scenario import Robot
 from crowdbot.dsl.spec.areas import Area
@@ -119,6 +119,12 @@ def _check_robot(facts: Facts, place: Place, name: str, robot: Robot) -> Iterato
         return  # already an error, or the goal is a person
     goal, radius = Area.of(zone), robot.model.half_width
     if not _leads(facts, place, radius, start, goal):
+        ends = spot(start), goal.corners
+        if facts.bounds is not None and first_is_outside(place, radius, facts.bounds, *ends):
+            text = f"the start {_at(start)} of robot '{name}' lies outside the walls that enclose "
+            text += f"zone '{robot.task.zone}'"
+            yield Diagnostic("E132", text, facts.mark(*path, "start"))
+            return
         text = f"no way leads robot '{name}' from {_at(start)} to zone '{robot.task.zone}'"
         hint = f"around {_at(goal.centre)}, for a body that is {2.0 * radius:g} m wide"
         yield Diagnostic("E143", text, facts.mark(*path, "goal", "zone"), hint)
@@ -147,8 +153,7 @@ def _leads(facts: Facts, place: Place, radius: float, start: Point, goal: Area) 
     points = [start, *(p for zone in zones for p in zone.polygon)]
     xs, ys = zip(*points, strict=True)
     box = min(xs), max(xs), min(ys), max(ys)
-    at = Area(centre=start, size=(0.01, 0.01))
-    return areas_connected(place, radius, box, at.corners, goal.corners)
+    return areas_connected(place, radius, box, spot(start), goal.corners)
 
 
 def _at(point: Point) -> str:

@@ -217,3 +217,41 @@ def test_a_bow_tie_without_area_is_said_to_cross_itself(tmp_path: Path) -> None:
     )
     (found,) = _errors(tmp_path, text + FLOW % ("a", "b"))
     assert "the side from (1, 1) to (4, 4) meets the one from (4, 1) to (1, 4)" in found.message
+
+
+#: A floor of 10 m by 10 m without its upper right quarter.
+CORNER = """\
+crowdbot: 1
+scenario:
+  id: corner
+  extends: ["builtin:parts/turtlebot2.yaml"]
+  environment:
+    kind: floor_plan
+    wkt: "POLYGON ((0 0, 10 0, 10 5, 5 5, 5 10, 0 10, 0 0))"
+    zones: {goal: {x: [7 m, 9 m], y: [1 m, 3 m]}}
+  robots.robot.task: {start: [%s m, 0 deg], goal: {zone: goal}, time_limit: 60 s}
+  crowd:
+    policy: {kind: velocity_space}
+    costs: {avoid: {kind: ttca_dca, weight: 20, range: 5 m}}
+    routing: {kind: mesh}
+    agents: [{id: 4, x: %s m, y: %s m, speed: 1 m/s, goals: [[%s]]}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("start", "agent", "told"),
+    [
+        ("1 m, 8", ("1", "1", "1, 4"), ""),
+        ("8 m, 8", ("1", "1", "1, 4"),
+         "the start (8, 8) of robot 'robot' lies outside the walls that enclose zone 'goal'"),
+        ("1 m, 8", ("8", "8", "1, 4"),
+         "the place (8, 8) of agent 4 lies outside the walls that enclose (1, 4)"),
+        ("1 m, 8", ("1", "1", "1, 4], [7, 8"),
+         "the goal (7, 8) of agent 4 lies outside the walls that enclose (1, 4)"),
+    ],
+)  # fmt: skip
+def test_a_place_in_the_corner_that_a_floor_leaves_out_is_outside(
+    start: str, agent: tuple[str, str, str], told: str, tmp_path: Path
+) -> None:
+    found = _errors(tmp_path, CORNER % (start, *agent))
+    assert [(d.code, d.message) for d in found] == ([("E132", told)] if told else [])

@@ -166,7 +166,7 @@ def _constant(motion: Array, theta: Array) -> Iterator[str]:
     if off > _NOT_FILLED_IN and np.ptp(theta) == 0.0:
         yield (
             f"the robot: the heading is {theta[0]:g} rad in all samples, {off:.2g} rad off the "
-            "motion (median): a column that was not filled in? Without it the heading is the "
+            "motion (median): was it never filled in? Left out, the heading is the "
             "direction of motion"
         )
 
