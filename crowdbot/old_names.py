@@ -1,4 +1,4 @@
-"""Old names of what plugins use: they work until crowdbot 1.0, with a warning that says the new."""
+"""Deprecated names for plugins: they work until crowdbot 1.0, with a warning."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _COLLECTED: list[list[str]] = []
 
 
 class OldNameWarning(DeprecationWarning):
-    """A name is old, and ends with crowdbot 1.0."""
+    """A deprecated name, which will be removed in crowdbot 1.0."""
 
 
 def old_name(module: str, new: ModuleType, name: str) -> Any:
-    """Return a name that has moved to another module, for the ``__getattr__`` of the old one.
+    """Return a name that has moved to another module, for a module's ``__getattr__``.
 
     Raises:
         AttributeError: the new module has no such name.
@@ -36,7 +36,7 @@ def old_name(module: str, new: ModuleType, name: str) -> Any:
 
 @contextmanager
 def collected_old_names() -> Iterator[list[str]]:
-    """Collect warnings of old names, one line each, that are raised inside; others are shown."""
+    """Collect warnings of deprecated names in a context, one line each; others are shown."""
     lines: list[str] = []
     with warnings.catch_warnings():
         usual = warnings.showwarning
@@ -66,7 +66,7 @@ def collected_old_names() -> Iterator[list[str]]:
 
 @contextmanager
 def shown_old_names() -> Iterator[None]:
-    """Show warnings of old names that are raised inside, one line each."""
+    """Show warnings of deprecated names in a context, one line each."""
     lines: list[str] = []
     try:
         with collected_old_names() as lines:
@@ -76,7 +76,7 @@ def shown_old_names() -> Iterator[None]:
 
 
 def say_old_names(lines: Iterable[str]) -> None:
-    """Log lines of `collected_old_names`, each once in a process, or hand them on where asked."""
+    """Log lines of `collected_old_names` once per process, or pass them on where requested."""
     for line in lines:
         if _COLLECTED:
             _COLLECTED[-1].append(line)

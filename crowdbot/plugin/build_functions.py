@@ -115,7 +115,7 @@ class BuildPlanner(Protocol[PlannerSpecT]):
 
 
 class BuildPlannerWithHalf(Protocol[PlannerSpecT]):
-    """Builds a planner that uses another one, see ``PlannerSpec.half``; like `BuildPlanner`."""
+    """Builds a planner that calls another one, see ``PlannerSpec.half``; like `BuildPlanner`."""
 
     def __call__(self, spec: PlannerSpecT, half: Planner, /) -> Planner:
         """Return a planner that was not reset yet.

@@ -1,4 +1,4 @@
-"""Tools of crowds, for the build side: search for velocities, geometry of discs and segments."""
+"""Tools for crowds' build functions: velocity search, geometry of discs and segments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tools of environments, for the build side: files of others, read with limits, and made valid."""
+"""Tools for environments' build functions: read files with limits, and repair polygons."""
 
 from __future__ import annotations
 

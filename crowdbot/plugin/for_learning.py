@@ -1,4 +1,4 @@
-"""Tools of observations and rewards, for the build side."""
+"""Tools for build functions of observations and rewards."""
 
 from __future__ import annotations
 

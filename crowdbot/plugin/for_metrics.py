@@ -1,4 +1,4 @@
-"""Tools of metrics, for the build side: runs as arrays, meetings, contacts, pairs of runs."""
+"""Tools for metrics' build functions: runs as arrays, encounters, contacts, pairs of runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tools of sensors, for the build side: rays in columns, bodies of people, depth images."""
+"""Tools for sensors' build functions: rays in columns, bodies of people, depth images."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of `crowdbot.plugin`, by their source modules."""
+"""The source module of each name in `crowdbot.plugin`."""
 
 from __future__ import annotations
 

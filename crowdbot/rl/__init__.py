@@ -1,4 +1,4 @@
-"""Gymnasium environments in which policies learn, judged afterwards by the full simulation.
+"""Gymnasium environments for training policies, which the full simulation judges afterwards.
 
 ``import crowdbot.rl`` registers ``crowdbot/Nav-v0``; Gymnasium comes with the extra ``rl``::
 

@@ -1,4 +1,4 @@
-"""One robot of each of W worlds: what it observes, how its actions are meant, what it earns."""
+"""One robot of each of W worlds: observations, actions and rewards."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Vectors = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class StepResult:
-    """Outcome of a step, world by world; False and 0 where none was taken.
+    """Outcome of a step, for each world; False and 0 where no step was taken.
 
     Attributes:
         reward: (W,).
@@ -42,7 +42,7 @@ class StepResult:
 
 
 class Actor:
-    """A robot of W worlds.
+    """The robot of W worlds that a policy controls.
 
     Args:
         worlds: W.
@@ -75,7 +75,7 @@ class Actor:
 
     @property
     def conventions(self) -> Conventions:
-        """Return the conventions of policies that act as this robot."""
+        """Return the conventions of policies for this robot."""
         return conventions_of(self._spec, self._observer, self.context)
 
     def begin(self, w: int, tasks: Sequence[Task]) -> None:

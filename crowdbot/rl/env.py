@@ -72,7 +72,7 @@ class NavEnv(Env):
         return self._made, ()
 
     def render(self) -> Any:
-        """Return a picture (H, W, 3) uint8 of the world from above, if asked for."""
+        """Return a picture (H, W, 3) uint8 of the world from above, if its mode makes pictures."""
         pictures = self._one.render()
         return None if pictures is None else pictures[0]
 

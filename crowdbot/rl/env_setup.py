@@ -52,7 +52,7 @@ class EnvSetup:
 
     @cached_property
     def blueprints(self) -> dict[str, Blueprint]:
-        """Each scenario resolved, by id; all with robots that are alike.
+        """Return each scenario resolved, by id; their robots must be alike.
 
         Raises:
             InputError: the robots differ, or batches of worlds cannot simulate one.
@@ -69,7 +69,7 @@ class EnvSetup:
 
 
 def resolve_named(arguments: Mapping[str, Any]) -> EnvSetup:
-    """Check the keywords of an environment, then as `resolve`.
+    """Check the keywords of an environment, then resolve them as `resolve` does.
 
     Raises:
         UnknownNameError: there is no such keyword, or as `resolve`.

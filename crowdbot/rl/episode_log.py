@@ -28,7 +28,7 @@ _TOUCH = {
 
 
 class EpisodeLog:
-    """The samples of an episode, one at each step, from its beginning.
+    """The samples of an episode, one for each step.
 
     Args:
         rollout: its first world has just begun the episode.
@@ -56,7 +56,7 @@ class EpisodeLog:
         self._end_contacts()
 
     def ending(self) -> str:
-        """Return how the episode ended, or that it goes on."""
+        """Return the ending of the episode, or that it is running."""
         if self.goal_time is not None:
             return Ending.ARRIVED
         late = self._t[-1] >= self._world.tasks[0].time_limit

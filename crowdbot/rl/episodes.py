@@ -1,4 +1,4 @@
-"""Draws of episodes: what each world is in its n-th episode, from its seed alone."""
+"""Draws of episodes: scenario and seeds of a world's n-th episode, from its seed alone."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Episode:
 
 
 class EpisodeCourse:
-    """The episodes of one world, one after the other.
+    """The sequence of episodes of one world.
 
     Args:
         seed: of the world.
@@ -88,7 +88,7 @@ class EpisodeCourse:
 
 
 def seeds_of(seed: int | list[int | None] | None, count: int) -> list[int | None]:
-    """Return the seed of each world, as Gymnasium counts them; None: leave as it is.
+    """Return the seed of each world, as in Gymnasium; None: unchanged.
 
     Raises:
         InputError: there is another number of seeds, or one is negative.

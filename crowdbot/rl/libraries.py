@@ -1,4 +1,4 @@
-"""Libraries of the extra ``rl``; without them, environments say so when they are made."""
+"""Libraries of the extra ``rl``; without them, creating an environment fails with a message."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def found(name: str) -> Any:
 
 
 def missing(library: str, how: str) -> Any:
-    """Return a base class whose objects cannot be made, for want of a library."""
+    """Return a base class whose objects cannot be created, since a library is missing."""
 
     class Missing:
         def __new__(cls, *args: object, **kwargs: object) -> Missing:

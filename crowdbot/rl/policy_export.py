@@ -1,4 +1,4 @@
-"""Save policies in the form in which they are planners: ONNX files with their conventions."""
+"""Save policies as files that can be used as planners: ONNX with conventions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def conventions(env: Any) -> dict[str, Any]:
 
 
 def save_onnx(policy: Any, env: Any, path: str | Path) -> None:
-    """Save a policy as an ONNX file that is a planner, ``--planner FILE.onnx``.
+    """Save a policy as an ONNX file, usable as ``--planner FILE.onnx``.
 
     Args:
         policy: a torch module, or a model of Stable-Baselines3, from an observation (N,) to an
@@ -76,7 +76,7 @@ def save_onnx(policy: Any, env: Any, path: str | Path) -> None:
 
 
 def save_layers(layers: Sequence[tuple[Array, Array]], env: Any, path: str | Path) -> None:
-    """Save a fully connected policy as an ONNX file that is a planner; needs no further library.
+    """Save a fully connected policy as an ONNX file for a planner; needs no further library.
 
     Args:
         layers: weight (inputs, outputs) and bias (outputs,) of each, with tanh after all but the

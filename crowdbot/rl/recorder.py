@@ -59,7 +59,7 @@ class EpisodeRecorder(Wrapper):
 
     @property
     def trajectories(self) -> Trajectories:
-        """Return the trajectories of the episode so far, as a metric reads those of a run."""
+        """Return the trajectories of the episode so far, in the form that metrics read."""
         return self._begun().trajectories()
 
     def scores(self, metrics: str = "*") -> list[Score]:

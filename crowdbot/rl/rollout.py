@@ -1,4 +1,4 @@
-"""W worlds of one robot each, begun and stepped by number."""
+"""W worlds of one robot each, reset and stepped by index."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ class StableVecEnv(VecEnv):
         self.worlds.close()
 
     def get_images(self) -> Sequence[Any]:
-        """Return a picture of each world, if asked for."""
+        """Return a picture of each world, if the mode makes pictures."""
         return list(self.worlds.render() or ())
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:

@@ -1,4 +1,4 @@
-"""Starts and goals that differ from episode to episode, around those of the scenario."""
+"""Random starts and goals around those of the scenario, drawn for each episode."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _side(a: Array, b: Array, point: Array) -> Array:
 
 
 def spread_of(start: Mapping[str, float] | None, goal: Mapping[str, float] | None) -> Spread | None:
-    """Return the spread that arguments name; None for starts and goals of the scenario.
+    """Return the spread of starts and goals from arguments; None for those of the scenario.
 
     Raises:
         InputError: a name or a number is wrong.
@@ -96,7 +96,7 @@ def _numbers(name: str, given: Mapping[str, float], known: tuple[str, ...]) -> l
 
 
 def scatter(world: BatchWorld, spread: Spread, seed: int) -> None:
-    """Give the robots of a world other starts and goals, clear of walls, people and each other.
+    """Give the robots of a world random starts and goals, clear of walls, people and each other.
 
     Raises:
         InputError: no such place was found.

@@ -201,7 +201,7 @@ class NavVectorEnv(VectorEnv):
         return mask
 
     def render(self) -> tuple[Any, ...] | None:
-        """Return pictures (H, W, 3) uint8 of all worlds from above, if asked for."""
+        """Return pictures (H, W, 3) uint8 of all worlds from above, if the mode makes pictures."""
         if self.render_mode == "human":
             self._show()
         if self.render_mode != "rgb_array":

@@ -1,4 +1,4 @@
-"""Checks that every cost function has to pass, compiled or not."""
+"""Checks for every cost function, compiled or not."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def above_lower_bound(cost: CompiledCost, view: CrowdView, velocities: Array) ->
 
 
 def forgets_work(cost: CompiledCost, view: CrowdView, velocities: Array) -> bool:
-    """Return True if costs do not depend on what another agent left in ``work``."""
+    """Return True if costs do not depend on data of another agent in ``work``."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     evaluator = Evaluator(costs)
     first = evaluator.total(view, velocities)  # gives ``work`` its size

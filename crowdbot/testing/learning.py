@@ -1,4 +1,4 @@
-"""Checks for every observation and every reward of policies that learn."""
+"""Checks for every observation and every reward for training policies."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class Table:
 
     @cached_property
     def names(self) -> tuple[Name, ...]:
-        """All scores, sorted."""
+        """Return the names of all scores, sorted."""
         return tuple(sorted(self._scores.by_name))
 
     def label(self, name: Name) -> ScoreRow:
@@ -115,7 +115,7 @@ class Table:
 
     @cached_property
     def places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Return numbers of each row's condition, and of its draw in that condition, (n,) each."""
+        """Return indices of each row's condition, and of its draw in that condition, (n,) each."""
         inside = [f"{c}\0{d}" for c, d in zip(self.conditions, self.draws, strict=True)]
         found = [np.unique(names, return_inverse=True)[1] for names in (self.conditions, inside)]
         return found[0].astype(np.intp), found[1].astype(np.intp)
@@ -153,10 +153,10 @@ class Table:
         return np.where(column.known & (column.low > 0.0), column.low, np.nan)
 
     def lacking(self, planner: str) -> NDArray[np.bool_]:
-        """Return a mask (n,) of rows that a planner should have run and has not.
+        """Return a mask (n,) of rows that a planner should have run but has not.
 
-        These are all scenarios of a suite with the run seeds that it has in any of them. Floors and
-        ceilings are measures: they run in part of a suite, and lack nothing.
+        These are all scenarios of a suite with the run seeds that it has in any of them. Floor and
+        ceiling planners are yardsticks: they run in part of a suite, and lack nothing.
         """
         if planner not in self._lacking:
             self._lacking[planner] = self._find_lacking(planner)
@@ -251,7 +251,7 @@ class AxisLabels:
 
     @staticmethod
     def of(runs: Sequence[RunRow | None]) -> AxisLabels:
-        """Collect them from the runs of all rows, None where there is none."""
+        """Collect labels from the runs of all rows, None where there is none."""
         there = [(i, run) for i, run in enumerate(runs) if run is not None]
         axes = {}
         named, which = different([run.axes for _, run in there])

@@ -1,1 +1,1 @@
-"""Studies with people: who drives in which condition when, what is asked, what was found."""
+"""Studies with people: orders of conditions, drives, questionnaires, and their results."""

@@ -135,7 +135,7 @@ class Study:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def beside(self, text: str) -> str:
-        """Return the path of a file that the document names; other names as they are."""
+        """Return the path of a file that the document names; other names are returned unchanged."""
         here = self.path.parent / text
         return str(here.resolve()) if text.endswith((".yaml", ".yml")) or "/" in text else text
 
@@ -159,7 +159,7 @@ def read_study(path: Path, registry: Registry | None = None) -> Study:
 
 
 def planner_text(study: Study, condition: StudyCondition, registry: Registry) -> str:
-    """Return what ``--planner`` gets for a condition; its document stands beside the study.
+    """Return the value of ``--planner`` for a condition; its document lies beside the study.
 
     Raises:
         InputError: the planner is wrong.

@@ -1,4 +1,4 @@
-"""Drives of a study: the command of each, and where its run directory is."""
+"""Drives of a study: their commands and run directories."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _KEPT = 20
 def drive_words(
     progress: StudyProgress, step: Step, registry: Registry, *, synthetic: bool
 ) -> list[str]:
-    """Return the words of the command that drives a trial, after ``crowdbot``.
+    """Return the arguments, after ``crowdbot``, of the command for a trial's drive.
 
     Args:
         synthetic: True: a synthetic user drives; False: a person does, in the page of teleop.
@@ -62,7 +62,7 @@ def root_of(progress: StudyProgress, step: Step) -> Path:
 
 
 def seed_of(progress: StudyProgress, step: Step) -> int:
-    """Return the seed of a drive: of its own for participant and trial, the same in conditions."""
+    """Return the seed of a drive: it depends on participant and trial, not on the condition."""
     spec = progress.study.spec
     number = spec.people.index(progress.participant)
     return (spec.seed + (1 + len(spec.trials)) * number + step.index) % 2**31
@@ -92,7 +92,7 @@ def _planner(progress: StudyProgress, step: Step, registry: Registry) -> str:
 
 @dataclass
 class Drive:
-    """A drive in a process of its own.
+    """A drive that runs in a separate process.
 
     Attributes:
         words: of its command.
@@ -148,7 +148,7 @@ class Drive:
             raise InputError(self.problem(code))
 
     def problem(self, code: int) -> str:
-        """Return why it failed, with its last words."""
+        """Return why it failed, with its last line of output."""
         text = "\n".join(self.lines[-5:])
         return f"{shown_command(self.words)}: exit code {code}\n{text}".rstrip()
 

@@ -1,7 +1,7 @@
 """Comparison of conditions: participants are the random factor, each is one unit.
 
 A participant's value in a condition is the mean over trials. Means have Student's t over
-participants; differences are within participants, with the sign-flip test of the house.
+participants; differences are within participants, with the sign-flip test of `statistics`.
 """
 
 from __future__ import annotations

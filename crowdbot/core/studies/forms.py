@@ -1,8 +1,8 @@
-"""The forms NASA-TLX and USE: what they ask, and what is an answer.
+"""The questionnaires NASA-TLX and USE: their questions and valid answers.
 
 NASA-TLX: Hart, Staveland, "Development of NASA-TLX", 1988; its text is in the public domain, and is
-put in plain words here. USE: Lund, "Measuring usability with the USE questionnaire", 2001; items
-are paraphrased, a study names a file with the original wording.
+paraphrased here. USE: Lund, "Measuring usability with the USE questionnaire", 2001; items are
+paraphrased, a study names a file with the original wording.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ USE_WORDS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Question:
-    """One question with marks.
+    """One question with a rating scale.
 
     Attributes:
         name: of the answer, as in tables of answers.
@@ -141,7 +141,7 @@ def questions_of(kind: str, study: Study) -> list[Question]:
 def checked_answers(
     questions: Sequence[Question], given: Mapping[str, str]
 ) -> tuple[dict[str, str], list[str]]:
-    """Return the answers by name, and the names of questions that have none or a wrong one."""
+    """Return the answers by name, and the names of unanswered or invalid questions."""
     answers, open_ones = {}, []
     for question in questions:
         value = given.get(question.name)

@@ -1,4 +1,4 @@
-"""Participants without a person: synthetic users drive, texts are passed, forms stay open."""
+"""Simulated participants: synthetic users drive, texts are skipped, forms stay unanswered."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SYNTHETIC, PERSON = "synthetic", "person"
 
 
 def finish_all(progress: StudyProgress, registry: Registry, say: Callable[[str], object]) -> None:
-    """Go through all steps that are not done.
+    """Finish all remaining steps.
 
     Args:
         say: called with a line before each step.
@@ -42,7 +42,7 @@ def _content(progress: StudyProgress, step: Step, registry: Registry) -> dict[st
 
 
 def trial_content(progress: StudyProgress, step: Step, driver: str) -> dict[str, object]:
-    """Return what is written of a drive that is done.
+    """Return the stored result of a finished drive.
 
     Raises:
         InputError: its run directory is not there.

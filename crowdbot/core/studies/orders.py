@@ -18,7 +18,7 @@ def latin_square(n: int) -> list[list[int]]:
 
 
 def williams(n: int) -> list[list[int]]:
-    """Return rows in which each condition also follows each other one equally often.
+    """Return rows of conditions in which each condition follows each other one equally often.
 
     Williams, Australian Journal of Scientific Research A 2, 1949: n rows for even n, 2 n for odd,
     of which the second half are the first ones backwards.
@@ -57,9 +57,9 @@ def trial_order(study: Study, participant: str, condition: str) -> list[tuple[in
 
 
 def balance(orders: Sequence[Sequence[str]]) -> tuple[int, int]:
-    """Return how unequal orders are: spreads of the counts of places, and of successions.
+    """Return how unbalanced orders are: spreads of the counts of positions, and of successions.
 
-    0 means that each condition is as often in each place, or after each other one.
+    0 means that each condition is equally often at each position, or after each other one.
     """
     labels = sorted({label for order in orders for label in order})
     places = [

@@ -1,4 +1,4 @@
-"""The progress of one participant: a file for each step that is done, written atomically."""
+"""The progress of one participant: a file for each finished step, written atomically."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STUDY = "study.json"
 
 @dataclass(frozen=True, slots=True)
 class StudyProgress:
-    """The steps of a participant and what is there of them.
+    """The steps of a participant and their stored results.
 
     Attributes:
         study: the study.
@@ -47,7 +47,7 @@ class StudyProgress:
         return steps_of(self.study, self.participant)
 
     def done(self) -> dict[str, dict[str, Any]]:
-        """Return name -> content of the steps that are done.
+        """Return name -> content of the finished steps.
 
         Raises:
             InputError: a file is damaged.
@@ -64,12 +64,12 @@ class StudyProgress:
         return found
 
     def current(self) -> Step | None:
-        """Return the first step that is not done; None if all are."""
+        """Return the first unfinished step; None if all are finished."""
         done = self.done()
         return next((step for step in self.steps if step.name not in done), None)
 
     def finish(self, step: Step, content: Mapping[str, Any]) -> None:
-        """Write that a step is done; one that is done already stays as it is.
+        """Store the result of a step; that of a finished step stays unchanged.
 
         Raises:
             InputError: it is not its turn, or the file cannot be written.

@@ -25,10 +25,10 @@ Row = dict[str, Any]
 
 
 def study_rows(study: Study, folder: Path, registry: Registry) -> list[Row]:
-    """Return a row for each drive that is done, practice left out.
+    """Return a row for each finished drive, without practice.
 
     Scores have the names ``metric.variant``; those of questionnaires belong to the condition and
-    stand in each of its rows. Numbers that are not there are None.
+    are repeated in each of its rows. Missing numbers are None.
 
     Raises:
         InputError: a file of the data is damaged.

@@ -1,4 +1,4 @@
-"""The folder in which numba keeps compiled functions, and the test if they are stale."""
+"""The folder for numba's compiled functions, and the check if they are up to date."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ USUAL = 283
 
 
 def nothing_compiled() -> bool:
-    """Return True if compiled functions are going to be written for the first time."""
+    """Return True if no compiled functions are stored yet."""
     return next(used_folder().rglob("*.nbi"), None) is None
 
 
 def compiled() -> int:
-    """Return how many functions have been compiled so far."""
+    """Return the number of functions compiled so far by this process."""
     return sum(name.endswith(".nbi") for _, _, names in os.walk(used_folder()) for name in names)
 
 
@@ -75,15 +75,15 @@ def kernel_folder(package: Path = _PACKAGE) -> Path:
 
 
 def lock_file() -> Path:
-    """Return the file of which processes lock bytes while they compile functions of any folder.
+    """Return the file with the locks of processes that compile functions.
 
-    It lies elsewhere: a planner's process may read these folders, and could keep the lock.
+    It lies elsewhere: a planner's process may read the compiled functions, and could keep the lock.
     """
     return _user_cache() / "compiling.lock"
 
 
 def is_readable_only(py_file: str) -> bool:
-    """Return True if this is a planner's process, and the function is one of crowdbot's own."""
+    """Return True for one of crowdbot's own functions in a planner's process."""
     return bool(os.environ.get(SIMULATORS)) and Path(py_file).is_relative_to(_PACKAGE)
 
 

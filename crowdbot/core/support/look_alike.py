@@ -30,7 +30,7 @@ def skeleton(text: str) -> str:
 
 
 def alike(names: Iterable[str]) -> set[str]:
-    """Return the names that look like another one of them, or stand there twice."""
+    """Return the names that look like another one of them, or occur twice."""
     by_key: dict[str, list[str]] = {}
     for name in names:
         for key in looks(name):

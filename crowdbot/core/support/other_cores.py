@@ -1,8 +1,8 @@
-"""Keep threads off the core that runs the thread which waits for them.
+"""Keep threads off the core of the thread that waits for them.
 
 Linux may wake a thread on the core of the thread that woke it, above all in virtual machines whose
-cores share no cache. It moves one of them away after milliseconds: too late for work that is
-shorter, which is then done one part after the other.
+cores share no cache. It moves one of them away only after milliseconds, too late for shorter work,
+which then runs sequentially.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _UNKNOWN = -1
 
 
 class OtherCores:
-    """Threads that may use all cores of this process but the one that asks.
+    """Threads that may use all cores of this process but that of the calling thread.
 
     Args:
         threads: their native identifiers.
@@ -29,7 +29,7 @@ class OtherCores:
         self._allowed = os.sched_getaffinity(0) if self._core_now else set()
 
     def leave_this_one(self) -> None:
-        """Move the threads off the present core, if there is another and they were not yet."""
+        """Move the threads off the caller's present core, if there is another core."""
         if self._core_now is None or (core := self._core_now()) == self._core:
             return
         self._core = core

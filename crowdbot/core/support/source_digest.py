@@ -144,7 +144,7 @@ def source_files(file: Path) -> set[Path]:
 
 
 def check_source(file: Path) -> None:
-    """Refuse a Python file that no parser should read.
+    """Raise an error for a Python file that is too large or too deeply nested to parse.
 
     Raises:
         InputError: it is larger than a source ever is.
@@ -154,7 +154,7 @@ def check_source(file: Path) -> None:
 
 
 def parsed_source(file: Path) -> ast.Module | None:
-    """Return the syntax tree of a Python file; None if there is none, which importing it tells."""
+    """Return the syntax tree of a Python file; None if it has errors, which its import reports."""
     try:
         return ast.parse(read_bytes(file, _LARGEST_SOURCE))
     except (SyntaxError, ValueError, RecursionError, MemoryError, OSError):
@@ -162,7 +162,7 @@ def parsed_source(file: Path) -> ast.Module | None:
 
 
 def imported_names(file: Path) -> set[str]:
-    """Return the top module names that a file, or one beside it, imports."""
+    """Return the top-level modules that a file, or one beside it, imports."""
     return {name for one in _with_helpers(file) for name in _imported(one)}
 
 

@@ -1,4 +1,4 @@
-"""Text files that come from outside: read with limits, suggested when a name is misspelt."""
+"""Untrusted text files: read with limits; similar names are suggested for missing ones."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Demanded evasion: the acceleration that people would need to pass a robot with some room.
+"""Demanded evasion: the acceleration that people would need to pass a robot at some distance.
 
-It is computed from velocities, so neither the reaction of a person nor noise of accelerations
-decides. N samples, M people; world frame, SI units.
+It is computed from velocities, so neither a person's reaction nor noise of accelerations matters. N
+samples, M people; world frame, SI units.
 """
 
 from __future__ import annotations
@@ -22,8 +22,9 @@ _STILL = 1e-3
 def demanded_evasion(run: Trajectories, time: float, room: float, jump_speed: float) -> Array:
     """Return the acceleration (N-1, M) that each person needs on each step, m/s^2.
 
-    The person has to shift by what its smallest gap to a robot on a constant course lacks, within
-    the time until then; 0 later than ``time``, for people who part from the robot or are absent.
+    The person would have to shift by the missing part of its smallest gap to a robot on a constant
+    course, within the time until that gap; 0 later than ``time``, for people who part from the
+    robot or are absent.
 
     Args:
         time: people need not evade earlier before the smallest gap, s.

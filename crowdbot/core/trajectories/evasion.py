@@ -123,7 +123,8 @@ def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
 def own_legs(run: Trajectories, reach: float, jump_speed: float) -> Mask:
     """Return a mask of steps (N-1, M) near the robot on which nothing touches the person.
 
-    A person pushed by others, a wall or the robot does not evade; contacts are counted separately.
+    A person pushed by others, a wall or the robot does not evade by itself; contacts are counted
+    separately.
     """
     near = evasion(run, reach, jump_speed).near
     key = "own_legs", reach, jump_speed

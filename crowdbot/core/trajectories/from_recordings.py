@@ -266,7 +266,7 @@ class FromRecordings:
 
 
 def register_reader(read: Callable[[Path | str, str | None], FromRecordings]) -> None:
-    """Say how `from_mcap` reads a recording, of one robot by name: its reader lies above."""
+    """Register the reader of `from_mcap`, which belongs to a package that imports this one."""
     FromRecordings._read_recording = read
 
 

@@ -1,4 +1,4 @@
-"""Convert tables of a robot and of people to the arrays of `Trajectories.from_arrays`.
+"""Convert tables of a robot and of people to the arguments of `Trajectories.from_arrays`.
 
 Missing values are derived here: heading from the direction of motion, arrival from the goal.
 `preprocess` derives missing velocities before the metrics run.
@@ -47,7 +47,7 @@ def columns_of(
     clock_offset: float,
     max_gap: float,
 ) -> dict[str, Any]:
-    """Return columns with the names of `Trajectories.from_arrays`.
+    """Return the arguments of `Trajectories.from_arrays`, by name.
 
     Args:
         robot, agents, trips, contacts: tables; each may be missing.

@@ -1,4 +1,4 @@
-"""The person of a robot's task over a run, and the robot's stance to that person."""
+"""The person of a robot's task over a run, and the robot's position relative to that person."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _TURNS_ABOVE = 0.1
 
 
 def members_of(agents: AgentTracks, who: TaskPerson) -> NDArray[np.int64]:
-    """Return columns of the people that a task is about; those who are recorded."""
+    """Return columns of the recorded people that a task is about."""
     return np.flatnonzero(np.isin(agents.id, who.id))
 
 
@@ -42,7 +42,7 @@ def person_over_time(agents: AgentTracks, who: TaskPerson) -> PersonCircle:
 
 
 def facing_over_time(vx: Array, vy: Array, first: Array) -> Array:
-    """Return where people face (N, M), rad: where they walk, or walked last.
+    """Return people's facing direction (N, M), rad: that of their present or last walking.
 
     Args:
         vx, vy: (N, M) m/s, NaN where absent.
@@ -58,7 +58,7 @@ def facing_over_time(vx: Array, vy: Array, first: Array) -> Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PersonStance:
-    """The robot beside its person up to the end of the task; (N,), NaN where not known.
+    """The robot's position relative to its person until the task ends; (N,), NaN where unknown.
 
     Attributes:
         task: what the robot is to do.
@@ -81,7 +81,7 @@ class PersonStance:
 
 
 def person_stance(run: Trajectories, jump_speed: float) -> PersonStance | str:
-    """Return the stance, or the reason why there is none.
+    """Return the robot's relative position, or the reason why it is not defined.
 
     Args:
         run: with or without a task about a person.

@@ -26,7 +26,7 @@ _COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 
 @dataclass(frozen=True, slots=True)
 class RawTable:
-    """Columns of cells, under our names.
+    """Columns of cells, by our column names.
 
     Attributes:
         name: name for messages.

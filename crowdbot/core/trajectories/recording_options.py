@@ -1,4 +1,4 @@
-"""Options beside the tables of a recording: keywords that several constructors share."""
+"""Keyword options that several constructors of trajectories share."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 class PeopleOptions(TypedDict, total=False):
-    """Size and mass of people, where tables do not say them."""
+    """Size and mass of people, if tables do not contain them."""
 
     agent_radius: float
     agent_mass: float
@@ -45,15 +45,15 @@ class TaskOptions(TypedDict, total=False):
 
 
 class DataSetOptions(PeopleOptions, TaskOptions):
-    """Options beside a data set of people."""
+    """Options for data sets of people."""
 
 
 class TopicOptions(PeopleOptions, TimeOptions, TaskOptions):
-    """Options beside the topics of a bag."""
+    """Options for topics of a bag."""
 
 
 class TableOptions(TopicOptions, total=False):
-    """Options beside tables."""
+    """Options for tables."""
 
     planner_step_time: ArrayLike | None
     robot_footprint: ArrayLike | None

@@ -1,4 +1,4 @@
-"""Refuse numbers that are too large to compute with."""
+"""Reject numbers that are too large to compute with."""
 
 from __future__ import annotations
 

@@ -335,7 +335,7 @@ def whole_numbers(table: RawTable, *columns: str) -> None:
 
 
 def refuse_exchanged(table: RawTable, frames: Array) -> None:
-    """Require that people would not move far less if ids were frames, and frames ids.
+    """Raise an error if ids and frames seem exchanged: people would move far less if they were.
 
     Args:
         table: t in s, id, x, y.

@@ -1,4 +1,4 @@
-"""Find steps on which something touches a person, so that the motion is not the person's own.
+"""Find steps on which something touches a person, whose motion is then not its own.
 
 N samples, M people; world frame, SI units. Results are per step, not per sample.
 """

@@ -1,4 +1,4 @@
-"""Appearance: what sensors see of each person of a crowd."""
+"""Appearance of a crowd's people to sensors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crowdbot.core.types.arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Appearance:
-    """Bodies of people as sensors see them; what touches is a disc all the same.
+    """Bodies of people as sensors see them; for contacts they are discs.
 
     Attributes:
         height: (N,) m; 0: the crowd's default.

@@ -1,4 +1,4 @@
-"""Velocities among which people choose, for use by recordings."""
+"""Velocities among which people choose, which make recordings smaller."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ class Ending(StrEnum):
 
     @property
     def heading(self) -> str:
-        """The heading of a column."""
+        """Return the heading of a column."""
         return self.name.lower().replace("_", " ")
 
 
@@ -103,5 +103,5 @@ def has_failed(status: str) -> bool:
 
 
 def ending_style() -> str:
-    """CSS that gives each element with ``data-ending`` the colour of its ending."""
+    """Return CSS that gives each element with ``data-ending`` the colour of its ending."""
     return "\n".join(f'[data-ending="{e}"] {{ --ending: {e.colour}; }}' for e in Ending)

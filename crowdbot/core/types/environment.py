@@ -14,7 +14,7 @@ from crowdbot.dsl.spec.component_specs import SceneLight
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EnvironmentParts:
-    """Plain geometry; core builds plant boxes, ray targets, crowd obstacles and drawings from it.
+    """Geometry of a place, from which plant, sensors, crowd and drawings are built.
 
     Attributes:
         walls: (S, 4) segments x0, y0, x1, y1, m; the free side is on their left.
@@ -57,7 +57,7 @@ class EnvironmentParts:
             object.__setattr__(self, "solids_stop_crowd", np.ones(len(self.solids), np.bool_))
 
     def sides(self) -> NDArray[np.bool_]:
-        """Return a mask (S,) of walls that are a side of a solid, which the robot meets instead."""
+        """Return a mask (S,) of walls that are sides of solids; the robot collides with these."""
         corners = {_rounded(p) for outline in self.solids for p in outline.tolist()}
         return np.array(
             [

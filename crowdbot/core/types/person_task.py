@@ -20,10 +20,10 @@ PersonSide = Literal["left", "right", "either"]
 class PersonTask:
     """A goal that is a person or a group; SI units.
 
-    In place is who keeps the gap ``distance`` +- ``tolerance`` between the surfaces of robot and
-    person, in a direction from the person that differs by at most ``angle`` from the wanted one
-    (ahead of the person for ``approach`` and ``lead``, behind for ``follow``, aside for
-    ``accompany``), and is turned as the task wants it.
+    The robot is in place if the gap between the surfaces of robot and person is ``distance`` +-
+    ``tolerance``, in a direction from the person that differs by at most ``angle`` from the wanted
+    one (ahead of the person for ``approach`` and ``lead``, behind for ``follow``, aside for
+    ``accompany``), with the heading that the task requires.
 
     Attributes:
         kind: what to do.
@@ -68,7 +68,7 @@ class PersonEstimate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TaskPerson:
-    """A task about a person, and who it is.
+    """A task about a person, and the person's id.
 
     Attributes:
         task: what to do.

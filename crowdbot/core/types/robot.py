@@ -100,7 +100,7 @@ class RobotModel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotBody:
-    """The planner's information about its robot.
+    """The planner's data about its robot.
 
     Attributes:
         drive: ``differential``, or ``holonomic``, which also goes sideways.
@@ -128,7 +128,7 @@ class RobotBody:
 
 
 def robot_body(model: RobotModel) -> RobotBody:
-    """Return the planner's information about a robot."""
+    """Return the planner's data about a robot."""
     drive: Literal["differential", "holonomic"] = (
         "holonomic" if isinstance(model.drive, HolonomicDrive) else "differential"
     )

@@ -36,7 +36,7 @@ class Pinhole:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorMessage:
-    """The ROS message that a sensor's readings become; of type `SensorInfo.ros_type`.
+    """The ROS message for a sensor's readings; of type `SensorInfo.ros_type`.
 
     Attributes:
         fields: makes the message's fields, by name, of a reading's values: numbers, texts, arrays,

@@ -1,4 +1,4 @@
-"""Task: where a robot starts, and where it has to get in what time."""
+"""Task: a robot's start, its goal and its time limit."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ _PERSON = 0.3  # m, kept around people
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Filmed:
-    """A run as it is filmed.
+    """A run to be filmed.
 
     Attributes:
         tracks: its trajectories, once for each robot; one without a robot for people alone.

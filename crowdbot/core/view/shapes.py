@@ -1,4 +1,4 @@
-"""Shapes of a drawing, in pixels (x to the right, y down); their role decides the appearance."""
+"""Shapes of a drawing, in pixels (x to the right, y down); their role determines their style."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Drawings of a planner as shapes on a map, as the replay shows them."""
+"""Planners' drawings as shapes on a map, as the replay shows them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _POINT, _END, _BARB, _TEXT, _CROSS = 2.5, 3.0, 7.0, 13.0, 0.1  # px, of a cross 
 
 
 def thoughts_at(drawings: Sequence[PlacedDrawing], t: float, world: Map) -> Iterator[Shape]:
-    """Yield the latest drawing of each name at a time; texts last, since they stand over the map.
+    """Yield the latest drawing of each name at a time; texts last, above the map.
 
     Args:
         drawings: in the order of time.

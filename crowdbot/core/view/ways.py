@@ -23,7 +23,7 @@ _MOST_LINKS = 3000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ways:
-    """Routing data that is drawn, world frame, m.
+    """Routing data to draw, world frame, m.
 
     Attributes:
         of_agents: each agent's path through its goals; empty without goals.

@@ -1,4 +1,4 @@
-"""The decisive moment of a run: when it was decided, by what, and who was involved."""
+"""The decisive moment of a run: when it was decided, why, and who was involved."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Explanation:
 
     @property
     def title(self) -> str:
-        """Scenario, planner, seed, and how it ended."""
+        """Return scenario, planner, seed, and ending."""
         record = self.record
         one = f", robot {self.robot}" if self.robot else ""
         t = self.ended.goal_time if self.ended.goal_time is not None else self.ended.sim_time
@@ -49,7 +49,7 @@ class Explanation:
 
     @property
     def replay(self) -> Path | None:
-        """The replay page, if there is one."""
+        """Return the replay page, if there is one."""
         page = self.directory / files.REPLAY
         return page if page.is_file() else None
 
@@ -131,7 +131,7 @@ class CauseCount:
 
     @property
     def line(self) -> str:
-        """Planner, number and what happened, in words."""
+        """Return planner, number and cause in words."""
         return f"{self.planner}: {self.count} of {self.runs} runs {self.cause.past}"
 
 

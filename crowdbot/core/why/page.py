@@ -1,4 +1,4 @@
-"""The page of explanations: sentences and strips of pictures, in one file without requests."""
+"""The page of explanations: sentences and strips of pictures, in one file."""
 
 from __future__ import annotations
 

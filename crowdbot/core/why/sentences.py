@@ -41,7 +41,7 @@ def what_happened(run: Trajectories, moment: DecisiveMoment, reason: str = "") -
 
 
 def why_late(run: Trajectories) -> str:
-    """Return what a robot did whose time was up."""
+    """Return what a robot did that ran out of time."""
     moment = late_moment(run)
     if moment.cause == Cause.BLOCKED:
         return f"it stood for {moment.stood:.1f} s from {moment.t:.1f} s on"

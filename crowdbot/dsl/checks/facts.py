@@ -52,7 +52,7 @@ class Facts:
         return Diagnostic("E130", f"the {owner} has no {what} '{name}'", self.mark(*path), hint)
 
     def portals(self, names: tuple[str, str], who: str, *path: str | int) -> Iterator[Diagnostic]:
-        """Check for two different portals that the environment has."""
+        """Check that two different portals exist in the environment."""
         known = self.scenario.environment.portals
         for i, name in enumerate(names):
             if name not in known:
@@ -82,7 +82,7 @@ class Facts:
                 return
 
     def area(self, place: str | Area, who: str, *path: str | int) -> Iterator[Diagnostic]:
-        """Check for an existing zone, or an area inside the environment."""
+        """Check that a zone exists, or that an area lies inside the environment."""
         zones = self.scenario.environment.zones
         if isinstance(place, Area):
             yield from self.outside(f"the corner {{at}} of {who}", place.corners, *path)

@@ -81,7 +81,7 @@ def bodies_of(place: Place, height: float) -> Place:
 
 @lru_cache(maxsize=_MOST)
 def standing_in(place: Place) -> Place:
-    """Return the obstacles for any robot: those that stand on the floor."""
+    """Return the obstacles for every robot: those that stand on the floor."""
     return replace(
         place,
         faces=tuple(f for f in place.faces if f.stops_robot and f.heights[0] == 0.0),

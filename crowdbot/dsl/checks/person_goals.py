@@ -1,4 +1,4 @@
-"""Checks of goals that are people: who it is, and that the task fits the person."""
+"""Checks of goals that are people: the person, and the task's fit to that person."""
 
 from __future__ import annotations
 

@@ -183,7 +183,7 @@ def _of_another_kind(parent: TreePlace, name: str) -> str:
 
 
 def missing_field(tree: Node, place: TreePlace, name: str) -> Diagnostic:
-    """Return the error for a missing field, which blames an override that created the place."""
+    """Return the error for a missing field; if an override created its parent, it is named."""
     node = tree
     for depth, key in enumerate(place.path):
         entry, siblings = node.entries.get(key), list(node.entries)

@@ -77,7 +77,7 @@ def reach_of(place: Place, radius: float, box: Box) -> Reach:
 
 @lru_cache(maxsize=64)
 def wide_reach_of(place: Place, radius: float, box: Box) -> Reach:
-    """Return a conservative quick check: its paths exist, but it may miss some.
+    """Return a quick, conservative check: it never finds paths that do not exist.
 
     Its cells are large, and partly blocked cells count as blocked.
     """

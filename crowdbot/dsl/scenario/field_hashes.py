@@ -1,4 +1,4 @@
-"""Short hashes of the fields of scenarios: they name what changed since a suite was locked.
+"""Short hashes of scenarios' fields, to name what changed since a suite was locked.
 
 Fields that all scenarios share have a hash each. The other fields are grouped by place, such as
 ``robots.robot.sensors``, and each scenario has one hash for each of these places.

@@ -44,7 +44,7 @@ class LockedScenario(Spec):
 
 
 class Lock(Spec):
-    """The content of ``NAME.lock.json``: labels and hashes, by which a difference can be named."""
+    """The content of ``NAME.lock.json``: labels and hashes, by which changes can be named."""
 
     lock: Annotated[int, Ge(1)] = Field(description="Version of this file's format.")
     crowdbot: str = Field(description="Version of crowdbot that wrote it.")
@@ -122,7 +122,7 @@ class LockFiles:
 
     @cached_property
     def draws(self) -> dict[str, LockedTable]:
-        """The tables by name, also of a lock of an older format, which is renewed with them.
+        """Return the tables by name, also of a lock of an older format.
 
         Raises:
             InputError: there is no lock, or it is not one.
@@ -137,7 +137,7 @@ class LockFiles:
 
     @property
     def agents_path(self) -> Path:
-        """The file of the tables: the suite's own, or the one that it shares."""
+        """Return the file of the tables: the suite's own, or the shared one."""
         try:
             shared = self.lock.agents
         except InputError:
@@ -146,7 +146,7 @@ class LockFiles:
 
     @cached_property
     def tables(self) -> dict[str, str]:
-        """Name -> table as text; "" -> an empty table.
+        """Return name -> table as text; "" -> an empty table.
 
         Raises:
             InputError: the file is missing or invalid.
@@ -179,7 +179,7 @@ class LockFiles:
 
     @property
     def command(self) -> str:
-        """The command that makes the lock fit again."""
+        """Return the command that renews the lock."""
         return f"'crowdbot lock {self.spec}'"
 
 

@@ -46,7 +46,7 @@ class WhichPerson(Spec):
 
     @property
     def written(self) -> tuple[str, ...]:
-        """Return the names of the fields that say which person it is."""
+        """Return the names of the given fields that identify the person."""
         names = ("agent", "group", "spawn", "stream")
         return tuple(name for name in names if getattr(self, name) is not None)
 
@@ -68,7 +68,7 @@ class WhichPerson(Spec):
 
 
 class TaskGoal(Spec):
-    """A zone to reach, or a person to be with."""
+    """A goal: a zone to reach, or a person to be with."""
 
     #: The default kind of goal.
     usual: ClassVar[str] = "zone"
@@ -76,7 +76,7 @@ class TaskGoal(Spec):
 
 
 class PersonGoal(TaskGoal):
-    """Fields that all goals about a person have."""
+    """Fields shared by all goals about a person."""
 
     #: True if the time in place counts only without interruption.
     in_a_row: ClassVar[bool] = False

@@ -26,7 +26,7 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 class RobotResponse(Spec):
-    """People's response to a robot: fields that all kinds have.
+    """People's response to a robot: fields shared by all kinds.
 
     They look ahead, step aside in time and brake; some notice late. People who ignore the robot
     walk as if it were not there, until they touch it. Distracted people ignore a moving robot, but
@@ -156,7 +156,7 @@ class HumanResponse(RobotResponse):
 
 
 class GivingWay(RobotResponse):
-    """People respond as recorded near robots and vehicles: they give way, the more the faster.
+    """People give way as recorded near robots and vehicles, the more the faster these are.
 
     The numbers are fitted to recordings of two robots, a golf cart and cars; see
     docs/explanation/people_near_robots.md.

@@ -165,12 +165,12 @@ class Spawn(Spec):
         return float(self.count) if self.count else (self.density or 0.0) * floor
 
     def least_radius(self, usual: float) -> float:
-        """Return the radius of the smallest body, m, where people usually have another one."""
+        """Return the radius of the smallest body of its people, m."""
         return self.radius.value - self.radius.spread if self.radius else usual
 
     @property
     def routes(self) -> tuple[str, ...]:
-        """Names of the fields given that define where people go; a valid spawn has exactly one."""
+        """Return the given fields that define routes; a valid spawn has exactly one."""
         fields = {"goals": self.goals, "portals": self.portals, "standing": self.standing}
         return tuple(name for name, value in fields.items() if value)
 
@@ -182,7 +182,7 @@ class Spawn(Spec):
         return "stop" if self.goals is None else self.goals.at_goal
 
     def goal_area_names(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
-        """All names in `crowd.goal_areas` that it uses, by field."""
+        """Return all names in `crowd.goal_areas` that it uses, by field."""
         areas = self.goals.areas if self.goals else ()
         return ((("goals", "areas", i), name) for i, name in enumerate(areas))
 

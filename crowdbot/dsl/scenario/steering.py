@@ -1,4 +1,4 @@
-"""Steering parts: behaviour besides the crowd policy; off by default.
+"""Steering parts: behaviour in addition to the crowd policy; off by default.
 
 Formulas and sources: docs/reference/crowd/steering.md.
 """

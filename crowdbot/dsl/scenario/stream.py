@@ -1,8 +1,8 @@
-"""Stream: what every kind of stream has, and what each says of itself.
+"""Stream: fields and interface of all kinds of streams of people.
 
-`crowdbot.dsl.scenario.streams` has the kinds. Checks, pictures and the drawing of people ask a
-stream for its places, for the way that its people walk and for what does not fit, and know no
-kind. `crowdbot.core.population.stream_starts` draws where the people of each kind begin.
+`crowdbot.dsl.scenario.streams` has the kinds. Checks, pictures and the sampling of people use only
+this interface: positions, paths and contradictions. `crowdbot.core.population.stream_starts` draws
+the starts of people for each kind.
 """
 
 from __future__ import annotations
@@ -114,22 +114,22 @@ class Stream(Spec):
     # ------------------------------------------------------------------- how many
     @property
     def people_per_area(self) -> float | None:
-        """The density, 1/m^2, of a stream that is given by one."""
+        """Return the density of a stream that is given by one, 1/m^2."""
         return None
 
     @property
     def entering(self) -> Arrivals | None:
-        """Arrival times of people; None if all are there from the start."""
+        """Return the arrival times of people; None if all are present from the start."""
         return None
 
     @property
     def starts_in(self) -> Place | None:
-        """Area of the people of `count` or a density at the start; None: not in an area."""
+        """Return the area of people at the start, for `count` or a density; None without one."""
         return None
 
     # --------------------------------------------------------------------- places
     def places(self) -> Iterator[tuple[FieldPath, Place]]:
-        """All places that the stream names, by field."""
+        """Return all places that the stream names, by field."""
         for field in (*self.begin_fields, *self.goal_fields):
             place = getattr(self, field)
             if place is not None:
@@ -140,20 +140,20 @@ class Stream(Spec):
         return iter(())
 
     def points(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
-        """All points that it names, m, by field."""
+        """Return all points that the stream names, m, by field."""
         return iter(())
 
     def spots(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
-        """Points at which people stand at first, m, by the field that they follow from."""
+        """Return the positions of people at the start, m, by the field that gives them."""
         return iter(())
 
     # ------------------------------------------------------------------------ way
     def entrances(self) -> tuple[str, ...]:
-        """The fields with the areas in which people begin or come in."""
+        """Return the fields with the areas in which people start or enter."""
         return self.begin_fields
 
     def onward(self) -> Iterator[tuple[FieldPath, Place]]:
-        """The places that people go to from any entrance, in turn."""
+        """Return the places that people visit after entering, in order."""
         for field in self.goal_fields:
             place = getattr(self, field)
             if place is not None:
@@ -162,7 +162,7 @@ class Stream(Spec):
     def chains(
         self, area_of: AreaOf, goal_areas: Mapping[str, Place]
     ) -> Iterator[list[tuple[FieldPath, Area | None]]]:
-        """Areas that are visited one after the other, by field; None for one that is not there.
+        """Return areas that are visited in sequence, by field; None for a missing one.
 
         Args:
             goal_areas: all that the crowd has, by name.
@@ -194,7 +194,7 @@ class Stream(Spec):
 
 
 class Misfit(NamedTuple):
-    """People who do not fit where a stream wants them: field, text, and what would help."""
+    """People who do not fit in a place of a stream: field, error and hint."""
 
     field: FieldPath
     text: str
@@ -202,7 +202,7 @@ class Misfit(NamedTuple):
 
 
 class PopulatedStream(Stream):
-    """A stream of people who are there from the start, or who arrive."""
+    """A stream of people who are present from the start, or who arrive."""
 
     density: PositiveDensity | None = Field(
         default=None, description="People per area of where they start, 1/m^2."

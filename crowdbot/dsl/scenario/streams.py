@@ -1,7 +1,7 @@
 """The kinds of streams: named flows of people, each with its own number, path, speeds and bodies.
 
-A kind says itself what others need to know of it (`Stream`); its people begin as
-`crowdbot.core.population.stream_starts` draws it.
+Each kind implements `Stream`; `crowdbot.core.population.stream_starts` draws the starts of its
+people.
 """
 
 from __future__ import annotations
@@ -85,21 +85,21 @@ class ThroughStream(PopulatedStream):
 
     @property
     def starts_in(self) -> Place:
-        """Return where they are at the start."""
+        """Return their area at the start."""
         return self.start if self.start is not None and not self.arrivals else self.origin
 
     def places(self) -> Iterator[tuple[FieldPath, Place]]:
-        """All places that it names, those on the way last."""
+        """Return all places that it names, intermediate ones last."""
         yield from super().places()
         yield from self._between()
 
     def entrances(self) -> tuple[str, ...]:
-        """The origin, unless all are at `start` and none comes in again; and `start`."""
+        """Return the origin, unless everyone starts in `start` and none re-enters; and `start`."""
         comes_in = self.start is None or self.end == "return"
         return ("origin",) * comes_in + ("start",) * (self.start is not None)
 
     def onward(self) -> Iterator[tuple[FieldPath, Place]]:
-        """The places on the way, then the destination."""
+        """Return the intermediate places, then the destination."""
         yield from self._between()
         yield from super().onward()
 
@@ -107,7 +107,7 @@ class ThroughStream(PopulatedStream):
         return ((("via", i), place) for i, place in enumerate(self.via))
 
     def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
-        """Lanes that are narrower than people."""
+        """Yield an error for lanes that are narrower than people."""
         if self.lanes is None:
             return
         for place in (self.origin, self.starts_in, self.destination):
@@ -157,7 +157,7 @@ class DirectionsStream(Stream):
 
     @property
     def starts_in(self) -> Place:
-        """Area of these people at the start."""
+        """Return their area at the start."""
         return self.area
 
 
@@ -193,27 +193,27 @@ class QueueStream(Stream):
 
     @property
     def entering(self) -> Arrivals | None:
-        """Arrival times at the end of the line; None if all stand there from the start."""
+        """Return arrival times at the end of the line; None if all stand there from the start."""
         return self.arrivals
 
     def points(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
-        """The line."""
+        """Return the points of the line."""
         yield ("line",), self.line
 
     def spots(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
-        """Yield the places in the line at the start, from the counter backwards, m."""
+        """Yield the positions in the line at the start, from the counter backwards, m."""
         yield ("line",), tuple(islice(along(self.line, self.gap), self.count))
 
     def chains(
         self, area_of: AreaOf, goal_areas: Mapping[str, Place]
     ) -> Iterator[list[tuple[FieldPath, Area | None]]]:
-        """Along the line to the counter, then to the destination."""
+        """Return the path along the line to the counter, then to the destination."""
         del goal_areas
         line = [(("line", i), Area(centre=at, size=_POINT)) for i, at in enumerate(self.line)]
         yield [*reversed(line), *((field, area_of(place)) for field, place in self.onward())]
 
     def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
-        """More people than the line has room for, or wider ones than its gap."""
+        """Yield errors for more people than the line has room for, or wider ones than its gap."""
         del area_of
         length = sum(math.dist(a, b) for a, b in pairwise(self.line))
         room = math.floor(length / self.gap + 1e-9) + 1
@@ -253,7 +253,7 @@ class TalkingStream(Stream):
 
     @property
     def starts_in(self) -> Place:
-        """Area in which they stand."""
+        """Return the area in which they stand."""
         return self.area
 
 
@@ -282,13 +282,13 @@ class WanderingStream(PopulatedStream):
         return self.area
 
     def goal_area_names(self) -> Iterator[tuple[FieldPath, str]]:
-        """The areas that they stroll to."""
+        """Return the areas that they stroll to."""
         return ((("areas", i), name) for i, name in enumerate(self.areas))
 
     def chains(
         self, area_of: AreaOf, goal_areas: Mapping[str, Place]
     ) -> Iterator[list[tuple[FieldPath, Area | None]]]:
-        """From where they start to each of the areas."""
+        """Return the paths from their start to each of the areas."""
         for field, name in self.goal_area_names():
             goal = area_of(goal_areas[name]) if name in goal_areas else None
             yield [(("area",), area_of(self.area)), (field, goal)]

@@ -71,7 +71,7 @@ class Parts:
         return {"$ref": _REF + name}
 
     def used_by(self, content: Json) -> Json:
-        """Return the definitions that a schema needs, directly or not, sorted by name."""
+        """Return the definitions that a schema uses, directly or indirectly, sorted by name."""
         found: Json = {}
         waiting = list(_refs(content))
         while waiting:

@@ -38,7 +38,7 @@ class Area(Spec):
         return self.centre[0] + cos * u - sin * v, self.centre[1] + sin * u + cos * v
 
     def own(self, x: float, y: float) -> tuple[float, float]:
-        """Return a world point in the area's frame, from its centre; m."""
+        """Return the coordinates of a world point in the area's frame, from its centre; m."""
         cos, sin = math.cos(self.rotation), math.sin(self.rotation)
         dx, dy = x - self.centre[0], y - self.centre[1]
         return cos * dx + sin * dy, cos * dy - sin * dx

@@ -108,7 +108,7 @@ class EnvironmentSpec(ComponentSpec):
     )
 
     def place(self) -> Place | None:
-        """Return its parts, if its spec knows them; then documents are checked against them.
+        """Return its geometry if the spec knows it; then documents are checked against it.
 
         Raises:
             InputError: a file of the environment cannot be read.
@@ -117,11 +117,11 @@ class EnvironmentSpec(ComponentSpec):
 
     @property
     def periodic_floor(self) -> Rectangle | None:
-        """Return the floor, if people who leave it on one side enter again on the other."""
+        """Return the floor if it is periodic: who leaves on one side enters on the other."""
         return None
 
     def against_image(self) -> Agreement | None:
-        """Return how its place agrees with the image it was made from; None without an image.
+        """Return its agreement with the image it was made from; None without an image.
 
         Raises:
             InputError: as in `place`.
@@ -129,7 +129,7 @@ class EnvironmentSpec(ComponentSpec):
         return None
 
     def extent(self) -> Rectangle | None:
-        """Return its box if its zones do not give it, else None.
+        """Return its bounding box, if its zones do not give it; else None.
 
         Raises:
             InputError: as in `place`.
@@ -154,21 +154,21 @@ class RobotSpec(ComponentSpec):
 
     @property
     def half_width(self) -> float:
-        """Return the radius of a disc around its base that its outline contains, m.
+        """Return the radius of a disc around its base that lies within its outline, m.
 
-        `validate` refuses a start and a goal without room for this disc; larger is stricter.
+        `validate` rejects a start or a goal without room for this disc; a larger one is stricter.
         """
         return 0.1
 
     def described(self) -> Mapping[DescribedPart, Collection[str]]:
-        """Return the links and joints of its description; empty if only a build knows them.
+        """Return the links and joints of its description; empty if the spec does not know them.
 
-        `validate` compares what sensors and `named` name.
+        `validate` checks names in sensors and in `named` against them.
         """
         return {}
 
     def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
-        """Yield links and joints that the spec names: which, the name, and the field's path."""
+        """Yield the links and joints that fields of the spec name, with the fields' paths."""
         yield from ()
 
 
@@ -202,10 +202,10 @@ class SensorSpec(ComponentSpec):
         return {**data, "mount": {**{n: getattr(own, n) for n in own.model_fields_set}, **given}}
 
     def on_robot(self, robot: RobotSpec) -> Self:
-        """Return the sensor with what it takes from its robot's spec.
+        """Return the sensor, completed with values from its robot's spec.
 
-        The scenario, and so its hash, holds the result. What depends on the built robot or on its
-        task is left to the build function.
+        The scenario, and so its hash, holds the result. Values that depend on the built robot or on
+        its task are left to the build function.
         """
         del robot
         return self
@@ -240,7 +240,7 @@ class PlannerSpec(ComponentSpec):
 
     @property
     def wants(self) -> tuple[str, ...]:
-        """Return categories of further sensors that it takes where the robot has them."""
+        """Return categories of optional sensors, used where the robot has them."""
         return ()
 
 
@@ -270,7 +270,7 @@ class MetricSpec(ComponentSpec):
 
 
 class ObservationSpec(ComponentSpec):
-    """Abstract observation: what a policy that learns sees, as one vector."""
+    """Abstract observation: the input of a learned policy, as one vector."""
 
     category: ClassVar[str] = "observation"
     #: True if it holds what no real sensor measures; a planner that observes so is privileged.
@@ -286,7 +286,7 @@ class ObservationSpec(ComponentSpec):
 
 
 class RewardSpec(ComponentSpec):
-    """Abstract reward of a policy that learns, step by step."""
+    """Abstract reward for training a policy, step by step."""
 
     category: ClassVar[str] = "reward"
 

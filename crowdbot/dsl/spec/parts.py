@@ -31,7 +31,7 @@ def parts_category(spec: type[ComponentSpec]) -> str:
 
 
 def narrowed(field: FieldInfo, member: Any) -> Any:
-    """Return the annotation of a field of parts, with another type for the abstract one."""
+    """Return a field's annotation with the abstract spec type replaced by another one."""
     metadata = [
         replace(m, json_schema_input_type=_narrowed(m.json_schema_input_type, member))
         if isinstance(m, BeforeValidator)

@@ -92,7 +92,7 @@ class Place:
     left_out: tuple[Outline, ...] = ()
 
     def bodies(self, height: float) -> Place:
-        """Return obstacles for people of a height: below their heads, and not steps."""
+        """Return obstacles that block people of a height: not above their heads, and no steps."""
         return Place(
             faces=tuple(f for f in self.faces if f.stops_crowd and f.heights[0] < height),
             solids=tuple(s for s in self.solids if s.stops_crowd and s.heights[0] < height),

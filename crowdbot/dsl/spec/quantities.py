@@ -92,7 +92,7 @@ class Quantity:
         raise self._error(value, result or self._advice(value))
 
     def within_reach(self, value: float) -> float:
-        """Return the value, unless it is unrealistically large.
+        """Return the value; raise an error if it is unrealistically large.
 
         Raises:
             PydanticKnownError: it exceeds `MOST` of this dimension.

@@ -141,7 +141,7 @@ class Rectangle(Spec):
 
 
 class Range(Spec):
-    """Range of a cost function, and the points between which it measures.
+    """Range of a cost function, and whether distances are between centres or surfaces.
 
     A bare length is the short form for a range between centres.
     """

@@ -1,4 +1,4 @@
-"""Unions whose members are distinguished by our own function."""
+"""Unions of models whose member is chosen by a function."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """JSON Schema ``anyOf`` of a union that is distinguished by more than one field."""
+    """Writes a union with several distinguishing fields as ``anyOf`` in JSON Schema."""
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler

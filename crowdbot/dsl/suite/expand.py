@@ -90,7 +90,7 @@ class Expansion:
         return NO_SUITE if self.single else self.suite_id
 
     def entry(self, scenario: Scenario) -> SuiteEntry:
-        """Return a scenario's place in this suite."""
+        """Return a scenario's position and labels in this suite."""
         return SuiteEntry(
             suite=self.suite,
             axes=self.axes.get(scenario.id, {}),
@@ -147,7 +147,7 @@ def expand_document(
 
 
 class Expanding:
-    """A document's scenarios by index in the `Expansion`, each expanded on demand."""
+    """The scenarios of a document by index, each expanded on demand."""
 
     def __init__(
         self, suite: ParsedSuite, scenario_model: type[Scenario], overrides: Sequence[str] = ()

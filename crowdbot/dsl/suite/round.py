@@ -1,4 +1,4 @@
-"""A round of a challenge: when planners are handed in, in which form, and whom to ask."""
+"""A round of a challenge: dates and form of submissions, and the contact."""
 
 from __future__ import annotations
 
@@ -75,23 +75,23 @@ class Round(Spec):
 
     @property
     def begin(self) -> datetime:
-        """Return the moment from which planners are taken."""
+        """Return the moment from which submissions are accepted."""
         return _at(self.opens, time.min) if self.opens else datetime.min.replace(tzinfo=UTC)
 
     @property
     def end(self) -> datetime:
-        """Return the moment until which planners are taken."""
+        """Return the moment until which submissions are accepted."""
         return _at(self.closes, time.max) if self.closes else datetime.max.replace(tzinfo=UTC)
 
     def problem(self, moment: datetime) -> str:
-        """Return why nothing is taken at a moment; empty if it is."""
+        """Return why no submission is accepted at a moment; empty if it is."""
         if moment < self.begin:
             return f"the round opens on {_shown(self.opens)}"
         return f"the round closed on {_shown(self.closes)}" if moment > self.end else ""
 
     @property
     def mail(self) -> bool:
-        """Return True if the contact is an address of mail."""
+        """Return True if the contact is an e-mail address."""
         return re.fullmatch(r"[\w.+-]+@[\w-]+(\.[\w-]+)+", self.contact) is not None
 
     @property

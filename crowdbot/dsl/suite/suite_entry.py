@@ -19,7 +19,7 @@ _UNSAFE = re.compile(r"[^\w.=-]+")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SuiteEntry:
-    """A scenario's place in its suite; what a record says about its run besides the scenario.
+    """A scenario's place in its suite, as stored in the records of its runs.
 
     Attributes:
         suite: id of the suite; ``scenarios`` for a document with a single scenario.
@@ -36,7 +36,7 @@ class SuiteEntry:
     altered: Sequence[str] = ()
 
     def folder(self, scenario: str) -> str:
-        """Return the folder of a scenario's runs below the root; its name says what was altered.
+        """Return the folder of a scenario's runs; its name contains the changes by ``--set``.
 
         Args:
             scenario: its id, with the digest of what was altered.
@@ -65,11 +65,11 @@ def altered_suffix(overrides: Sequence[str]) -> str:
 
 
 def altered_digest(scenario: str) -> str:
-    """Return the part of a scenario's id that stands for changes: ``+1f3a``; empty without."""
+    """Return the suffix of a scenario's id for changes, such as ``+1f3a``; empty without."""
     found = _DIGEST.search(scenario)
     return found.group() if found else ""
 
 
 def digest_of(overrides: Sequence[str]) -> str:
-    """Return four hexadecimal digits that stand for the changes in a scenario's id."""
+    """Return four hexadecimal digits, a hash of the changes in a scenario's id."""
     return hashlib.sha256("\n".join(overrides).encode()).hexdigest()[:4]

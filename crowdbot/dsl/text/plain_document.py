@@ -1,4 +1,4 @@
-"""Read documents and values outside of suites, with the same syntax, bounds and positions."""
+"""Read YAML documents and values that are not suites, with the same syntax and limits."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def events_of(text: str) -> Iterator[Any]:
 
 
 def quick_events(text: str) -> list[Any] | None:
-    """Return libyaml's events; None if ruamel.yaml is needed."""
+    """Return libyaml's events; None if ruamel.yaml has to read the text."""
     if not text.endswith("\n") or _UNLIKE.search(text):
         return None
     try:

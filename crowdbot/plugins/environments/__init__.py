@@ -1,1 +1,1 @@
-"""Places."""
+"""Environments: corridors, halls, streets, floors and floor plans."""

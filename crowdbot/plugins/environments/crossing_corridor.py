@@ -59,7 +59,7 @@ class CrossingCorridorSpec(WalkwaySpec):
         return Place(faces=walkway(tuple(points), ends, self.wall_height))
 
     def usual_zones(self) -> dict[str, Rectangle]:
-        """Return the arms of the first corridor, the middle, and the second's arms if square.
+        """Return the arms of the first corridor, the middle, and, if square, the second's arms.
 
         If not square, ``across`` is the box around the second corridor.
         """

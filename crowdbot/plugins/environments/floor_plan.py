@@ -17,7 +17,7 @@ class FloorPlanSpec(FloorPlanFields):
     """
 
     def beside(self, name: str, file: Path) -> dict[str, str]:
-        """Return the image that a map names, if the document names none."""
+        """Return the image that a map refers to, if the document names none."""
         if name != "file" or self.read_as != "ros_map" or self.image is not None:
             return {}
         from crowdbot.plugins.environments.ros_map_build import image_of
@@ -37,7 +37,7 @@ class FloorPlanSpec(FloorPlanFields):
         return place_of(self)
 
     def against_image(self) -> Agreement | None:
-        """Return how the place agrees with the image of an occupancy grid, cell by cell."""
+        """Return the agreement of the place with the image of an occupancy grid, cell by cell."""
         if self.read_as != "ros_map":
             return None
         from crowdbot.plugins.environments.floor_plan_agreement_build import agreement

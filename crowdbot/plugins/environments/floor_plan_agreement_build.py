@@ -21,7 +21,7 @@ _ROWS = 256
 
 
 def agreement(spec: FloorPlanFields, place: Place) -> Agreement:
-    """Return which cells' centres are floor in the image and not in the place, or reversely.
+    """Return the cells whose centres are floor in the image only, or in the place only.
 
     Raises:
         InputError: the map or its image cannot be read.

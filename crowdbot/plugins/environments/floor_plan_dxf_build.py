@@ -1,4 +1,4 @@
-"""DXF drawings: which entities are floor or walls, as geometries with properties."""
+"""DXF drawings: entities that are floor or walls, as geometries with properties."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Open DXF drawings, and walk through their entities, those of inserted blocks included."""
+"""Open DXF drawings, and iterate over their entities, including those of inserted blocks."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _text(content: bytes) -> str:
 
 
 def hidden(drawing: Any, layer: str, *, frozen_only: bool = False) -> bool:
-    """Return True if a layer is off or frozen, or only if it is frozen."""
+    """Return True if a layer is off or frozen; on request, only if it is frozen."""
     if layer not in drawing.layers:
         return False
     state = drawing.layers.get(layer)
@@ -82,7 +82,7 @@ def hidden(drawing: Any, layer: str, *, frozen_only: bool = False) -> bool:
 
 
 def entities(drawing: Any, name: str, aside: Counter[str]) -> Iterator[Any]:
-    """Yield the entities of the model space, with those of inserted blocks in their places.
+    """Yield the entities of the model space, including those of inserted blocks.
 
     Args:
         name: of the file, for messages.

@@ -1,4 +1,4 @@
-"""Properties of GeoJSON features: their kind and their storeys, as several programs write them."""
+"""Properties of GeoJSON features, kind and storeys, as written by several programs."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ _SOLID_WORDS = re.compile(
 
 
 def in_small_letters(properties: dict[str, Any]) -> dict[str, Any]:
-    """Return properties by names in small letters, as shape files write them in capitals."""
+    """Return properties with lower-case names; shape files write them in capitals."""
     lower = {str(name).lower(): value for name, value in properties.items()}
     return {**lower, **{name: v for name, v in properties.items() if name in lower}}
 
 
 def kind_of(properties: dict[str, Any]) -> str:
-    """Return what a feature says it is, in small letters, or ""."""
+    """Return a feature's kind in lower case, or ""."""
     kind = properties.get("kind")
     return "" if kind is None else str(kind).strip().lower()
 
 
 def solid_by_another_name(features: Iterable[dict[str, Any]]) -> str:
-    """Return how often features without a kind say in another property that they are solid."""
+    """Return how many features without a kind seem solid by another property."""
     found = Counter(
         f"{name}: {value}"
         for properties in features
@@ -51,7 +51,7 @@ def solid_by_another_name(features: Iterable[dict[str, Any]]) -> str:
 
 
 def levels_of(properties: dict[str, Any]) -> tuple[str, ...]:
-    """Return the storeys that a feature names."""
+    """Return the storeys of a feature."""
     values = [v for key in _LEVELS if (v := properties.get(key)) not in (None, "")]
     floor = properties.get("floor")
     if not values and floor is not None and _FLOOR_NAME.fullmatch(str(floor).strip()):
@@ -60,7 +60,7 @@ def levels_of(properties: dict[str, Any]) -> tuple[str, ...]:
 
 
 def label_of(value: object) -> str:
-    """Return the name of a storey; numbers that are equal have one name."""
+    """Return the name of a storey, the same for equal numbers."""
     text = str(value).strip()
     try:
         return f"{float(text) + 0.0:g}"

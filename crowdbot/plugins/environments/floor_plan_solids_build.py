@@ -22,10 +22,10 @@ Heights = tuple[float, float]
 
 
 def around_floor(floor: list[Any], heights: Heights) -> tuple[tuple[Face, ...], tuple[Solid, ...]]:
-    """Return the walls around a floor, and what stands within them.
+    """Return the walls around a floor, and the solids inside it.
 
-    An outer wall is a face. Where walls are so thin that what is behind a face would reach into
-    other floor, everything around the floor is solid instead.
+    An outer wall is a one-sided face. Where walls are so thin that the solid behind a face would
+    reach into other floor, everything around the floor is solid instead.
 
     Args:
         floor: polygons without a common point, except for single ones; m.

@@ -1,4 +1,4 @@
-"""GeoJSON and WKT: read geometries, what each of them is, and on which storey it lies."""
+"""GeoJSON and WKT plans: geometries with their kind and storey."""
 
 from __future__ import annotations
 
@@ -294,7 +294,7 @@ def _sort_in(
 
 
 def is_many(shape: Any) -> bool:
-    """Return True if a geometry has members."""
+    """Return True if a geometry is a collection."""
     return bool(shape.geom_type.startswith("Multi") or shape.geom_type == "GeometryCollection")
 
 

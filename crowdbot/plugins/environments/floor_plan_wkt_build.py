@@ -1,4 +1,4 @@
-"""WKT as people and databases write it: several geometries, comments, quotes, measures."""
+"""WKT as written by people and databases: several geometries, comments, quotes, measures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SRID = re.compile(r"\s*SRID\s*=\s*\d+\s*;", re.IGNORECASE)
 
 
 def geometry_of(text: str, name: str) -> Any:
-    """Return what a text of WKT holds; a collection where it has several geometries.
+    """Return the geometry in a WKT text; a collection if there are several.
 
     Args:
         text: without a byte order mark.

@@ -1,10 +1,10 @@
-"""Straight lines along the borders of a grid's cells, never farther away than a part of a cell.
+"""Straight lines along the borders of a grid's cells, within part of a cell.
 
 The border of a slanted wall is a staircase. A line may replace a part of it if it crosses the lines
 between the centres of each free cell and the solid cell beside it, near their middles. So no line
-passes the centre of a cell, none meets another, and a wall of one cell stays a wall. Among all ways
-around a ring the one with the fewest lines is taken, and among these the nearest one. The condition
-is like that of Selinger, "Potrace: a polygon-based tracing algorithm", 2003.
+passes the centre of a cell, none meets another, and a wall of one cell stays a wall. Among all
+closed paths around a ring the one with the fewest lines is taken, and among these the nearest one.
+The condition is like that of Selinger, "Potrace: a polygon-based tracing algorithm", 2003.
 """
 
 from __future__ import annotations

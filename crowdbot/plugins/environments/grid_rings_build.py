@@ -14,7 +14,7 @@ STEPS = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GridRing:
-    """A border of free cells, with these on its left; cells are squares of side 1.
+    """A border of free cells, which are on its left; cells are squares of side 1.
 
     Attributes:
         corners: (K, 2) lattice points at which it turns.
@@ -30,8 +30,8 @@ class GridRing:
 def grid_rings(free: NDArray[np.bool_]) -> list[GridRing]:
     """Return all borders of free cells (H, W), whose first row is the lowest.
 
-    Solid cells that touch at a corner hang together, free cells do not: a slanted wall of single
-    cells has no gaps. Everything outside of the grid is solid.
+    Solid cells that touch at a corner are connected, free cells are not: a slanted wall of single
+    cells has no gaps. Everything outside the grid is solid.
     """
     inside = np.pad(free, 1)
     regions, _ = ndimage.label(inside)

@@ -66,7 +66,7 @@ class PillarFieldSpec(Spec):
         return _drawn(self, self.area or floor, top)
 
     def draw(self, area: Rectangle, top: float) -> tuple[Pillar, ...]:
-        """Draw the pillars of `pillars`, without its cache."""
+        """Draw the pillars, as `pillars` does, without using its cache."""
         found = list[Pillar]()
         for number in range(self.count):
             radius = self._radius(number)

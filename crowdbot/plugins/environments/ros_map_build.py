@@ -66,15 +66,15 @@ class RosMap:
 
     @property
     def alpha(self) -> Alpha:
-        """Return what the opacity of pixels means: see `read_grey`."""
+        """Return how the opacity of pixels is used: see `read_grey`."""
         return _OPACITY[self.mode]
 
     def image_beside(self, file: Path) -> Path:
-        """Return the image of a ``map.yaml``: where it says, or beside it for an absolute path."""
+        """Return the image's path from ``map.yaml``; of an absolute path, the name only."""
         return file.parent / relative_image(self.image)
 
     def at(self, points: Array) -> Array:
-        """Return points (N, 2), cells from the lower left corner, in the map's frame, m."""
+        """Return points (N, 2), in cells from the lower left corner, in the map's frame, m."""
         c, s = np.cos(self.origin[2]), np.sin(self.origin[2])
         turn = self.resolution * np.array([[c, -s], [s, c]])
         found: Array = points @ turn.T + self.origin[:2]
@@ -142,10 +142,10 @@ def image_of(file: Path) -> str | None:
 
 
 def relative_image(image: str) -> str:
-    """Return a path that can be copied to another machine with its map.
+    """Return a path that stays valid if the map is copied to another machine.
 
-    ROS 1 writes where the image lay: of an absolute path only the name counts, and of a path that
-    only the other machine resolves: ``~/``, ``$(find maps)/``, ``package://``.
+    Of an absolute path, as ROS 1 writes it, only the file's name is kept, and of ``~/``, ``$(find
+    maps)/`` and ``package://``, which only the other machine can resolve.
     """
     if _ELSEWHERE.match(image):
         return PurePosixPath(image).name

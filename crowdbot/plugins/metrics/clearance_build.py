@@ -69,7 +69,7 @@ class IntimateTimeFraction(RobotMetric[IntimateTimeFractionSpec], declared=INTIM
 
 
 class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec], declared=PERSONAL_TIME_FRACTION):
-    """Scores ``personal_time_fraction``: the share of time between its two edges."""
+    """Scores ``personal_time_fraction``: the share of time in the personal zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         zone = self.spec.intimate, self.spec.personal
@@ -77,7 +77,7 @@ class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec], declared=PERSO
 
 
 class SocialTimeFraction(RobotMetric[SocialTimeFractionSpec], declared=SOCIAL_TIME_FRACTION):
-    """Scores ``social_time_fraction``: the share of time between its two edges."""
+    """Scores ``social_time_fraction``: the share of time in the social zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return time_within(self.factory, run, self.spec.personal, self.spec.social)

@@ -52,9 +52,9 @@ _Spec = (
 
 
 class CollisionCount(RobotMetric[CollisionCountSpec], declared=COLLISION_COUNT):
-    """Scores ``collision_count``: ``literal``: runs of samples in contact.
+    """Scores ``collision_count``: all contacts, however short.
 
-    ``corrected``: all contacts, however short.
+    ``literal``: sequences of samples in contact.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -68,10 +68,10 @@ class CollisionCount(RobotMetric[CollisionCountSpec], declared=COLLISION_COUNT):
 
 
 class CollisionSeverity(RobotMetric[CollisionSeveritySpec], declared=COLLISION_SEVERITY):
-    """Scores ``collision_severity``: ``literal``: each sample in contact.
+    """Scores ``collision_severity``: the energy of contacts, just before each.
 
-    The other variants: each contact, just before it. Contacts of unknown speed or with an
-    unknown person count as 0.
+    ``literal``: of each sample in contact. Contacts of unknown speed or with an unknown person
+    count as 0.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -111,9 +111,9 @@ class CollisionRate(RobotMetric[CollisionRateSpec], declared=COLLISION_RATE):
 
 
 class CollisionsAtFault(RobotMetric[CollisionsAtFaultSpec], declared=COLLISIONS_AT_FAULT):
-    """Scores ``collisions_at_fault``: contacts by fault.
+    """Scores ``collisions_at_fault``: contacts by fault of the robot and of the person.
 
-    The robot's if it is faster and the person is in front of it, else the person's.
+    It is the robot's if it is faster and the person is in front of it, else the person's.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

@@ -1,7 +1,7 @@
-"""Goal distance, progress, and the common reference: the shortest path at full speed.
+"""Goal distance, progress, and the shortest path at full speed, a reference for all planners.
 
-The planner's own run alone is another reference for each planner: who is slow there, too, loses
-nothing in the crowd. No planner beats the shortest path at full speed.
+A planner's own run without people would be another reference for each planner: one that is slow
+there, too, would lose nothing in the crowd. No planner beats the shortest path at full speed.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def goal_distance(run: Trajectories) -> tuple[Array, Array]:
 
 
 def way_made_good(run: Trajectories) -> float:
-    """Return the largest approach to the goal so far, m."""
+    """Return the progress: the largest approach to the goal so far, m."""
     _, distance = goal_distance(run)
     return float(distance[0] - distance.min())
 
@@ -69,7 +69,7 @@ def way_made_good(run: Trajectories) -> float:
 def rate_and_way(
     factory: ScoreFactory, run: Trajectories, amount: float, least: float, variant: str = "rate"
 ) -> tuple[Score, Score]:
-    """Score ``rate`` (or another variant) and ``way`` of a cost per metre of progress.
+    """Score ``rate`` (or another variant), a cost per metre of progress, and ``way``, the progress.
 
     A robot that comes nearer by less than ``least`` (m) has no rate, whatever its cost.
     """

@@ -53,7 +53,7 @@ class Assisted(DeclaredMetric[AssistedSpec], declared=ASSISTED):
 
 
 class TimeInPlace(DeclaredMetric[TimeInPlaceSpec], declared=TIME_IN_PLACE):
-    """Scores ``time_in_place``: ``corrected``: the share of all time.
+    """Scores ``time_in_place``: the share of all time in place.
 
     ``since``: of the time since the robot was in place for the first time; 0 if it never was.
     """

@@ -47,9 +47,9 @@ from crowdbot.plugins.metrics.pairing_build import paired_samples
 
 
 class EffectOnTime(DeclaredMetric[EffectOnTimeSpec], declared=EFFECT_ON_TIME):
-    """Scores ``effect_on_time``: ``literal``: completed trips.
+    """Scores ``effect_on_time`` of all trips, in the common time window.
 
-    Other variants: all trips, in the common time window. Needs ``crowd_alone``.
+    ``literal``: of completed trips. Needs ``crowd_alone``.
     """
 
     def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
@@ -104,9 +104,9 @@ class NeighboursTimeToGoal(RobotMetric[NeighboursTimeToGoalSpec], declared=NEIGH
 
 
 class EffectOnVelocity(DeclaredMetric[EffectOnVelocitySpec], declared=EFFECT_ON_VELOCITY):
-    """Scores ``effect_on_velocity``: ``literal``: all samples of both records.
+    """Scores ``effect_on_velocity`` over the time in the common window.
 
-    ``corrected``: time in the common window. Needs ``crowd_alone``.
+    ``literal``: over all samples of both records. Needs ``crowd_alone``.
     """
 
     def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:

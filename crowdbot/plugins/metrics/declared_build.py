@@ -1,4 +1,4 @@
-"""Bases of the metrics: what they share is how a run without a value is scored."""
+"""Base classes of the metrics: scores of runs without a value."""
 
 from __future__ import annotations
 

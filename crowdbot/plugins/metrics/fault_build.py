@@ -27,7 +27,7 @@ KILOMETRE = 1000.0
 
 
 def fault_rule(spec: ContactsAtFaultSpec | ContactsPerKmSpec | SafeEfficiencySpec) -> FaultRule:
-    """Return the rule for whose fault a contact is, from the fields of a metric."""
+    """Return the rule of fault from the fields of a metric."""
     return FaultRule(
         speed=spec.fault_speed + TOLERANCE,
         reaction=spec.fault_reaction,
@@ -37,9 +37,9 @@ def fault_rule(spec: ContactsAtFaultSpec | ContactsPerKmSpec | SafeEfficiencySpe
 
 
 class ContactsAtFault(RobotMetric[ContactsAtFaultSpec], declared=CONTACTS_AT_FAULT):
-    """Scores ``contacts_at_fault``: contacts by fault.
+    """Scores ``contacts_at_fault``: contacts by fault of the robot and of people.
 
-    The robot's if it moves towards the person it touches and did not brake in time.
+    It is the robot's if it moves towards the person it touches and did not brake in time.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -50,10 +50,10 @@ class ContactsAtFault(RobotMetric[ContactsAtFaultSpec], declared=CONTACTS_AT_FAU
 
 
 class ContactsPerKm(RobotMetric[ContactsPerKmSpec], declared=CONTACTS_PER_KM):
-    """Scores ``contacts_per_km``: contacts per progress and per driven km.
+    """Scores ``contacts_per_km``: contacts per kilometre of progress and of driven path.
 
-    All contacts and those at fault per progress, all per driven distance; and both distances.
-    Needs a goal, except for ``driven``.
+    All contacts and those at fault per progress, all per driven distance; and both distances. Needs
+    a goal, except for ``driven``.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

@@ -43,9 +43,9 @@ Index = NDArray[np.intp]
 
 
 class OvertakingCount(DeclaredMetric[OvertakingCountSpec], declared=OVERTAKING_COUNT):
-    """Scores ``overtaking_count``: ``literal``: people overtaken by the robot.
+    """Scores ``overtaking_count``: people overtaken, minus those who overtook the robot.
 
-    ``corrected``: minus those who overtook it. without people the count is 0.
+    ``literal``: people overtaken. Without people the count is 0.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

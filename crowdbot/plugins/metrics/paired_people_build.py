@@ -36,10 +36,9 @@ _Spec = DisplacementSpec | DelaySpec
 
 
 class Displacement(DeclaredMetric[DisplacementSpec], declared=DISPLACEMENT):
-    """Scores ``displacement``: the cost to people met.
+    """Scores ``displacement`` of people met: mean, worst 5 %, number, slope over speed.
 
-    Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
-    everyone. Needs ``crowd_alone`` with the same people.
+    ``whole`` is the mean over everyone. Needs ``crowd_alone`` with the same people.
     """
 
     def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
@@ -48,10 +47,9 @@ class Displacement(DeclaredMetric[DisplacementSpec], declared=DISPLACEMENT):
 
 
 class Delay(DeclaredMetric[DelaySpec], declared=DELAY):
-    """Scores ``delay``: the cost to people met.
+    """Scores ``delay`` of people met: mean, worst 5 %, number, slope over speed.
 
-    Mean, mean of the worst 5 %, number strongly affected, slope over speed; and the mean over
-    everyone. Needs ``crowd_alone`` with the same people.
+    ``whole`` is the mean over everyone. Needs ``crowd_alone`` with the same people.
     """
 
     def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:

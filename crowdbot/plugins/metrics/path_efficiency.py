@@ -1,4 +1,4 @@
-"""Metrics of what the crowd costs the robot: time, path and smoothness."""
+"""Metrics that compare the robot's time, path and smoothness alone and in the crowd."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scoring of what the crowd costs the robot: alone divided by in the crowd."""
+"""Scoring of the robot's time, path and jerk: the value alone divided by that in the crowd."""
 
 from __future__ import annotations
 
@@ -37,9 +37,10 @@ RATE_TOLERANCE = 1e-9
 
 
 class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec], declared=RELATIVE_TIME_TO_GOAL):
-    """Scores ``relative_time_to_goal``: ``literal`` and ``corrected`` against the planner alone.
+    """Scores ``relative_time_to_goal``: time alone over time in the crowd.
 
-    ``common``: against full speed. Needs ``robot_alone``.
+    ``common``: time of the shortest path at full speed over time in the crowd. Needs
+    ``robot_alone``.
     """
 
     def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
@@ -60,7 +61,10 @@ class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec], declared=RELATI
 
 
 class RelativePathLength(DeclaredMetric[RelativePathLengthSpec], declared=RELATIVE_PATH_LENGTH):
-    """Scores ``relative_path_length``: ``literal`` and ``corrected``. Needs ``robot_alone``."""
+    """Scores ``relative_path_length``: path alone over path in the crowd.
+
+    Needs ``robot_alone``.
+    """
 
     def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
         return _alone_over_crowded(self.factory, self._length, run, refs, self.spec, _OWN)

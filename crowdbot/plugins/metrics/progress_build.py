@@ -18,7 +18,7 @@ TOLERANCE = 1e-9
 class Regress(DeclaredMetric[RegressSpec], declared=REGRESS):
     """Scores ``regress``: the sum of all increases of the goal distance.
 
-    And the share of time with a marked one. Needs a goal point or zone.
+    ``time_share`` is the share of time with a marked increase. Needs a goal point or zone.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

@@ -31,9 +31,9 @@ from crowdbot.plugins.metrics.proximity import (
 
 
 class Proximity(RobotMetric[ProximitySpec], declared=PROXIMITY):
-    """Scores ``proximity``: ``literal``: sum over samples.
+    """Scores ``proximity``: the mean over time of the reciprocal distance, which has a floor.
 
-    ``corrected``, ``outline``: floored mean over time. Samples without people add nothing.
+    ``literal``: the sum over samples. Samples without people add nothing.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -65,9 +65,9 @@ class Proximity(RobotMetric[ProximitySpec], declared=PROXIMITY):
 
 
 class NormalizedProximity(RobotMetric[NormalizedProximitySpec], declared=NORMALIZED_PROXIMITY):
-    """Scores ``normalized_proximity``: ``literal``, ``corrected``: spread over mean.
+    """Scores ``normalized_proximity``: spread of distances over their mean.
 
-    ``barycentre``: the definition in the text.
+    ``barycentre``: the definition in the text of the source.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

@@ -14,7 +14,7 @@ PAIRS = 15
 
 
 class NasaTlx(DeclaredMetric[NasaTlxSpec], declared=NASA_TLX):
-    """Scores ``nasa_tlx``: ``raw``: mean rating; ``weighted``: by how often each scale was chosen.
+    """Scores ``nasa_tlx``: mean rating (``raw``), and weighted by chosen scales (``weighted``).
 
     Needs the answers of a NASA-TLX form.
     """

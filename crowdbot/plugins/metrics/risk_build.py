@@ -35,9 +35,10 @@ TIE = 1e-9
 
 
 class Risk(RobotMetric[RiskSpec], declared=RISK):
-    """Scores ``risk``: ``literal``, ``corrected``, ``exposed_time``, ``rate`` and ``disc``.
+    """Scores ``risk``: the imminence of collisions, integrated over time.
 
-    The first three grow with the length of the run.
+    ``literal``, ``corrected`` and ``exposed_time`` grow with the length of the run; ``rate`` and
+    ``disc`` do not.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -93,9 +94,9 @@ class ExpectedSeverity(RobotMetric[ExpectedSeveritySpec], declared=EXPECTED_SEVE
 
 
 class TimeExposed(RobotMetric[TimeExposedSpec], declared=TIME_EXPOSED):
-    """Scores ``time_exposed``: the time, and its share, with a person nearer than the horizon.
+    """Scores ``time_exposed``: the time, and its share, with a collision within the horizon.
 
-    the variant ``exposed_time`` of ``risk``.
+    The same as the variant ``exposed_time`` of ``risk``.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

@@ -26,7 +26,7 @@ declare = partial(declare_metric, category="task")
 
 
 class SafeEfficiencySpec(MetricSpec):
-    """Timely arrival without a contact at fault, pushing people aside or touching walls."""
+    """Timely arrival without contacts at fault, pushing people aside or touching walls."""
 
     kind: Literal["safe_efficiency"] = "safe_efficiency"
     fault_speed: FaultSpeed

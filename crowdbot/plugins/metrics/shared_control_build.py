@@ -29,10 +29,10 @@ REGULAR = 1e-6
 
 
 class AgreementMetric(DeclaredMetric[AgreementSpec], declared=AGREEMENT):
-    """Scores ``agreement``: ``literal``: angles of arctan(v/w).
+    """Scores ``agreement`` in direction of the user's and the final commands.
 
-    ``corrected``: full angles of scaled commands. Needs commands. Each counts for as long as it
-    holds; standstill has no direction.
+    ``corrected``: by the angles of scaled commands; ``literal``: by arctan(v/w). Needs commands.
+    Each counts for as long as it holds; standstill has no direction.
     """
 
     def _scores(self, _: Trajectories, refs: References) -> Sequence[Score]:

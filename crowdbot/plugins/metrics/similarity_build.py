@@ -89,9 +89,9 @@ class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec], declared=PATH_
 
 
 class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec], declared=HEADING_SIMILARITY):
-    """Scores ``heading_similarity``: ``literal``: mean ratio of signed rates.
+    """Scores ``heading_similarity``: the ratio of mean absolute turning rates.
 
-    ``corrected``: ratio of mean absolute rates.
+    ``literal``: the mean ratio of signed rates.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

@@ -73,7 +73,7 @@ class SuccessNoCollision(DeclaredMetric[SuccessNoCollisionSpec], declared=SUCCES
 
 
 class Timeout(DeclaredMetric[TimeoutSpec], declared=TIMEOUT):
-    """Scores ``timeout``: the opposite of ``success``."""
+    """Scores ``timeout``: 1 if the robot did not arrive, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         if reason := without_task(run):

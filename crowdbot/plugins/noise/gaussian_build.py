@@ -9,7 +9,7 @@ from crowdbot.plugins.noise.gaussian import GaussianSpec
 
 
 class Gaussian:
-    """Draws for every beam, so that a beam's noise does not depend on the other beams' hits."""
+    """Draws one number for every beam, so that beams are independent of each other's hits."""
 
     random = True
 

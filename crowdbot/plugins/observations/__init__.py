@@ -1,1 +1,1 @@
-"""Observations of policies that learn."""
+"""Observations of learned policies."""

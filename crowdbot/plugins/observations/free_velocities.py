@@ -1,4 +1,4 @@
-"""Observation of how long the robot could keep each of a fan of velocities."""
+"""Observation: for each of a fan of velocities, how long the robot could keep it."""
 
 from __future__ import annotations
 
@@ -24,18 +24,17 @@ HalfTurn = Annotated[float, Gt(0.0), Le(3.141592653589793)]
 
 
 class FreeVelocitiesSpec(ObservationSpec):
-    """A fan of velocities with how free each is, what is near, then goal and motion.
+    """A fan of velocities with the free time and gap of each, nearest obstacles, goal and motion.
 
     A velocity is a direction beside the robot's heading with a share of its largest speed; the last
     one is to stand. Two numbers say how free it is, if the robot had it now and people kept theirs:
-    the time to the first contact with a person or a wall, divided by ``horizon``, and the least
-    gap on the way, divided by ``room``; 1 is free. Then follow the gap to what is nearest in each
+    the time to the first contact with a person or a wall, divided by ``horizon``, and the least gap
+    on the way, divided by ``room``; 1 is free. Then follow the gap to what is nearest in each
     sector, divided by ``range``, from behind counter-clockwise; of the nearest people 1 (0 for no
     one, and then all are 0), x and y in the robot's frame divided by ``range``, and their velocity
-    in that frame divided by ``fastest``; and goal and motion as of ``lidar_stack``.
-
-    People are those whom the people tracker follows in the lidars; in a batch of worlds, where
-    there is no tracker, those who are within ``range``. So the policy is not privileged.
+    in that frame divided by ``fastest``; and goal and motion as of ``lidar_stack``. People are
+    those whom the people tracker follows in the lidars; in a batch of worlds, where there is no
+    tracker, those who are within ``range``. So the policy is not privileged.
     """
 
     kind: Literal["free_velocities"] = "free_velocities"

@@ -1,4 +1,4 @@
-"""Observation of how free velocities are; compiled."""
+"""Compute the free time and gap of velocities; compiled."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _X, _Y, _VX, _VY, _RADIUS = range(5)
 
 
 class FreeVelocities:
-    """Tests velocities against people and returns; keeps nothing but scratch."""
+    """Tests velocities against people and lidar returns; keeps no memory but scratch."""
 
     def __init__(self, spec: FreeVelocitiesSpec, context: LearningContext) -> None:
         self._spec, self._limits = spec, context.limits
@@ -50,7 +50,7 @@ class FreeVelocities:
         )  # fmt: skip
 
     def observe(self, seen: RobotInputs) -> NDArray[np.float32]:
-        """Return (W, N): how free velocities are, gaps, people, goal, motion."""
+        """Return (W, N): free time and gap of each velocity, gaps, people, goal, motion."""
         spec = self._spec
         found = np.zeros((len(seen.pose), len(self.low)), np.float32)
         points = np.concatenate(

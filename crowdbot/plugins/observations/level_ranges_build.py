@@ -1,4 +1,4 @@
-"""Distances over the floor that sensors of distances measure, in layers of beams."""
+"""Horizontal distances measured by range sensors, in layers of beams."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ _FLOOR = 0.1
 
 
 def level_ranges(info: SensorInfo, values: Array) -> Array:
-    """Return ranges (W, L, B) of readings, m; inf for no return.
+    """Return horizontal ranges (W, L, B), m; inf for no return.
 
-    Those of a lidar, a sonar or an infrared sensor stay. A depth camera measures along its axis:
-    its pixels become distances over the floor, counter-clockwise, without those of the floor.
+    Readings of a lidar, a sonar or an infrared sensor stay unchanged. A depth camera measures along
+    its axis: its pixels are converted to distances over the floor, counter-clockwise, without those
+    that hit the floor.
 
     Args:
         values: (W, ...) readings of one sensor.

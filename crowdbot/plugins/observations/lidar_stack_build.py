@@ -13,7 +13,7 @@ from crowdbot.plugins.observations.lidar_stack import LidarStackSpec
 
 
 class LidarStack:
-    """Keeps the sectors of the last scans of each world, all that a stride later needs."""
+    """Keeps the sectors of the last scans of each world, as many as the stride needs."""
 
     def __init__(self, spec: LidarStackSpec, context: LearningContext) -> None:
         self._spec, self._limits = spec, context.limits

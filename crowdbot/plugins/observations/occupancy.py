@@ -1,4 +1,4 @@
-"""Observation of a grid of what a lidar hits around the robot."""
+"""Observation: an occupancy grid of lidar returns around the robot."""
 
 from __future__ import annotations
 

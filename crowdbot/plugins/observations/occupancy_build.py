@@ -1,4 +1,4 @@
-"""Observation of a grid of what a lidar hits."""
+"""Observation: an occupancy grid of lidar returns."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.plugins.observations.occupancy import OccupancySpec
 
 
 class OccupancyGrid:
-    """Marks the cells of all returns of the latest scan; keeps nothing."""
+    """Marks the cells with returns of the latest scan; keeps no memory."""
 
     def __init__(self, spec: OccupancySpec, context: LearningContext) -> None:
         self._spec, self._limits = spec, context.limits

@@ -10,7 +10,7 @@ from crowdbot.plugin import Array, LidarPoints, Observation, PeopleTracker, Sens
 
 
 class TrackedPeople:
-    """Follows people in a robot's lidars from the beginning of a run.
+    """Tracks people in a robot's lidars from the beginning of a run.
 
     Args:
         sensors: those that the policy gets.

@@ -16,7 +16,7 @@ _COLUMNS = 6
 
 
 class TrackRows:
-    """Sorts people by distance; keeps nothing but scratch."""
+    """Sorts people by distance; keeps no memory but scratch."""
 
     def __init__(self, spec: TracksSpec, context: LearningContext) -> None:
         self._spec, self._limits = spec, context.limits

@@ -1,4 +1,4 @@
-"""Observation of everything, in the world's frame."""
+"""Observation of the ground truth, in the world frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Observation of everything."""
+"""Observation of the ground truth."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _COLUMNS = 6
 
 
 class EverythingSeen:
-    """Keeps nothing; people come in the order of their rows."""
+    """Returns robot and people; people are in the order of their ids."""
 
     def __init__(self, spec: TruthSpec, context: LearningContext) -> None:
         self._spec, self._limits = spec, context.limits

@@ -1,1 +1,1 @@
-"""Planners: floors that see nothing or only stop, a baseline that finds a way, and a ceiling."""
+"""Planners: floors (blind or only stopping), baselines, a ceiling, adversaries, shared control."""

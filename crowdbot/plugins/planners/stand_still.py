@@ -8,7 +8,7 @@ from crowdbot.plugin import Component, PlannerRole, PlannerSpec
 
 
 class StandStillSpec(PlannerSpec):
-    """Never moves. A planner that scores no better gains its safety by giving up its task."""
+    """Never moves. A planner that scores no better is safe only because it does not do its task."""
 
     role: ClassVar[PlannerRole] = "floor"
     needs: ClassVar[tuple[str, ...]] = ()

@@ -1,1 +1,1 @@
-"""Rewards of policies that learn."""
+"""Rewards for training policies."""

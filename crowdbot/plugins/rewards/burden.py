@@ -1,4 +1,4 @@
-"""Reward of progress that demands little of people."""
+"""Reward of progress, less the burden on people."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.plugins.rewards.progress import Amount, ProgressSpec
 
 
 class BurdenSpec(ProgressSpec):
-    """``progress``, less the work that people need against the robot to keep half a metre of room.
+    """``progress``, less the work that people need to keep half a metre from the robot.
 
     The work is the quantity of the score of burden, ``push_work.rate``.
     """

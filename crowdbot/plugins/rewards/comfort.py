@@ -1,4 +1,4 @@
-"""Reward of progress that leaves people their room."""
+"""Reward of progress, less the discomfort of people."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.plugins.rewards.progress import Amount, ProgressSpec
 
 
 class ComfortSpec(ProgressSpec):
-    """``progress``, less what the robot advances on people who have little room.
+    """``progress``, less the distance driven towards people who have little space.
 
     The distance driven towards people, weighted by what they lack of 0.75 m, is the quantity of the
     score of comfort, ``intrusion.rate``.

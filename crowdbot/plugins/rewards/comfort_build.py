@@ -9,7 +9,7 @@ from crowdbot.plugins.rewards.progress_build import ProgressReward
 
 
 class Comfort:
-    """Progress, less advance on people without room."""
+    """Progress, less the distance driven towards people with little space."""
 
     def __init__(self, spec: ComfortSpec, context: LearningContext) -> None:
         self._advance, self._progress = spec.advance, ProgressReward(spec, context)

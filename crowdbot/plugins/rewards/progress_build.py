@@ -10,7 +10,7 @@ from crowdbot.plugins.rewards.progress import ProgressSpec
 
 
 class ProgressReward:
-    """A sum of parts."""
+    """Weighted sum of progress and costs."""
 
     def __init__(self, spec: ProgressSpec, context: LearningContext) -> None:
         self._spec, self._step, limits = spec, context.step, context.limits

@@ -1,4 +1,4 @@
-"""Sparse reward: arrival, contact, and little room."""
+"""Sparse reward: arrival, contact, and little space around people."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from crowdbot.plugins.rewards.sparse import SparseSpec
 
 
 class Sparse:
-    """Arrival comes before contact, contact before little room."""
+    """Reward of arrival, else of contact, else of little space."""
 
     def __init__(self, spec: SparseSpec) -> None:
         self._spec = spec

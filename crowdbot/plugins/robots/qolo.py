@@ -20,8 +20,8 @@ from crowdbot.plugins.robots.limits import (
 class QoloSpec(LimitedRobotSpec):
     """Qolo with limits and outline of EPFL's controller; the mass, with rider, is proposed.
 
-    The original's prefab weighs 254 kg. Its motors cannot turn at full speed, which a box of limits
-    does not express.
+    The original's prefab weighs 254 kg. The real motors cannot turn the robot at full speed, which
+    a box of limits cannot express.
     """
 
     kind: Literal["qolo"] = "qolo"

@@ -15,8 +15,8 @@ from crowdbot.plugins.robots.body_part import BLACK, SILVER, Colour, Part, Vecto
 class Wheel(NamedTuple):
     """A driven wheel: m, kg, and the largest torque of its motor, N m.
 
-    A ``slim`` wheel touches with an ellipsoid of its own width; the sphere of a large wheel would
-    stick out of the robot.
+    A ``slim`` wheel touches the floor with an ellipsoid of its own width; the sphere of a large
+    wheel would exceed the robot's width.
     """
 
     radius: float
@@ -99,7 +99,7 @@ def box(x: float, y: float, z: float) -> str:
 
 
 def seen(part: Part) -> str:
-    """Return the appearance of a part."""
+    """Return the appearance of a part as SDFormat."""
     a, b, c = part.size
     shape = box(a, b, c) if part.shape == "box" else cylinder(a, c)
     return visual(part.name, part.at, shape, part.colour, part.pitch)

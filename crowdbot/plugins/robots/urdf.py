@@ -95,7 +95,7 @@ class UrdfFields(RobotSpec):
         return self
 
     def described(self) -> Mapping[DescribedPart, Collection[str]]:
-        """Return the names of links and joints in the file, unless a build has to read it."""
+        """Return the names of links and joints; empty if the file has to be converted first."""
         if not self.file.is_found:
             return {}
         try:
@@ -104,7 +104,7 @@ class UrdfFields(RobotSpec):
             return {}
 
     def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
-        """Yield the base, and the joints that are held and driven."""
+        """Yield the base link, and the fixed and driven joints."""
         yield "link", self.base, ("base",)
         for joint in self.positions:
             yield "joint", joint, ("positions", joint)
@@ -138,7 +138,7 @@ class DrivenWheels(Spec):
 
     @property
     def sides(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Return the joints of the left and of the right."""
+        """Return the joints of the left and of the right wheels."""
         left, right = ((x,) if isinstance(x, str) else x for x in (self.left, self.right))
         return left, right
 
@@ -188,7 +188,7 @@ class HolonomicUrdfSpec(UrdfFields):
     )
 
     def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
-        """Yield the base, the joints that are held, and those of the wheels."""
+        """Yield the base link, the fixed joints, and those of the wheels."""
         yield from super().named()
         for n, joint in enumerate(self.drive.joints):
             yield "joint", joint, ("drive", "joints", n)

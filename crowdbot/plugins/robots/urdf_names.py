@@ -12,7 +12,7 @@ _LEFT_TO_BUILD = ("${", "$(", "xacro:", "<!DOCTYPE", "<!ENTITY")
 
 
 def urdf_names(file: Path) -> dict[DescribedPart, frozenset[str]]:
-    """Return the names of links and joints; empty if a build has to read the file.
+    """Return the names of links and joints; empty if the file has to be converted first.
 
     Raises:
         OSError: it cannot be read.

@@ -1,1 +1,1 @@
-"""Sensors."""
+"""Sensors: lidars, range sensors, cameras, odometry, IMU, contact, joysticks."""

@@ -1,4 +1,4 @@
-"""Joystick: a driver with a shaky hand points the stick at the goal; or commands are replayed.
+"""Joystick: a simulated driver with a shaky hand steers for the goal; or commands are replayed.
 
 The sideways deflection is proportional to the angle between heading and goal, the forward
 deflection to its cosine; near the goal the stick returns to the centre. The hand's error is an
@@ -109,5 +109,5 @@ def _full(deflection: float) -> float:
 
 
 def build(spec: JoystickSpec, context: SensorContext) -> Joystick:
-    """Return a joystick; goal and limits that the spec leaves open are the robot's."""
+    """Return a joystick; goal and limits default to those of the robot."""
     return Joystick(spec, context)

@@ -31,7 +31,7 @@ _AIM_ASIDE = (0.0, -0.8, 0.8)  # share of the trunk's radius
 
 
 class PeopleTrackerSensor:
-    """Reading: (max_people, 5) id, x, y, vx, vy in the axes of base_link."""
+    """Reading: (max_people, 5) id, x, y, vx, vy in the axes of base_link; m, m/s."""
 
     def __init__(self, spec: PeopleTrackerSpec) -> None:
         self._spec = spec

@@ -50,7 +50,7 @@ _ROUNDING = 1e-12  # so that the tangent of the zone's own edge is within it
 
 
 def zone_length(angle: Array, length: float, radius: float) -> Array:
-    """Return how far the zone extends at angles to its axis, m; 0 outside."""
+    """Return the length of the zone at angles to its axis, m; 0 outside."""
     sine = np.tan(angle) * 3.0 * math.sqrt(3.0) * length / (8.0 * radius)
     t = math.pi - np.arcsin(np.minimum(sine, 1.0))
     reach: Array = 0.5 * length * (1.0 - np.cos(t)) / np.cos(angle)

@@ -35,7 +35,7 @@ class OdometrySpec(SensorSpec):
     )
 
     def on_robot(self, robot: RobotSpec) -> Self:
-        """Return odometry with the wheels that the robot's firmware believes in, if it says so."""
+        """Return odometry with the wheel sizes of the robot's firmware, if its spec gives them."""
         if robot.wheels is None:
             return self
         radius, track = robot.wheels

@@ -147,5 +147,5 @@ def _wrapped(angle: float) -> float:
 
 
 def build(spec: WheelOdometrySpec | HolonomicOdometrySpec, context: SensorContext) -> WheelOdometry:
-    """Return wheel odometry; wheels that the spec leaves open are the robot's."""
+    """Return wheel odometry; wheels default to those of the robot."""
     return WheelOdometry(spec, context)

@@ -68,7 +68,7 @@ def step(
     reach: float,
     memory: Memory,
 ) -> None:
-    """Bring the tracks to the time of a scan.
+    """Update the tracks with a scan at its time.
 
     Args:
         points: (P, 2) base frame, m, in the order of beams.

@@ -48,7 +48,7 @@ class DriveState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reply:
-    """Faults of the last answer to the page.
+    """Errors of the last answer to the page.
 
     Attributes:
         problem: for the participant; empty if nothing was.

@@ -1,4 +1,4 @@
-"""Effects of a participant's answers: they finish steps and start drives."""
+"""Handling of a participant's answers: they finish steps and start drives."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class RunnerSession:
 
     @property
     def is_over(self) -> bool:
-        """Return True if only the last page is left."""
+        """Return True if all steps are finished."""
         step = self._progress.current()
         return step is None or step.kind == "end"
 
@@ -54,7 +54,7 @@ class RunnerSession:
             return self._state(step).text(step) if step.kind in _DRIVEN else step.name
 
     def answer(self, given: Mapping[str, str]) -> None:
-        """Take what a participant sent; an answer to an earlier step changes nothing."""
+        """Handle an answer of the participant; one for an earlier step is ignored."""
         with self._lock:
             step = self._advance()
             if step is None or given.get("step") != step.name:
@@ -69,7 +69,7 @@ class RunnerSession:
                 self._progress.finish(step, {"driver": self._driver})
 
     def close(self) -> None:
-        """End a drive that goes on."""
+        """End a running drive."""
         with self._lock:
             if self._drive is not None:
                 self._drive.stop()

@@ -34,7 +34,7 @@ class _NoEngine:
 
 
 class PartLibrary(JITCodeLibrary):
-    """One function as intermediate code, which is never compiled to machine code alone."""
+    """One function as intermediate code only, which is compiled as a part of its callers."""
 
     @property
     def codegen(self) -> Any:
@@ -57,7 +57,7 @@ class PartLibrary(JITCodeLibrary):
 
 
 def is_part(result: Any) -> bool:
-    """Return True if a compiled function is a part."""
+    """Return True if a compiled function is stored as intermediate code only."""
     return isinstance(result.library, PartLibrary)
 
 

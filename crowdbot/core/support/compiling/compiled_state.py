@@ -36,7 +36,7 @@ _STATES: WeakKeyDictionary[types.FunctionType, str] = WeakKeyDictionary()
 class CompiledState:
     """Compares and pickles as the hash of a function's state, computed on demand.
 
-    Numba asks for it when a function is declared: callees may be declared later in the same file.
+    Numba asks for it when a function is declared, before later callees in the same file are.
     """
 
     def __init__(self, function: Any) -> None:

@@ -1,4 +1,4 @@
-"""Times of messages: stamps of headers or times of recording, one clock, resets."""
+"""Times of a bag's messages: header stamps or recording times, common clock, clock resets."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _DELAY, _CLOCKS = 0.5, 5.0
 
 
 def filled(stamp: Times, log: Times) -> Times:
-    """Return stamps (K,) where those that are not filled in have been estimated, ns; all 0 if none.
+    """Return stamps (K,), ns, with missing ones estimated; all 0 if there are none.
 
-    The first stamp of a simulator may be 0. Another 0 gets the time of recording, less the delay
-    of the other messages.
+    The first stamp of a simulator may be 0. Another 0 is replaced by the recording time minus the
+    delay of the other messages.
     """
     missing = stamp == 0
     if missing.all() or not missing.any():
@@ -48,7 +48,7 @@ def parts(stamp: Times) -> NDArray[np.int64]:
 
 
 def longest_part(path: Path, topics: Mapping[str, Columns], notes: list[str]) -> dict[str, Columns]:
-    """Return the rows of topics between two resets of the clock: of the longest such part.
+    """Return the rows of topics in the longest period between two resets of the clock.
 
     Raises:
         InputError: the clocks of two topics are reset, and not equally often.
@@ -77,7 +77,7 @@ def longest_part(path: Path, topics: Mapping[str, Columns], notes: list[str]) ->
 
 
 def tell_disorder(topics: Mapping[str, Columns], notes: list[str]) -> None:
-    """Note where stamps go back from one message to the next; rows are sorted by them."""
+    """Add a note where stamps go back from one message to the next; rows are sorted by stamp."""
     for topic, columns in topics.items():
         back = np.diff(columns.stamp[np.diff(columns.message, prepend=-1) > 0])
         if count := np.count_nonzero(back < 0):
@@ -88,9 +88,9 @@ def tell_disorder(topics: Mapping[str, Columns], notes: list[str]) -> None:
 
 
 def common_clock(robot: Columns, people: Columns, notes: list[str]) -> bool:
-    """Return True if the stamps of two topics are of one clock, False to take times of recording.
+    """Return True if the stamps of two topics are of one clock; else use recording times.
 
-    The delay between a stamp and its recording is compared at equal times of recording.
+    The delays between stamps and recording are compared at equal recording times.
     """
     with_stamps = [bool(c.stamp.any()) for c in (robot, people)]
     if not any(with_stamps):

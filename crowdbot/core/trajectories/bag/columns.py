@@ -1,4 +1,4 @@
-"""Columns of what a topic says of bodies: when, in which frame, and where."""
+"""Tables of the bodies in a topic's messages: time, frame and position."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Columns:
         return len(self.log)
 
     def only(self, rows: NDArray[Any]) -> Columns:
-        """Return some rows: a mask (K,) or their numbers."""
+        """Return some rows, by a mask (K,) or by indices."""
         return replace(
             self,
             log=self.log[rows],
@@ -53,7 +53,7 @@ class Columns:
 
 @dataclass(slots=True)
 class Seen:
-    """One row before the columns are made: a body in a message.
+    """A body in a message, as one row.
 
     Attributes:
         labels: names that the message has for the body, by field.

@@ -1,7 +1,7 @@
-"""Layouts of message types with people that are in no ROS distribution.
+"""Definitions of message types for people that no ROS distribution contains.
 
-A bag of ROS 2 Humble or older in sqlite3 has no definitions of its messages. The layouts are those
-of the packages' .msg files: fields only, since constants are not serialised.
+A bag of ROS 2 Humble or older in sqlite3 has no definitions of its messages. These are those of the
+packages' .msg files: fields only, since constants are not serialised.
 """
 
 from __future__ import annotations

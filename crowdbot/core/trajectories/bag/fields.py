@@ -39,7 +39,7 @@ def header_of(message: Any) -> tuple[int, str]:
 
 
 def place_of(item: Any, depth: int = _DEPTH) -> BagPose | None:
-    """Return where a message, or a part of one, says that something is; None if it does not."""
+    """Return the position in a message, or in a part of one; None if it has none."""
     if item is None or depth == 0:
         return None
     if _is_point(item):
@@ -76,7 +76,7 @@ def yaw_of(q: Any) -> float:
 
 
 def linear_of(item: Any) -> Any:
-    """Return the linear velocity of a twist at any of the usual depths; None without one."""
+    """Return the linear velocity of a twist, which may be nested; None without one."""
     kinematics = getattr(item, "kinematics", item)
     for name in ("twist", "twist_with_covariance", "velocity"):
         found = getattr(kinematics, name, None)

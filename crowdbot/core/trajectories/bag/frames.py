@@ -78,11 +78,11 @@ class FrameTree:
 
     @property
     def frames(self) -> list[str]:
-        """All frames, sorted."""
+        """Return all frames, sorted."""
         return sorted({*self._links, *(link.parent for link in self._links.values())})
 
     def above(self, frame: str) -> list[str]:
-        """Return a frame and those above it, up to the root."""
+        """Return a frame and its ancestors, up to the root."""
         chain = [frame]
         while (link := self._links.get(chain[-1])) is not None and link.parent not in chain:
             chain.append(link.parent)
@@ -127,7 +127,7 @@ class FrameTree:
     def between(
         self, target: str, source: str, t: NDArray[np.int64]
     ) -> tuple[Rotation, Array] | None:
-        """Return what turns points in ``source`` into points in ``target``; None: not connected.
+        """Return the transform of points from ``source`` to ``target``; None if not connected.
 
         Args:
             target, source: frames.

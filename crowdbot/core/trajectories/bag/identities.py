@@ -30,9 +30,9 @@ _EVERYTHING_ELSE = "unknown"
 
 
 def persons_only(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
-    """Return rows of persons; a note says what else was seen.
+    """Return rows of persons; a note counts other objects.
 
-    Objects of unknown kind count only where none is known to be a person.
+    Objects of unknown class are kept only if none is known to be a person.
     """
     roles = Counter(row.role for row in rows)
     wanted = "person" if roles["person"] or not roles[_EVERYTHING_ELSE] else _EVERYTHING_ELSE
@@ -46,7 +46,7 @@ def persons_only(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
 
 
 def label_field(rows: Sequence[Seen]) -> str | None:
-    """Return the field that names people: filled in, and different for all of a message."""
+    """Return the field that identifies people: never empty, and unique within a message."""
     by_message: dict[int, list[Seen]] = {}
     for row in rows:
         by_message.setdefault(row.message, []).append(row)
@@ -66,7 +66,7 @@ def named(rows: Sequence[Seen], field: str) -> list[str]:
 
 
 def places(rows: Sequence[Seen]) -> list[str]:
-    """Return the place of each row in the list of its message."""
+    """Return each row's position in the list of its message."""
     count: Counter[int] = Counter()
     found = []
     for row in rows:
@@ -76,11 +76,10 @@ def places(rows: Sequence[Seen]) -> list[str]:
 
 
 def linked(rows: Sequence[Seen], times: Array, notes: list[str]) -> list[str]:
-    """Return names of people whom messages do not name.
+    """Return identities of people in messages without any.
 
-    The place in the list is the name, if the number of people never changes and no one moves
-    faster than a person; else the nearest position of the message before, where one would be at
-    unchanged velocity.
+    The list position is the identity if the number of people never changes and no one moves faster
+    than a person; otherwise the nearest prediction from the last message at constant velocity.
 
     Args:
         rows: in order of their messages.
@@ -146,9 +145,9 @@ def _by_nearness(lists: Sequence[NDArray[np.int64]], xy: Array, times: Array) ->
 def not_at_origin(
     rows: Sequence[Seen], names: Sequence[str], notes: list[str]
 ) -> NDArray[np.bool_]:
-    """Return which rows (K,) are a place: finite, and no placeholder at exactly (0, 0).
+    """Return a mask of rows (K,) with a position: finite, and no placeholder at exactly (0, 0).
 
-    Trackers fill empty places of their lists with zeros. A row there counts if the person comes
+    Trackers fill unused entries of their lists with zeros. A row there counts if the person comes
     from nearby or goes there, and if it is the only one of its message.
     """
     xy = np.array([row.xyz[:2] for row in rows]).reshape(-1, 2)
@@ -182,9 +181,9 @@ def _is_passing(row: int, track: Sequence[int], xy: Array) -> bool:
 def not_the_robot(
     people: Columns, names: NDArray[Any], robot: Columns | None, notes: list[str]
 ) -> NDArray[np.bool_]:
-    """Return which rows (K,) of people are not the robot's own, which some lists contain.
+    """Return a mask of people's rows (K,) that are not the robot, which some lists contain.
 
-    A track is the robot's if it stands where the robot does, all along.
+    A track is the robot if it has the robot's position all along.
     """
     left = np.ones(len(people), bool)
     if robot is None or not len(robot):

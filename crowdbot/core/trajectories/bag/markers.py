@@ -62,7 +62,7 @@ def shapes(markers: Sequence[Any], log: int, message: int) -> Iterator[Seen]:
 
 
 def without_deleted(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
-    """Return rows of bodies; a note names markers that are not sent to the end, and not deleted."""
+    """Return rows of bodies; a note names markers that stop being sent without being deleted."""
     last = {row.labels["ns and id"]: row for row in rows if _STAYS in row.labels}
     end = max((row.log for row in rows), default=0)
     gone = {row.labels.get("ns and id", ""): row.message for row in rows if row.role == DELETED}
@@ -96,8 +96,8 @@ def _points(marker: Any) -> Iterator[tuple[float, float, float]]:
 def without_parts(rows: Sequence[Seen]) -> list[Seen]:
     """Return rows without shapes that are parts of other bodies, such as a head above a cylinder.
 
-    A group of shapes with one namespace and kind is left out if it stands where those of a likelier
-    kind stand, nearly always; arrows and points, if there is any other shape.
+    Shapes with one namespace and type are left out if they nearly always coincide with shapes of a
+    likelier type; arrows and points are left out if there is any other shape.
     """
     by_group: dict[str, dict[int, list[Seen]]] = {}
     for row in rows:

@@ -60,7 +60,7 @@ def may_list_people(fields: Container[str]) -> bool:
 
 
 def lists_people(message: Any) -> bool | None:
-    """Return True if a message lists bodies with places, False if not, None if its list is empty.
+    """Return True if a message lists bodies with positions; None if its list is empty.
 
     Lists of bare poses and of markers with the shape of a body count, as in `people_in`.
     """

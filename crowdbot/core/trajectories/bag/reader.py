@@ -145,7 +145,7 @@ def _in_order(part: Path) -> tuple[int, str]:
 
 
 def index_hint(path: Path) -> str:
-    """Return what may help if no message of a topic is found: MCAP is read by its index."""
+    """Return a hint if no message of a topic is found: MCAP is read by its index."""
     parts = path.glob("*.mcap") if path.is_dir() else [path]
     if not any(part.suffix == ".mcap" for part in parts):
         return ""

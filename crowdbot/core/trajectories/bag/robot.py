@@ -23,7 +23,7 @@ _SIDEWAYS = 0.01
 
 
 def pose_of(path: Path, topic: str, message: Any, log: int, number: int) -> Seen:
-    """Return where a message says that the robot is, with its velocity if that is there.
+    """Return the robot's pose in a message, with its velocity if there is one.
 
     Raises:
         InputError: it has no pose.
@@ -54,7 +54,7 @@ def _twist(message: Any) -> dict[str, float]:
 
 
 def velocities(columns: Columns) -> dict[str, Array]:
-    """Return v and w, and those in the world's frame of a robot that goes sideways."""
+    """Return v and w, and for a robot that moves sideways its world velocities."""
     values = dict(columns.values)
     sideways, theta = values.pop("vy", None), values.get("theta")
     if theta is None or not np.isfinite(theta).any():
@@ -75,7 +75,7 @@ def split_name(robot: str | None) -> tuple[str | None, str | None]:
 
 
 def base_frame(path: Path, tree: FrameTree, frame: str) -> str:
-    """Return the robot's frame in a tree: the named one, else that of the base.
+    """Return the robot's frame in a tree: the named one, else its base frame.
 
     Raises:
         UnknownNameError: there is no such frame.
@@ -101,13 +101,13 @@ def base_frame(path: Path, tree: FrameTree, frame: str) -> str:
 
 
 def world_frame(tree: FrameTree, base: str, people: Sequence[str]) -> str:
-    """Return the frame for the robot's poses: that of the people, else one that stands still."""
+    """Return the frame for the robot's poses: that of the people, else a static one."""
     chain = tree.above(base)[1:]
     return next((name for name in (*people, *_WORLDS) if name in chain), chain[-1] if chain else "")
 
 
 def from_tree(tree: FrameTree, base: str, world: str) -> Columns:
-    """Return the poses of a frame, at the times of the transform that was sent most often."""
+    """Return the poses of a frame, at the times of the most frequent transform."""
     t = tree.times(base, world)
     found = tree.between(world, base, t)
     assert found is not None  # the world is above the base

@@ -36,7 +36,7 @@ from crowdbot.errors import InputError
 
 
 class BagTables(NamedTuple):
-    """The tables of two topics, and sentences on what was not read as it stands."""
+    """The tables of two topics, and notes on data that were changed or left out."""
 
     robot: RawTable | None
     people: RawTable | None

@@ -1,1 +1,1 @@
-"""Contacts of the robot with people, judged: does the robot cause them?"""
+"""Fault of the robot in its contacts with people."""

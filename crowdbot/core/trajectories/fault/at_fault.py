@@ -1,4 +1,4 @@
-"""The decision whose fault a contact is; docs/reference/fault.md draws each case."""
+"""The rule if a contact is the robot's fault; docs/reference/fault.md shows each case."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from crowdbot.core.types.arrays import Mask
 def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
     """Return a mask of contacts (K,) that the robot causes.
 
-    It moved towards the person with the touching point although it could have braked, it came over
-    by a turn or a start, it pushed on while the contact lasted, or it cut in before a faster
-    person; not if it stood, and another person shoves it into this one. If the direction or the
-    person is unknown, a moving robot is at fault.
+    It moved towards the person with the touching point although it could have braked, it hit the
+    person by a turn or a start, it kept pushing during the contact, or it cut in before a faster
+    person; not if it stood still and another person pushed it into this one. If the direction or
+    the person is unknown, a moving robot is at fault.
 
     Args:
         run: the run of ``found``.

@@ -28,7 +28,7 @@ _STILL = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultRule:
-    """The rule for whose fault a contact is.
+    """Parameters of the rule if a contact is the robot's fault.
 
     Attributes:
         speed: approach speed below which the robot is not at fault, m/s.
@@ -51,7 +51,7 @@ def braked_in_time(
     agent: NDArray[np.int64],
     jump_speed: float,
 ) -> Mask:
-    """Return (K,) contacts before which the robot was as slow as braking in time allows.
+    """Return a mask of contacts (K,) before which the robot had braked in time.
 
     A contact is foreseeable from the first sample on at which both, keeping their velocities, would
     come within the margin before the robot could react and come to rest. The robot may continue for

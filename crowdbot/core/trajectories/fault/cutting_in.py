@@ -1,4 +1,4 @@
-"""Contacts with people in whose way the robot moved too late for them to stop."""
+"""Contacts with people in whose path the robot moved too late for them to stop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""People whom the robot drives aside: pushed hard, and only their stepping aside avoids contact."""
+"""People whom the robot drives aside: only a strong evasion of the person avoids contact."""
 
 from __future__ import annotations
 

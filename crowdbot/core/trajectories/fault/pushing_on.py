@@ -1,4 +1,4 @@
-"""Contacts in which the robot pushes on: judged while they last, however gently they began."""
+"""Contacts in which the robot keeps pushing, however gently they began."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
 def pushed_on(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
-    """Return a mask of contacts (K,) in which the robot pushes the person on.
+    """Return a mask of contacts (K,) in which the robot keeps pushing the person.
 
-    The robot has the reaction time, then it must slow down from its speed at the onset; a contact
-    that exists in the first sample gives it no speed. A robot that comes nearer faster than that,
-    or moves the person by more than the margin, pushes on. Samples do not count in which the person
+    The robot has the reaction time, then it must slow down from its speed at the onset; for a
+    contact in the first sample that speed is 0. A robot that approaches faster than that, or moves
+    the person by more than the margin, keeps pushing. Samples do not count in which the person
     leaves faster, or in which another person touches the robot from the other side, who may be the
     one that pushes.
 

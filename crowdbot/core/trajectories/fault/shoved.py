@@ -1,4 +1,4 @@
-"""Contacts into which another person shoves a robot that stood."""
+"""Contacts into which another person pushes a standing robot."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from crowdbot.core.types.arrays import Mask
 def shoved_into(
     run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float
 ) -> Mask:
-    """Return a mask of contacts (K,) into which another person shoves the robot.
+    """Return a mask of contacts (K,) into which another person pushes the robot.
 
-    The robot stood before the other person touched it; that contact lasts, is on the other side,
-    and that person moves at least as fast towards the first one as the robot does. A robot that
-    drove before is not excused, nor is one that leaves the person behind it.
+    The robot stood still before the other person touched it; that contact lasts, is on the other
+    side, and that person moves at least as fast towards the first one as the robot does. A robot
+    that drove before is not excused, nor is one that leaves the person behind it.
 
     Args:
         run: the run of ``found``.

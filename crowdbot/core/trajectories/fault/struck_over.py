@@ -32,7 +32,7 @@ _BEFORE, _DRIVES, _BRAKING, _WINDOW, _TURN = 2.0, 0.1, 0.5, 0.5, 0.35
 
 @dataclass(frozen=True, slots=True)
 class Struck:
-    """The touch that made a robot topple.
+    """The contact by which a robot toppled.
 
     Attributes:
         agent: column of the person.
@@ -44,12 +44,12 @@ class Struck:
 
 
 def struck_over(run: Trajectories, toppled_time: float) -> Struck | None:
-    """Return the touch that excuses a robot which toppled; None if nothing does.
+    """Return the contact that excuses a toppled robot; None if none does.
 
-    No contact of the run is its fault; the first touch in the last two seconds is by a faster
-    person who comes from behind; and in the two seconds before the robot drove on, neither braking
-    harder than 0.5 m/s^2 nor turning by more than 20 degrees. So a planner cannot have itself
-    struck: one that stands, brakes in front of people or turns in is not excused.
+    No contact of the run is its fault; the first contact in the last two seconds is by a faster
+    person from behind; and in the two seconds before, the robot drove on, neither braking harder
+    than 0.5 m/s^2 nor turning by more than 20 degrees. So a planner cannot provoke it: a robot that
+    stands, brakes in front of people or turns in is not excused.
 
     Args:
         run: a run with a robot, to the end.

@@ -1,4 +1,4 @@
-"""Contacts that only a change of the robot's own motion made, however late it was foreseeable."""
+"""Contacts caused only by a change of the robot's motion, even if foreseeable too late."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _BEFORE = 2.0
 
 
 def swerved(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
-    """Return a mask of contacts (K,) that the robot made by a turn or a start.
+    """Return a mask of contacts (K,) that the robot caused by a turn or a start.
 
-    The touching point moves towards the person. Had the robot kept the velocity that it had twice
-    the reaction time before, it would have passed by more than the margin; and had the person kept
-    theirs, the robot would have come within the margin all the same. So the person did nothing, and
-    the robot came over. A robot that slows down does not come over.
+    The touching point moves towards the person. Had the robot kept its velocity of two reaction
+    times before, it would have passed at more than the margin; had the person kept theirs, the
+    robot would still have come within the margin. So the robot's change alone caused it. A robot
+    that slows down is not counted.
 
     Args:
         run: the run of ``found``.

@@ -1,4 +1,4 @@
-"""Columns of ids and frames that are exchanged: people then move much less from row to row."""
+"""Detect exchanged columns of ids and frames, since people then move less from row to row."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MUCH_LESS = 0.5
 
 
 def steps(columns: Mapping[str, Array]) -> tuple[float | None, float] | None:
-    """Return how far people move from row to row, as read and exchanged, if that is much less.
+    """Return people's moves from row to row, as read and exchanged, if the latter are far less.
 
     Args:
         columns: id, frame, x, y, each (K,).

@@ -1,4 +1,4 @@
-"""Jumps: steps so much faster than the others that a place was corrected, or an id reused."""
+"""Jumps of robot or people: steps much faster than the others, by corrections or reused ids."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ _TARGET = record_type(_Target)
 
 @array_kernel
 def aim(fx: float, fy: float, agent: AgentRecord, work: Pointer) -> int:
-    """Write the target velocity for a force per mass (m/s^2)."""
+    """Write the target velocity that a force per mass (m/s^2) leads to in one decision."""
     size = math.hypot(fx, fy)
     if size > _LARGEST:
         fx, fy = fx / size * _LARGEST, fy / size * _LARGEST
@@ -57,7 +57,7 @@ def no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Po
 def from_target(
     ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
-    """Return the whole cost."""
+    """Return the cost by the distance from the target velocity."""
     aimed = as_record(work, _TARGET)
     return float(0.5 * ((ux - aimed.vx) ** 2 + (uy - aimed.vy) ** 2) / agent.time_step)
 

@@ -21,14 +21,14 @@ _PARALLEL = 1e-10
 
 @array_kernel
 def put(work: Pointer, k: int, nx: float, ny: float, c: float) -> None:
-    """Write half-plane k; rows of ``work`` have eight columns, row 0 stays free."""
+    """Write half-plane k to ``work``; rows have eight columns, row 0 is reserved."""
     at = 8 + 4 * k
     work[at], work[at + 1], work[at + 2] = nx, ny, c
 
 
 @array_kernel
 def violation(work: Pointer, k: int, ux: float, uy: float) -> float:
-    """Return how far u is outside half-plane k, m/s."""
+    """Return how far velocity u is outside half-plane k, m/s."""
     at = 8 + 4 * k
     return float(work[at + 2] - work[at] * ux - work[at + 1] * uy)
 

@@ -92,10 +92,10 @@ def is_out_of_the_way(
     rx: float, ry: float, d2: float, vx: float, vy: float, radius: float, horizon: float,
     ax: float, ay: float, spread: float,
 ) -> bool:  # fmt: skip
-    """Return True if both half-planes of a wall clearly hold a disc of velocities.
+    """Return True if a wall's two half-planes clearly change nothing.
 
-    For most walls this needs no root: the second half-plane touches the cut-off disc of radius
-    reach / horizon, and its normal points from this disc's centre to the own velocity.
+    Usually decided without a square root. The second half-plane touches the cut-off disc, and is c
+    - reach away from 0, where c is the part of the disc's centre along its normal.
 
     Args:
         rx, ry, d2: nearest point of the wall and its squared distance.

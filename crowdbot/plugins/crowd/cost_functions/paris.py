@@ -21,7 +21,7 @@ from crowdbot.plugin import (
 
 
 class ParisSpec(CostFunctionSpec):
-    """Weighs, for each direction, the speeds that pass in front of or behind others."""
+    """Rates each direction by the speeds at which an agent passes in front of or behind others."""
 
     kind: Literal["paris"] = "paris"
     weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")

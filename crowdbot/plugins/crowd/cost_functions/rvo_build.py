@@ -111,7 +111,7 @@ def _lower_bound(
 
 
 def build(spec: RvoSpec) -> CompiledCost:
-    """Return the compile-time functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,

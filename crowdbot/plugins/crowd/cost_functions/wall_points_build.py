@@ -25,22 +25,22 @@ _FIRST = 8
 
 @array_kernel
 def choose(k: int, s: int, work: Pointer) -> int:
-    """Note wall s as number k of those chosen; return the number of these."""
+    """Append wall s to the chosen ones; return their number."""
     work[_FIRST + k] = s
     return k + 1
 
 
 @array_kernel
 def chosen(k: int, work: Pointer) -> int:
-    """Return the index of wall number k of those chosen."""
+    """Return the index of the k-th chosen wall."""
     return int(work[_FIRST + k])
 
 
 @array_kernel
 def leave_out_repeated(walls: Rows[WallRecord], count: int, work: Pointer) -> int:
-    """Leave out chosen walls with the nearest point of a wall chosen before; return how many stay.
+    """Remove chosen walls whose nearest point repeats an earlier one; return their number.
 
-    A table of cells finds equal points, so that the time grows as the number of walls does.
+    A hash table of cells finds equal points, so that time grows linearly with the number of walls.
     """
     size, stay = 2, 0
     while size < 2 * count:

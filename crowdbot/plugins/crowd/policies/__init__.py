@@ -1,1 +1,1 @@
-"""Crowd policies: how people decide where to walk."""
+"""Crowd policies: models of people's walking decisions."""

@@ -23,7 +23,7 @@ from crowdbot.plugins.crowd.policies.velocity_space_build import build as veloci
 
 
 class Replay:
-    """Keeps the recorded speed, and returns to the record after a push."""
+    """Agents walk with the recorded velocity, and return to the record after a push."""
 
     walks_through_walls = True
 
@@ -43,7 +43,7 @@ class Replay:
 
 
 class ReactiveReplay:
-    """Follows another policy towards where the recorded people were a little later."""
+    """Agents walk by another policy towards the recorded position some seconds ahead."""
 
     def __init__(self, record: RecordedCrowd, inner: CrowdPolicy, ahead: float) -> None:
         self._record, self._inner, self._ahead = record, inner, ahead
@@ -60,10 +60,7 @@ class ReactiveReplay:
 
 
 def places(record: RecordedCrowd, view: CrowdView, t: float) -> Array:
-    """Return recorded positions (N, 2) at a time, m.
-
-    The agent's own position if not in the world.
-    """
+    """Return the recorded positions (N, 2) at a time, m; the agent's own before and after."""
     found = view.position.copy()
     for i in np.flatnonzero(view.present):
         found[i] = record.at(int(view.agents.id[i]), t)

@@ -25,7 +25,7 @@ _RADII = ("preferred_speed", "maximum_speed", "maximum_acceleration")
 
 
 def sampling_of(spec: VelocitySpaceSpec) -> Sampling:
-    """Return the candidates that a spec asks for."""
+    """Return the candidate velocities of a spec."""
     return Sampling(
         speeds=spec.speeds,
         angles=spec.angles,
@@ -39,7 +39,7 @@ def sampling_of(spec: VelocitySpaceSpec) -> Sampling:
 
 
 def candidates_of(spec: VelocitySpaceSpec) -> VelocityCandidates | None:
-    """Return candidates relative to the goal direction, if the same at each decision."""
+    """Return candidates relative to the goal direction, if they never change; else None."""
     s = sampling_of(spec)
     fixed = spec.method == "sampling" and not s.random and spec.relaxation_time > 0.0
     if not fixed or (s.base, s.direction, s.radius) != (ZERO, ALONG_PREFERRED, PREFERRED_SPEED):

@@ -1,4 +1,4 @@
-"""Walker: a person who is led by commands, live or recorded."""
+"""Walker: people who follow velocity commands, live or recorded."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ WalkCommand = Annotated[
 
 
 class WalkerSpec(CrowdPolicySpec):
-    """Agents walk as they are told, within their largest speed and acceleration.
+    """Agents follow commanded velocities, within their largest speed and acceleration.
 
-    `crowdbot walk` tells them from a page; without a page they follow ``recorded``, or stand. They
-    avoid no one by themselves, and neither robots nor groups nor steering change what they want;
-    bodies and walls stop them as anyone. Other people see and avoid them.
+    `crowdbot walk` commands them from a page; without a page they follow ``recorded``, or stand.
+    They avoid no one by themselves, and neither robots nor groups nor steering change their
+    velocity; bodies and walls stop them like anyone. Other people see and avoid them.
     """
 
     kind: Literal["walker"] = "walker"

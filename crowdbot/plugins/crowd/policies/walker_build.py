@@ -13,7 +13,7 @@ from crowdbot.plugins.crowd.policies.walker import WalkerSpec
 
 
 class Walker:
-    """Wants the commanded velocity.
+    """Agents want the commanded velocity.
 
     Attributes:
         commanded: True: nothing else changes what its agents want.
@@ -28,7 +28,7 @@ class Walker:
         self._source: Callable[[float], tuple[float, float]] = self._played
 
     def lead(self, source: Callable[[float], tuple[float, float]]) -> None:
-        """Obey a function from a time (s) to the velocity (m/s) then."""
+        """Use a function from time (s) to velocity (m/s) as the command."""
         self._source = source
 
     def velocities(self, view: CrowdView, dt: float) -> Array:

@@ -15,7 +15,7 @@ _BUILD = "crowdbot.plugins.planners.adversaries.adversaries_build"
 
 
 class BullySpec(PlannerSpec):
-    """Drives straight on, and brakes only where the rule of fault asks for it."""
+    """Drives straight on, and brakes only where the rule of fault requires it."""
 
     role: ClassVar[PlannerRole] = "adversary"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
@@ -33,7 +33,7 @@ class WallBullySpec(PlannerSpec):
 
 
 class NeverAsideSpec(PlannerSpec):
-    """Waits for people on its straight way, and never goes aside."""
+    """Waits for people in its straight path, and never evades."""
 
     role: ClassVar[PlannerRole] = "adversary"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
@@ -42,7 +42,7 @@ class NeverAsideSpec(PlannerSpec):
 
 
 class ShieldSpec(PlannerSpec):
-    """Follows the nearest person ahead at a hand's breadth, who clears the way."""
+    """Follows closely behind the nearest person ahead, who clears the path."""
 
     role: ClassVar[PlannerRole] = "adversary"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
@@ -78,7 +78,7 @@ class LaneWaiterSpec(PlannerSpec):
 
 
 class CreepSpec(PlannerSpec):
-    """Creeps at people more slowly than a fault needs, and pushes them aside."""
+    """Pushes people aside at a speed below that of the rule of fault."""
 
     role: ClassVar[PlannerRole] = "adversary"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
@@ -141,7 +141,7 @@ class LateStartSpec(PlannerSpec):
 
 
 class DrawReplaySpec(PlannerSpec):
-    """Remembers published crowds, and drives blindly at a time at which it worked."""
+    """Recognises published crowds, and drives blindly with a start time that worked for them."""
 
     role: ClassVar[PlannerRole] = "adversary"
     needs: ClassVar[tuple[str, ...]] = ("lidar",)

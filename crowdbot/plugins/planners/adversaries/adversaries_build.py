@@ -1,4 +1,4 @@
-"""The adversaries: each a few lines on the same blind driver with a look ahead."""
+"""The adversaries: variations of one blind driver with a look ahead."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _BODY = 0.15
 
 
 class Bully:
-    """Heads for the goal and brakes as late as the rule of fault allows."""
+    """Adversary that heads for the goal and brakes as late as the rule of fault allows."""
 
     def __init__(self, spec: object = None, seek: GoalSeek | WallHug | None = None) -> None:
         del spec
@@ -56,23 +56,23 @@ class Bully:
         return Command(*self.drive(obs, points, v, w))
 
     def aim(self, obs: Observation, points: Array) -> Observation:
-        """Return the observation with the goal to head for."""
+        """Return the observation with another goal to head for."""
         del points
         return obs
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the blind command, changed as the adversary does; here it brakes late."""
+        """Return the blind command as changed by the adversary; here it brakes late."""
         del obs
         return self.late(self.room(points), v), w
 
     def room(self, points: Array, sign: float = 1.0) -> float:
-        """Return the free way straight ahead (``sign`` -1: behind), m."""
+        """Return the free distance straight ahead (``sign`` -1: behind), m."""
         x, y = sign * points[:, 0], points[:, 1]
         inside = (np.abs(y) <= self._half + _BODY) & (x > 0.0)
         return float(np.min(x[inside], initial=math.inf)) - self._front - _BODY
 
     def late(self, room: float, v: float) -> float:
-        """Return the speed if braking begins only when a contact is foreseeable."""
+        """Return the largest speed at which no contact is foreseeable yet, m/s."""
         reach = _REACTION * v + v * v / (2.0 * _BRAKING)
         return v if room > reach else min(v, math.sqrt(2.0 * _BRAKING * max(0.0, room - 0.02)))
 
@@ -83,10 +83,10 @@ class Bully:
 
 
 class Shield(Bully):
-    """Heads for the nearest thing ahead that is not a wall beside, and keeps close behind it."""
+    """Adversary that follows closely behind the nearest thing ahead, walls excepted."""
 
     def aim(self, obs: Observation, points: Array) -> Observation:
-        """Return the nearest point in a narrow cone as the goal, if there is one."""
+        """Return the observation with the nearest point in a narrow cone as goal, if any."""
         distance, angle = np.hypot(*points.T), np.arctan2(points[:, 1], points[:, 0])
         seen = (np.abs(angle) < 0.4) & (distance < 2.5)
         if not seen.any():
@@ -98,19 +98,19 @@ class Shield(Bully):
 
 
 class Strobe(Bully):
-    """Drives for a second and rests for half of one."""
+    """Adversary that drives for a second and rests for half a second."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command, or rest."""
+        """Return the late command, or zero."""
         moves = math.fmod(obs.t, 1.5) < 1.0
         return (self.late(self.room(points), v), w) if moves else (0.0, w)
 
 
 class Curtsey(Bully):
-    """Slows down for half a second when someone is near; then it drives on for three."""
+    """Adversary that brakes for half a second near someone, then drives on for three."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return a token of braking, then the late command."""
+        """Return a short braking, then the late command."""
         if self.since is None or obs.t > self.since + 3.5:
             self.since = obs.t if self.room(points) < 1.2 else None
         bows = self.since is not None and obs.t < self.since + 0.5
@@ -118,10 +118,10 @@ class Curtsey(Bully):
 
 
 class LaneWaiter(Bully):
-    """Waits for a free lane of 3 m, then does not look again for 2 s."""
+    """Adversary that waits for a free lane of 3 m, then drives 2 s without looking."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the blind command within a dash, else rest."""
+        """Return the blind command within a dash, else zero."""
         room = self.room(points)
         if room > 3.0:
             self.since = obs.t
@@ -130,33 +130,33 @@ class LaneWaiter(Bully):
 
 
 class Creep(Bully):
-    """Drives on at 0.045 m/s where others would stop."""
+    """Adversary that drives on at 0.045 m/s where others would stop."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command, but never less than a creep."""
+        """Return the late command, but never a lower speed than 0.045 m/s."""
         del obs
         return max(min(v, 0.045), self.late(self.room(points), v)), w
 
 
 class Reverse(Bully):
-    """Turns its back to the goal and drives backwards."""
+    """Adversary that turns its back to the goal and drives backwards."""
 
     def aim(self, obs: Observation, points: Array) -> Observation:
-        """Return the observation of a robot whose front is its back."""
+        """Return the observation with the heading reversed."""
         del points
         return replace(obs, pose=obs.pose._replace(yaw=obs.pose.yaw + math.pi))
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command backwards."""
+        """Return the late command, backwards."""
         del obs
         return -self.late(self.room(points, -1.0), v), w
 
 
 class Weave(Bully):
-    """Swings by 0.6 rad to either side, every 4 s."""
+    """Adversary that swings by 0.6 rad to either side, every 4 s."""
 
     def aim(self, obs: Observation, points: Array) -> Observation:
-        """Return a goal to the side of the goal."""
+        """Return the observation with a goal beside the real one."""
         del points
         x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
         if math.hypot(x, y) < 2.0:
@@ -167,29 +167,29 @@ class Weave(Bully):
 
 
 class Park(Bully):
-    """Does not move."""
+    """Adversary that does not move."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return rest."""
+        """Return zero."""
         del obs, points, v, w
         return 0.0, 0.0
 
 
 class Quitter(Bully):
-    """Stops for good at the first encounter."""
+    """Adversary that stops for good at the first encounter."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command until something is near ahead."""
+        """Return the late command until something is near ahead, then zero."""
         if self.since is None and self.room(points) < 1.5:
             self.since = obs.t
         return (v, w) if self.since is None else (0.0, 0.0)
 
 
 class GapRush(Bully):
-    """Heads for the direction with the longest free way, of seven."""
+    """Adversary that heads for the longest free of seven directions."""
 
     def aim(self, obs: Observation, points: Array) -> Observation:
-        """Return a goal in that direction."""
+        """Return the observation with a goal in that direction."""
         x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
         best, turn = -math.inf, 0.0
         error = math.remainder(math.atan2(y, x) - obs.pose.yaw, 2.0 * math.pi)
@@ -204,10 +204,10 @@ class GapRush(Bully):
 
 
 class LateStart(Bully):
-    """Waits until nothing was within 4 m ahead for 3 s, at most 40 s."""
+    """Adversary that waits until nothing was within 4 m ahead for 3 s, at most 40 s."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return rest at the start, then the blind command."""
+        """Return zero at the start, then the blind command."""
         if self.since is None or (obs.t < self.since + 3.0 and self.near(points, 4.0)):
             self.since = obs.t
         goes = obs.t >= min(self.since + 3.0, 40.0)
@@ -216,14 +216,14 @@ class LateStart(Bully):
 
 
 class DrawReplay(Bully):
-    """Recognises a known draw by its first scan, and starts after the best delay for it."""
+    """Adversary that recognises a crowd by the first scan, and starts after its best delay."""
 
     def __init__(self, spec: specs.DrawReplaySpec) -> None:
         super().__init__()
         self._memory, self._delay = spec.memory, -1.0
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return rest, then the blind command; unknown crowds have no delay."""
+        """Return zero, then the blind command; unknown crowds have no delay."""
         if self._delay < 0.0:
             mark = fingerprint(points)
             obs.log("draw_replay/known", float(mark in self._memory))
@@ -232,13 +232,13 @@ class DrawReplay(Bully):
 
 
 def fingerprint(points: Array) -> str:
-    """Return a name of a scan that is equal for equal crowds, up to 0.5 m."""
+    """Return a hash of a scan, equal for equal crowds, with a resolution of 0.5 m."""
     cells = sorted({(round(2.0 * x), round(2.0 * y)) for x, y in points.tolist()})
     return hashlib.sha256(repr(cells).encode()).hexdigest()[:16]
 
 
 def build_never_aside(spec: specs.NeverAsideSpec) -> StopAndGo:
-    """Build `stop_and_go` without its way aside."""
+    """Build `stop_and_go` without evasion."""
     del spec
     return StopAndGo(StopAndGoSpec(most_aside=0.0))
 

@@ -1,4 +1,4 @@
-"""CADRL: the action after which the worst pair of robot and person is valued most."""
+"""CADRL: takes the action with the best value of the worst pair of robot and person."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crowdbot.plugins.planners.shared.learned import ValueSearchSpec
 
 
 class CadrlSpec(ValueSearchSpec):
-    """Runs weights that the user names; crowdbot ships none."""
+    """Uses a file of weights given by the user; crowdbot ships none."""
 
     kind: Literal["cadrl"] = "cadrl"
 

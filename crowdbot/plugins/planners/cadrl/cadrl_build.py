@@ -1,4 +1,4 @@
-"""CADRL: a value network of one robot and one person; of several people the least value counts.
+"""CADRL: a value network of one robot and one person; with several people the least value counts.
 
 Chen, Liu, Everett, How, "Decentralized non-communicating multiagent collision avoidance with deep
 reinforcement learning", ICRA 2017, in the form of CrowdNav (Chen et al., ICRA 2019).

@@ -1,1 +1,1 @@
-"""The robot as a person of the crowd."""
+"""Planner that decides like a person of the crowd."""

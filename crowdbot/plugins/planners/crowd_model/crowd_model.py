@@ -1,4 +1,4 @@
-"""Crowd model: the robot decides as a person of the crowd engine."""
+"""Crowd model: a planner that decides like a person of the crowd engine."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class CrowdModelSpec(RungSpec):
-    """Knows the truth by default; its drive follows the velocity that a person would choose."""
+    """Follows the velocity that a person in its place would choose; knows the truth by default."""
 
     kind: Literal["crowd_model"] = "crowd_model"
     tracks: Literal["lidar", "tracker", "truth"] = Field(

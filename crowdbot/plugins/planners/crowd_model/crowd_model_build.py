@@ -20,7 +20,7 @@ _NOBODY = np.zeros((0, 5))
 
 
 class CrowdModelPlanner(VelocityPlanner):
-    """Person 0 of an imagined crowd is the robot; the others only stand around it."""
+    """Planner whose robot is person 0 of a predicted crowd, among the nearest people."""
 
     def __init__(self, spec: CrowdModelSpec) -> None:
         super().__init__(spec)
@@ -29,7 +29,7 @@ class CrowdModelPlanner(VelocityPlanner):
         self._lines, self._scratch = np.zeros((_MOST_LINES, 4)), np.zeros((_MOST_LINES, 4))
 
     def forget(self) -> None:
-        """Make the crowd, with the robot's size and speed; compile what is not compiled yet."""
+        """Create the crowd, with the robot's size and speed; compile its kernels."""
         assert self.limits is not None
         speed = np.full(_PEOPLE + 1, 1.4)
         speed[0] = self._spec.speed * self.limits.v_max
@@ -40,7 +40,7 @@ class CrowdModelPlanner(VelocityPlanner):
         self._clear_of_walls(np.ones((1, 2)), np.zeros(2), np.zeros(2), (1.0, 0.0))
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
-        """Return the velocity that a person would take on, m/s."""
+        """Return the velocity that a person would choose, m/s."""
         assert self.limits is not None
         here, own = np.array([scene.pose.x, scene.pose.y]), np.array(velocity_of(scene))
         people = people_near(scene, self.limits.v_max, _HORIZON, _PEOPLE)

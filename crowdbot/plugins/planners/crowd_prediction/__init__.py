@@ -1,1 +1,1 @@
-"""Model-predictive control among people whom the crowd engine predicts on board."""
+"""Model-predictive control among people who are predicted by the crowd engine."""

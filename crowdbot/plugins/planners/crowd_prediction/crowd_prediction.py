@@ -11,9 +11,9 @@ from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec, Weigh
 
 
 class CrowdPredictionSpec(PeopleMpcSpec):
-    """Plans as `people_mpc`; people are predicted to decide as those of a crowd.
+    """Plans as `people_mpc`, among people who are predicted by the crowd engine.
 
-    The prediction is corrected by what the tracker sees: it counts as much as it was right.
+    This prediction and constant velocity are weighted by how accurate each was in the last seconds.
     """
 
     kind: Literal["crowd_prediction"] = "crowd_prediction"  # type: ignore[assignment]

@@ -19,7 +19,7 @@ _SHOWN_STEP = 6
 
 
 class CrowdPrediction(PeopleMpc):
-    """Predicts people with the robot on its last plan among them, then plans again."""
+    """Predicts people's responses to the robot's last plan, then plans again."""
 
     name = "crowd_prediction"
 
@@ -40,7 +40,7 @@ class CrowdPrediction(PeopleMpc):
     def predicted(
         self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
     ) -> Array:
-        """Return where people will be, (T, N, 2); draw it."""
+        """Return people's predicted positions (T, N, 2), m, and draw them."""
         path = np.concatenate([[[scene.pose.x, scene.pose.y]], self.path(scene, aim)])
         numbers = scene.tracks[rows, 0].astype(np.int64)
         people = np.ascontiguousarray(scene.people[rows])

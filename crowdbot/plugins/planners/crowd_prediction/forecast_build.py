@@ -1,9 +1,9 @@
-"""CrowdForecast: people who decide as those of a crowd, as far as they have done so.
+"""CrowdForecast: predicts people by the crowd engine, weighted by its recent accuracy.
 
-Each person is given a wanted velocity, the mean of the last second, and decides by the crowd
-engine among the others and the robot, which drives along its last plan. Two predictions made a
-second ago, of the crowd engine and of people who keep their velocity, are compared with where
-people are now; the mean square errors of the last seconds say how much each counts.
+Each person gets a wanted velocity, the mean of the last second, and decides by the crowd engine
+among the others and the robot, which drives along its last plan. Two predictions made a second ago,
+by the crowd engine and by constant velocity, are compared with people's present positions; their
+mean square errors of the last seconds give the weights.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class CrowdForecast:
 
     @property
     def trust(self) -> float:
-        """Return the weight of the crowd's prediction, 0 to 1."""
+        """Return the weight of the crowd engine's prediction, 0 to 1."""
         kept, crowd = self._errors
         return kept**2 / (kept**2 + crowd**2)
 
@@ -92,7 +92,7 @@ class CrowdForecast:
         radius: float | None,
         step: float,
     ) -> Array:
-        """Return where people will be after each step, (T, N, 2), m.
+        """Return people's positions after each step, (T, N, 2), m.
 
         Args:
             t: s.

@@ -1,1 +1,1 @@
-"""The dynamic window approach in the textbook's parts; ``dead_ends`` has what long robots add."""
+"""DWA, the dynamic window approach, in its textbook parts; ``dead_ends`` is for stuck robots."""

@@ -92,7 +92,7 @@ class DwaSpec(PlannerSpec):
 
     @property
     def wants(self) -> tuple[str, ...]:
-        """Return the near sensors, if it takes them."""
+        """Return the near sensors, if they are to be used."""
         return NEAR_SENSORS if self.near_sensors else ()
 
 

@@ -1,8 +1,8 @@
-"""DWA: see, choose a direction, choose a velocity of the dynamic window.
+"""DWA: perceive, choose a direction, choose a velocity of the dynamic window.
 
 The textbook's part is this file with `window_build`, `rollouts_build`, `cost_build` and
-`direction_build`; `scene_build` makes moving points of lidar scans. What a robot does that comes no
-farther stands in ``dead_ends``.
+`direction_build`; `scene_build` makes moving points of lidar scans. The behaviour of a robot
+without progress is in ``dead_ends``.
 """
 
 from __future__ import annotations
@@ -55,7 +55,10 @@ _REVERSE = -0.2
 
 
 class Dwa:
-    """Remembers its last choice; `PerceivedScene` remembers scans and `DeadEnds` a small map."""
+    """The DWA planner; remembers its last choice.
+
+    `PerceivedScene` remembers scans and `DeadEnds` a small map.
+    """
 
     def __init__(self, spec: DwaSpec) -> None:
         self._spec = spec

@@ -1,4 +1,4 @@
-"""The parameters of dwa as compiled code takes them: a vector, and the names of its entries."""
+"""Parameters of dwa as a vector for compiled code, and the names of its entries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rollouts of the dynamic window: how a robot moves, and how near it comes to points; compiled."""
+"""Rollouts of the dynamic window: the robot's motion, and its distance to points; compiled."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _slewed(value: float, target: float, change: float) -> float:
 
 @kernel
 def slewed_planar(v: float, vy: float, vt: float, vyt: float, change: float) -> tuple[float, float]:
-    """Return a velocity whose change is limited as a vector, as the robot's is."""
+    """Return the velocity after one step towards a target, with a limited change (v, vy)."""
     if vy == vyt:
         return _slewed(v, vt, change), vy
     ahead, aside = vt - v, vyt - vy
@@ -84,7 +84,7 @@ def _nearest(
 
 @array_kernel
 def reachable(points: Array, velocities: Array, p: Array) -> tuple[Array, Array]:
-    """Return the points and velocities (K', 2) that can come near the robot within the horizon."""
+    """Return positions and velocities (K', 2) of points that may come near within the horizon."""
     near, moving, count = np.empty(points.shape), np.empty(points.shape), 0
     for i in range(points.shape[0]):
         x, y, vx, vy = points[i, 0], points[i, 1], velocities[i, 0], velocities[i, 1]

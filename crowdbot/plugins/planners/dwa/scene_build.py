@@ -1,4 +1,4 @@
-"""The scene around a robot as dwa sees it: points that move as earlier scans show, and people."""
+"""Perception of dwa: lidar points with velocities from earlier scans, and people."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _WALKS, _SETTLES, _MOST = 0.5, 1.0, 0.4
 
 
 class PerceivedScene:
-    """Remembers old scans, and whether the people nearby walk.
+    """Remembers earlier scans, and whether the people nearby walk.
 
     Args:
         spec: of the planner.

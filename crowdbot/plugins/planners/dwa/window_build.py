@@ -1,4 +1,4 @@
-"""The dynamic window: velocities that a robot reaches next, as candidates; compiled."""
+"""The dynamic window: velocities that a robot can reach next, as candidates; compiled."""
 
 from __future__ import annotations
 

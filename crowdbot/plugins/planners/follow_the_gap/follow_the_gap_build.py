@@ -26,14 +26,14 @@ _NARROW = 0.1
 
 
 class FollowTheGap(VelocityPlanner):
-    """Remembers nothing."""
+    """The follow-the-gap planner, without memory."""
 
     def __init__(self, spec: FollowTheGapSpec) -> None:
         super().__init__(spec)
         self._spec = spec
 
     def forget(self) -> None:
-        """Do nothing: there is nothing to forget."""
+        """Do nothing, since there is no memory."""
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity towards the gap and the goal, m/s; zero without a gap."""

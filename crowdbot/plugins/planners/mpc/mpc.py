@@ -1,4 +1,4 @@
-"""MPC: a nonlinear program over velocities, people predicted, solved again in each step."""
+"""MPC: a nonlinear program over velocities, with predicted people, solved in each step."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ Weight = Annotated[float, Ge(0)]
 
 
 class MpcSpec(RungSpec):
-    """Needs ``crowdbot[mpc]`` (CasADi). Weights are of squared residuals."""
+    """Parameters of the MPC, which needs ``crowdbot[mpc]`` (CasADi).
+
+    Weights are of squared residuals.
+    """
 
     kind: Literal["mpc"] = "mpc"
     person_radius: NonNegativeLength = Field(

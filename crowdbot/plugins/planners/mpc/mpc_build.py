@@ -1,4 +1,4 @@
-"""MPC: see, predict, improve the last plan or one on another side, drive its beginning.
+"""MPC: perceive, predict, improve the last plan or one on another side, drive its beginning.
 
 After Brito, Floor, Ferranti, Alonso-Mora, "Model predictive contouring control for collision
 avoidance in unstructured dynamic environments", RA-L 4(4), 2019: people are discs that keep their
@@ -39,7 +39,7 @@ _PEOPLE = 40
 
 
 class Mpc:
-    """Remembers its last plan and when it was made."""
+    """The MPC planner; remembers its last plan and its time."""
 
     def __init__(self, spec: MpcSpec, casadi: Any) -> None:
         self._spec, self._casadi = spec, casadi

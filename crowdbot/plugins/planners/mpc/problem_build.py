@@ -1,9 +1,9 @@
-"""The nonlinear program of the MPC: velocities in equal stages, and what they cost.
+"""The nonlinear program of the MPC: velocities in equal stages, and their costs.
 
 Residuals are squared and summed. A plan is single shooting: velocities are the variables, their
 limits and slew are linear constraints, and poses follow from them. Distances to people and walls
-are soft constraints with quadratic slack, which is the square of what is lacking. CasADi
-differentiates; the Hessian is that of Gauss and Newton, so that each quadratic program is convex.
+are soft constraints with quadratic slack. CasADi differentiates; the Hessian is that of Gauss and
+Newton, so that each quadratic program is convex.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _SOLVER = "daqp"
 
 
 class Problem:
-    """Built once, in `reset`; solved from a starting plan in each step.
+    """The program, built in `reset`; solved in each step from a starting plan.
 
     Args:
         casadi: the library.
@@ -68,7 +68,7 @@ class Problem:
         self._slew = np.repeat(np.array(slew) * self.dt, spec.stages)
 
     def cost(self, plan: Array, given: Array) -> float:
-        """Return what a plan (N, 2 or 3) costs."""
+        """Return the cost of a plan (N, 2 or 3)."""
         return float(self._cost(plan.ravel(order="F"), given))
 
     def solve(self, plan: Array, given: Array) -> tuple[Array, float] | None:

@@ -1,6 +1,6 @@
-"""Motion of many rollouts side by side; compiled.
+"""Motion of many rollouts in parallel; compiled.
 
-Each loop goes over rollouts and touches few arrays, so that the compiler takes several at a time.
+Each loop iterates over rollouts and uses few arrays, so that the compiler can vectorise it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ KEPT = 8
 
 
 class RolloutLanes(NamedTuple):
-    """State of rollouts, (LANES,) each.
+    """State of rollouts that are computed in parallel, (LANES,) each.
 
     Attributes:
         x, y, c, s: place, m, and direction: cosine and sine of the heading.
@@ -48,7 +48,7 @@ class RolloutLanes(NamedTuple):
 
 
 def resting_lanes() -> RolloutLanes:
-    """Return lanes at rest."""
+    """Return rollouts' states at rest."""
 
     def one() -> Array:
         return np.zeros(LANES)
@@ -61,7 +61,7 @@ def resting_lanes() -> RolloutLanes:
 
 @kernel
 def begin(lanes: RolloutLanes, state: MotionState) -> None:
-    """Set each lane to a state: x, y, yaw, v, w, vy."""
+    """Set each rollout to a state: x, y, yaw, v, w, vy."""
     c, s = math.cos(state[2]), math.sin(state[2])
     for i in range(lanes.x.shape[0]):
         lanes.x[i], lanes.y[i], lanes.c[i], lanes.s[i] = state[0], state[1], c, s
@@ -96,7 +96,7 @@ def next_knot(
     part: float,
     long: float,
 ) -> None:
-    """Begin the noise between two knots.
+    """Start the interpolation of noise between two knots.
 
     Args:
         noise: (LANES,) what is added now, and its change in a step; written.
@@ -115,14 +115,14 @@ def next_knot(
 
 @kernel
 def go_on(more: Array, grow: Array) -> None:
-    """Take the noise one step on."""
+    """Advance the interpolated noise by one step."""
     for i in range(more.shape[0]):
         more[i] += grow[i]
 
 
 @kernel
 def slew(value: Array, aim: float, more: Array, limits: tuple[float, float, float]) -> None:
-    """Take a velocity to an aim and what is added to it, within limits: low, high, change."""
+    """Move a velocity to a target plus noise, within limits of value and change."""
     low, high, change = limits
     for i in range(value.shape[0]):
         wish = min(max(aim + more[i], low), high)
@@ -131,7 +131,7 @@ def slew(value: Array, aim: float, more: Array, limits: tuple[float, float, floa
 
 @kernel
 def move(lanes: RolloutLanes, dt: float) -> None:
-    """Turn and move all lanes for a time, s."""
+    """Rotate and move all rollouts for a time step, s."""
     c, s, w, v, vy = lanes.c, lanes.s, lanes.w, lanes.v, lanes.vy
     for i in range(c.shape[0]):
         turn, before = w[i] * dt, c[i]
@@ -149,7 +149,7 @@ def move(lanes: RolloutLanes, dt: float) -> None:
 
 @kernel
 def keep(lanes: RolloutLanes, goal: tuple[float, float], kept: Array) -> None:
-    """Write `KEPT` rows (KEPT, LANES) of all lanes."""
+    """Write `KEPT` rows (KEPT, LANES) of all rollouts."""
     x, y = lanes.x, lanes.y
     _copy(x, kept[X])
     _copy(y, kept[Y])

@@ -1,4 +1,4 @@
-"""MPPI: the mean of two thousand noisy controls, each weighted by what it costs."""
+"""MPPI: the mean of two thousand noisy controls, weighted by their costs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ Weight = Annotated[float, Ge(0)]
 
 
 class MppiSpec(RungSpec):
-    """Samples, noise and temperature are nav2's defaults; the weights are ours."""
+    """Parameters of MPPI.
+
+    Samples, noise and temperature are nav2's defaults; the weights are crowdbot's own.
+    """
 
     kind: Literal["mppi"] = "mppi"
     samples: Annotated[int, Ge(10), Le(20_000)] = Field(default=2000, description="Rollouts.")

@@ -1,4 +1,4 @@
-"""MPPI: see, sample around the last plan, drive the mean.
+"""MPPI: perceive, sample around the last plan, drive the weighted mean.
 
 Williams, Drews, Goldfain, Rehg, Theodorou, "Aggressive driving with model predictive path integral
 control", ICRA 2016. Numbers of samples, noise, temperature and control weight are the defaults of
@@ -35,7 +35,7 @@ _HELD, _TOUCH = 0.1, 0.04
 
 
 class Mppi:
-    """Remembers its plan."""
+    """The MPPI planner; remembers its last plan."""
 
     def __init__(self, spec: MppiSpec) -> None:
         self._spec = spec

@@ -1,6 +1,6 @@
-"""Costs of MPPI's rollouts, and the step that improves the plan; compiled.
+"""Costs of MPPI's rollouts, and the update of the plan; compiled.
 
-A rollout ends where it can no longer cost so little that it counts.
+A rollout ends early once its cost is so large that its weight is negligible.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _STANDING = 0.15
 
 
 class Around(NamedTuple):
-    """The surroundings that rollouts are tested against, as `plans_build.PlanWorld`."""
+    """Obstacles and people against which rollouts are tested, as `plans_build.PlanWorld`."""
 
     people: Array
     field: Array

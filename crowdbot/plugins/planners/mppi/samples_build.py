@@ -69,7 +69,7 @@ class Samples(NamedTuple):
 
 @kernel
 def shift(plan: Array) -> None:
-    """Move the plan one step on; the last control is kept."""
+    """Shift the plan by one step; the last control is repeated."""
     for n in range(plan.shape[0] - 1):
         for c in range(3):
             plan[n, c] = plan[n + 1, c]
@@ -89,7 +89,7 @@ def drive(
     first: int,
     noisy: bool,
 ) -> None:
-    """Move lanes along noisy or simple plans, from number ``first``, and keep what they pass."""
+    """Move rollouts along noisy or simple plans, from number ``first``, and store their poses."""
     begin(samples.lanes, state)
     if noisy:
         _weigh(p, samples, first)

@@ -1,1 +1,1 @@
-"""Behaviours of the library navground, to compare ours with."""
+"""Behaviours of the library navground, for comparison."""

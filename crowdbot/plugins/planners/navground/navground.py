@@ -1,4 +1,4 @@
-"""navground: behaviours that others wrote, as planners, to check ours against."""
+"""navground: behaviours of an independent library as planners, for comparison."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class NavgroundSpec(RungSpec):
-    """Needs ``crowdbot[navground]``; defaults are those of our `orca` where it has them."""
+    """Needs ``crowdbot[navground]``; defaults are those of crowdbot's `orca`, where it has them."""
 
     kind: Literal["navground"] = "navground"
     behavior: Literal["ORCA", "HL", "HRVO", "SocialForce", "Dummy"] = Field(

@@ -1,4 +1,4 @@
-"""navground: shows the scene to a behaviour of the library, and drives what it says."""
+"""navground: passes the scene to a behaviour of the library, and drives its command."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _GAIN = 2.5
 
 
 class Navground(VelocityPlanner):
-    """Makes the library's behaviour in `reset`; it remembers no more than its own command."""
+    """Planner that calls the library's behaviour; remembers only its last command."""
 
     def __init__(self, spec: NavgroundSpec, core: Any) -> None:
         super().__init__(spec)
@@ -37,7 +37,7 @@ class Navground(VelocityPlanner):
         self._behavior = made(core, spec)
 
     def forget(self) -> None:
-        """Make the behaviour for the robot."""
+        """Create the behaviour for the robot."""
         assert self.limits is not None
         self._behavior = made(self._core, self._spec)
         self._behavior.kinematics = _kinematics(self._core, self.limits)
@@ -102,7 +102,7 @@ def _set(behavior: Any, name: str, settings: Mapping[str, bool | int | float]) -
 
 
 def show(core: Any, behavior: Any, scene: PlannerScene, view: float) -> None:
-    """Give a behaviour the robot's state, people and what stands.
+    """Pass the robot's state, people and static obstacles to a behaviour.
 
     Args:
         core: the library.

@@ -1,4 +1,4 @@
-"""Oracle: plans with the truth, among people who walk and give way as those of the crowd do."""
+"""Oracle: plans with the ground truth, among people who respond like those of the crowd."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crowdbot.plugins.planners.people_mpc.people_mpc import Weight, hurry_field
 
 
 class OracleSpec(CrowdPredictionSpec):
-    """Plans as `people_mpc`; knows where people are, how wide, and who notices the robot when.
+    """Plans as `people_mpc`, knowing people's positions, sizes and when they notice the robot.
 
     The crowd itself walks on as if the robot was not there: the shortest time to the goal among its
     people counts, and in each plan those who notice the robot give way.

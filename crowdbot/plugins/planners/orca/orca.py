@@ -12,7 +12,7 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class OrcaPlannerSpec(RungSpec):
-    """People are expected to take their share of each evasion, walls none."""
+    """People are assumed to do their share of each evasion; walls do nothing."""
 
     kind: Literal["orca"] = "orca"
     time_horizon: PositiveDuration = Field(

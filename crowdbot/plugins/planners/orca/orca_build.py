@@ -1,9 +1,9 @@
-"""ORCA: half-planes of people and walls, and what the drive can follow.
+"""ORCA: half-planes of people and walls, and velocities that the drive can follow.
 
-A robot that cannot go sideways follows a velocity by turning while it drives, and is meanwhile
-off its line (Alonso-Mora, Breitenmoser, Rufli, Beardsley, Siegwart, "Optimal reciprocal collision
-avoidance for multiple non-holonomic robots", DARS 2013): the radius grows by the largest error,
-and velocities that would need a larger one are not chosen.
+A robot that cannot go sideways follows a velocity by turning while it drives, and is meanwhile off
+its line (Alonso-Mora, Breitenmoser, Rufli, Beardsley, Siegwart, "Optimal reciprocal collision
+avoidance for multiple non-holonomic robots", DARS 2013): the radius grows by the largest error, and
+velocities that would need a larger one are not chosen.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _MOST = 400
 
 
 class Orca(VelocityPlanner):
-    """Chooses in each step from what it sees; remembers nothing else."""
+    """The ORCA planner, without memory."""
 
     def __init__(self, spec: OrcaPlannerSpec) -> None:
         super().__init__(spec)
@@ -34,7 +34,7 @@ class Orca(VelocityPlanner):
         self._lines, self._scratch = np.zeros((_MOST, 4)), np.zeros((_MOST, 4))
 
     def forget(self) -> None:
-        """Compile what is not compiled yet."""
+        """Compile the kernels, if needed."""
         one = np.ones((1, 2))
         half_planes(
             one, np.ones((1, 5)), (0.0, 0.0), (0.0, 0.0), _times(self._spec), 0.3, self._lines
@@ -42,7 +42,7 @@ class Orca(VelocityPlanner):
         best_velocity(self._lines, 1, 0, 1.0, (1.0, 0.0), self._scratch)
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
-        """Return the allowed velocity nearest to the wish, m/s."""
+        """Return the allowed velocity nearest to the desired one, m/s."""
         assert self.limits is not None
         sideways = self.limits.vy_max > 0.0
         error = 0.0 if sideways else self._spec.tracking_error

@@ -1,1 +1,1 @@
-"""Pass-through: the command of the user."""
+"""Pass-through: executes the user's command unchanged."""

@@ -1,4 +1,4 @@
-"""Pass-through: the user alone."""
+"""Pass-through: executes the user's command unchanged."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from crowdbot.plugin import Component, PlannerSpec
 
 
 class PassThroughSpec(PlannerSpec):
-    """Does what the user asks for: the condition without assistance."""
+    """Executes the user's command: the condition without assistance."""
 
     needs: ClassVar[tuple[str, ...]] = ("joystick",)
 

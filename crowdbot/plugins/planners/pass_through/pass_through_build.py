@@ -1,4 +1,4 @@
-"""Pass-through: the user's command as it is."""
+"""Pass-through: executes the user's command unchanged."""
 
 from __future__ import annotations
 

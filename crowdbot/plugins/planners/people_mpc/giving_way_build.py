@@ -1,4 +1,4 @@
-"""People who give way to a robot on its plan, as the crowd's response `giving_way`; compiled."""
+"""Predicted people give way to the robot's plan, as the crowd's response `giving_way`; compiled."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def give_way(
     robot: tuple[float, float, float, float, float],
     dt: float,
 ) -> None:
-    """Move people by one step, in place; those who notice the robot pass it.
+    """Move predicted people by one step, in place; those who notice the robot give way.
 
-    They shift to the shorter side until it is clear, and go on with the velocity that they want.
-    Others do as predicted.
+    They shift to the shorter side until they are clear, and go on with their wanted velocity.
+    Others move as predicted.
 
     Args:
         people: (N, 5) x, y, vx, vy, radius; m, m/s.

@@ -30,7 +30,7 @@ def hurry_field(default: float) -> Any:
 
 
 class PeopleMpcSpec(RungSpec):
-    """Plans are two stretches: a velocity, and then a direction beside that of the goal."""
+    """A plan has two stretches: a velocity, and then a direction beside that of the goal."""
 
     kind: Literal["people_mpc"] = "people_mpc"
     person_radius: NonNegativeLength = Field(

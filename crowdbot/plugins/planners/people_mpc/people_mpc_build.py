@@ -1,4 +1,4 @@
-"""People MPC: see, predict, choose the best plan, drive its beginning, and plan again."""
+"""People MPC: perceive, predict, choose the best plan, drive its beginning, and plan again."""
 
 from __future__ import annotations
 
@@ -35,9 +35,10 @@ _BESIDE = 0.12
 
 
 class PeopleMpc:
-    """Remembers its last plan; `PlannerSurroundings` remembers people and `Way` what stands.
+    """The planner `people_mpc`; remembers its last plan.
 
-    Subclasses predict people otherwise, by `predicted`.
+    `PlannerSurroundings` remembers people and `Way` static obstacles. Subclasses predict people
+    otherwise, by `predicted`.
     """
 
     #: Name of what it logs.
@@ -123,7 +124,7 @@ class PeopleMpc:
     def predicted(
         self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
     ) -> Array:
-        """Return where people will be, (T, N, 2) as of `plans.PlanWorld`; here: at their velocity.
+        """Return people's positions (T, N, 2), see `plans.PlanWorld`; here at constant velocity.
 
         Args:
             obs: for its time and signals.
@@ -162,7 +163,7 @@ class PeopleMpc:
         return p
 
     def yields(self, obs: Observation, rows: Indices) -> Array:
-        """Return from which time to contact people give way, (N,) s; here: nothing is known.
+        """Return the time to contact from which people give way (N,), s; here unknown.
 
         Args:
             obs: for the truth.
@@ -172,7 +173,7 @@ class PeopleMpc:
         return IGNORE
 
     def path(self, scene: PlannerScene, aim: tuple[float, float]) -> Array:
-        """Return the places (T, 2) of the chosen plan after each step, m."""
+        """Return the positions (T, 2) of the chosen plan after each step, m."""
         state = (scene.pose.x, scene.pose.y, scene.pose.yaw, *scene.twist)
         return plans.path_of(self._p, state, aim, self._last, self._aside, self._pace)
 

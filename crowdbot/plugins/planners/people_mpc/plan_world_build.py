@@ -1,4 +1,4 @@
-"""The surroundings of a plan: people, who may give way, and what stands; compiled."""
+"""The surroundings of a plan: people, who may give way, and static obstacles; compiled."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def gaps(world: PlanWorld, x: float, y: float, yaw: float, t: float) -> tuple[fl
 
 @kernel
 def at_first(world: PlanWorld) -> PlanWorld:
-    """Return a world whose people are moved, as they are at the beginning of a plan."""
+    """Return the surroundings with people at their positions at the beginning of a plan."""
     for i in range(world.people.shape[0]):
         for k in range(world.people.shape[1]):
             world.moved[i, k] = world.people[i, k]
@@ -132,7 +132,7 @@ def at_first(world: PlanWorld) -> PlanWorld:
 
 @kernel
 def extent_of(robot: Array) -> float:
-    """Return how far the discs of a robot reach from its middle, m."""
+    """Return the largest distance of the robot's discs from its centre, m."""
     most = 0.0
     for k in range(robot.shape[0]):
         most = max(most, math.sqrt(robot[k, 0] ** 2 + robot[k, 1] ** 2) + robot[k, 2])

@@ -1,4 +1,4 @@
-"""Plans of the people MPC, rolled out among people whose motion is predicted; compiled."""
+"""Rollouts of people_mpc's plans among predicted people; compiled."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def roll(
 ) -> PlanOutcome:
     """Roll a plan out: a first velocity, then a direction beside the goal's.
 
-    It ends where it can no longer cost less than the budget, with an infinite mean.
+    It stops early once its cost exceeds the budget, with an infinite mean.
 
     Args:
         p: parameters.
@@ -199,7 +199,7 @@ def best_plan(
     last: tuple[float, float, float],
     last_aside: float,
 ) -> tuple[int, int, int, float]:
-    """Return the best plan after whose beginning the robot can stop before the first hit.
+    """Return the best plan from whose beginning the robot can stop before the first hit.
 
     Args:
         firsts: (C, 3) first velocities v, w, vy.
@@ -257,7 +257,7 @@ def path_of(
     aside: float,
     pace: float,
 ) -> Array:
-    """Return the places (S, 2) of a plan at each step, as if nothing was hit, m.
+    """Return the positions (S, 2) of a plan at each step, ignoring hits, m.
 
     Args:
         goal: m; the others as for `roll`.

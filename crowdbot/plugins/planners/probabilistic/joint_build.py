@@ -1,4 +1,4 @@
-"""The joint density of a robot's way with those of user, planner and people; compiled."""
+"""The joint density of paths of robot, user, planner and people; compiled."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def _slewed(value: float, target: float, change: float) -> float:
 
 @array_kernel
 def way(twist: Array, command: Array, p: Array) -> Array:
-    """Return the poses (T, 3) of a robot that takes on a command as fast as it can.
+    """Return the poses (T, 3) of a robot that accelerates to a command as fast as it can.
 
     Args:
         twist: (3,) v, w, vy at present.
@@ -215,7 +215,7 @@ def log_densities(
     twist: Array,
     p: Array,
 ) -> Array:
-    """Return the log of the density of each candidate's way, up to a constant; (C,).
+    """Return the log density of each candidate's path, up to a constant; (C,).
 
     Args:
         candidates: (C, 3) commands v, w, vy; m/s, rad/s, m/s.

@@ -1,4 +1,4 @@
-"""Probabilistic shared control: the most likely way of user, robot and crowd together."""
+"""Probabilistic shared control: the most likely path of user, robot and crowd together."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Probabilistic shared control: the command whose way is the most likely of all.
+"""Probabilistic shared control: the command with the most likely path.
 
 Trautman, "Assistive planning in complex, dynamic environments: a probabilistic approach", 2015,
 arXiv:1506.06784, after Trautman, Ma, Murray, Krause, International Journal of Robotics Research
 34(3), 2015: p(h, f, people) ~ psi(h, f) p(h | user) p(f | robot) psi(f, people) p(people). User and
-people are integrated out here, and the maximum is taken over the ways of some commands.
+people are integrated out here, and the maximum is taken over the paths of some commands.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SHARES = np.array([1.0, 0.75, 0.5, 0.25])[:, None]
 
 
 class Probabilistic:
-    """Chooses the most likely way, given the user, the other half and the crowd."""
+    """Chooses the most likely path, given the user, another planner and the crowd."""
 
     def __init__(self, spec: ProbabilisticSpec, half: Planner) -> None:
         self._spec, self._half = spec, half
@@ -41,7 +41,7 @@ class Probabilistic:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Store limits and outline, reset the other half; compile kernels."""
+        """Store limits and outline, reset the other planner; compile kernels."""
         spec = self._spec
         self._user.reset(sensors, limits)
         self._surroundings.reset(sensors)
@@ -59,7 +59,7 @@ class Probabilistic:
         self._half.reset(task, limits, sensors, seed)
 
     def step(self, obs: Observation) -> Command:
-        """Return the command of the most likely way."""
+        """Return the command of the most likely path."""
         user, planner = np.array(self._user.command(obs)), np.array(self._half.step(obs))
         scene = self._surroundings.see(obs)
         ways = self._candidates(scene.twist, user, planner)
@@ -96,5 +96,5 @@ class Probabilistic:
 
 
 def build(spec: ProbabilisticSpec, half: Planner) -> Probabilistic:
-    """Build a planner from its spec, and its other half."""
+    """Build a planner from its spec, and the planner that it calls."""
     return Probabilistic(spec, half)

@@ -11,7 +11,7 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class RdsSpec(RungSpec):
-    """The robot avoids everything by itself; where no velocity avoids all, it brakes."""
+    """The robot does all of each evasion by itself; if no velocity avoids all, it brakes."""
 
     kind: Literal["rds"] = "rds"
     wish: Literal["goal", "user"] = Field(
@@ -40,7 +40,7 @@ class RdsSpec(RungSpec):
 
     @property
     def wants(self) -> tuple[str, ...]:
-        """Return the near sensors, if it takes them, and the joystick, if it assists a user."""
+        """Return the near sensors, if used, and the joystick, if it assists a user."""
         return (*super().wants, *(("joystick",) if self.wish == "user" else ()))
 
 

@@ -1,14 +1,13 @@
-"""RDS: half-planes of velocities of a point ahead of the axle, one for each thing around.
+"""RDS: half-planes of velocities of a point ahead of the axle, one for each obstacle.
 
 Gonon, Paez-Granados, Billard, "Reactive navigation in crowds for non-holonomic robots with convex
 bounding shape", IEEE Robotics and Automation Letters 6(3), 2021. The velocity of any point of the
-robot is a linear function of that of a reference point ahead of the axle. For each thing, the point
-of the capsule around the robot that is nearest to it gets a half-plane of velocities, which becomes
-one of the reference point; the velocity nearest to the wanted one in all of them is driven.
-
-A point on the axle cannot move aside, so that a half-plane of it can only be kept by braking. A
-robot whose outline is round about its axle would therefore never steer: its capsule reaches ahead
-of the axle, with the centre of the front at the reference point, as that of the authors' robot.
+robot is a linear function of that of a reference point ahead of the axle. For each obstacle, the
+nearest point of the capsule around the robot gets a half-plane of velocities, which is converted to
+one of the reference point; the velocity nearest to the wanted one in all of them is driven. A point
+on the axle cannot move sideways, so that its half-plane can only be kept by braking. A robot whose
+outline is round about its axle would therefore never steer: its capsule reaches ahead of the axle,
+with the centre of the front at the reference point, as that of the authors' robot.
 """
 
 from __future__ import annotations
@@ -56,7 +55,7 @@ class Rds(VelocityPlanner):
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Take limits, outline, mounts and joystick; compile kernels.
+        """Store limits, outline, mounts and joystick; compile kernels.
 
         Raises:
             InputError: it assists a user, and the robot has no joystick.
@@ -67,7 +66,7 @@ class Rds(VelocityPlanner):
         super().reset(task, limits, sensors, seed)
 
     def step(self, obs: Observation) -> Command:
-        """Return the command nearest to the wish, the planner's own or the user's."""
+        """Return the command nearest to the desired one, the planner's own or the user's."""
         if self._spec.wish == "goal":
             return super().step(obs)
         assert self.limits is not None
@@ -80,7 +79,7 @@ class Rds(VelocityPlanner):
         return Command(along, aside / reach)
 
     def forget(self) -> None:
-        """Take the capsule around the robot; compile what is not compiled yet."""
+        """Compute the capsule around the robot; compile kernels."""
         discs = covering_discs(self._spec.robot_radius, self.body)
         self._ends = np.ascontiguousarray(discs[[0, -1], :2])
         self._round = float(discs[:, 2].max())
@@ -191,7 +190,7 @@ def half_planes(
     count: int,
     out: Array,
 ) -> int:
-    """Write a half-plane of velocities of the reference point for each thing.
+    """Write a half-plane of velocities of the reference point for each obstacle.
 
     Args:
         things: (T, 5) x, y, vx, vy, radius, in the robot's frame.

@@ -1,4 +1,4 @@
-"""RPP: follow the way, slower in bends and near obstacles, and stop before a collision."""
+"""RPP: follow a path, slower in bends and near obstacles, and stop before a collision."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""RPP: pure pursuit of the way, slower in bends and near obstacles.
+"""RPP: pure pursuit of a path, slower in bends and near obstacles.
 
 Macenski, Singh, Martín, Ginés, "Regulated pure pursuit for robot path tracking", Autonomous Robots
-47, 2023. People count as obstacles that stand, as in nav2's costmap.
+47, 2023. People count as static obstacles, as in nav2's costmap.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _STEP = 0.1
 
 
 class Rpp:
-    """Follows the way that `Way` leads past what stands."""
+    """Follows the path that `Way` plans around static obstacles."""
 
     def __init__(self, spec: RppSpec) -> None:
         self._spec = spec

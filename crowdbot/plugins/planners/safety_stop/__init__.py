@@ -1,1 +1,1 @@
-"""Safety stop: the command of the user, with brakes."""
+"""Safety stop: the user's command, slowed down where the robot could not stop in time."""

@@ -1,4 +1,4 @@
-"""Safety stop: the user's command, with brakes."""
+"""Safety stop: the user's command, slowed down where the robot could not stop in time."""
 
 from __future__ import annotations
 

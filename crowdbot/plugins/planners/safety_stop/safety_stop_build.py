@@ -1,4 +1,4 @@
-"""Safety stop: the fastest share of the user's command from which the robot can still stop.
+"""Safety stop: the largest fraction of the user's command from which the robot can still stop.
 
 After Krotkov, Simmons, Cozman, Koenig, "Safeguarded teleoperation for lunar rovers", 1996: a
 command passes unless it is unsafe. With an autonomous planner, that one drives instead of the
@@ -28,7 +28,7 @@ _SLACK = 1e-3
 
 
 class SafetyStop:
-    """Brakes the user's command, or lets another planner drive while it is unsafe."""
+    """Slows the user's command down, or lets another planner drive while it is unsafe."""
 
     def __init__(self, spec: SafetyStopSpec, half: Planner | None) -> None:
         self._spec, self._half = spec, half

@@ -1,4 +1,4 @@
-"""SARL: the action after which a network with attention values the crowd most."""
+"""SARL: takes the action after which an attention network values the situation most."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from crowdbot.plugins.planners.shared.value_search_build import OF_PAIR, OF_ROBO
 
 
 class SarlNetwork:
-    """Values of joint states.
+    """Computes values of joint states of robot and people.
 
     Args:
         weights: name -> weights, as in the ``state_dict`` of the authors' `ValueNetwork`.

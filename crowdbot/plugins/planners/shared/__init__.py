@@ -1,1 +1,1 @@
-"""Parts of several planners: points, people and their motion, the robot's size and heading."""
+"""Shared parts of planners: points, people and their motion, the robot's size and heading."""

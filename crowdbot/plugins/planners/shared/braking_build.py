@@ -1,6 +1,7 @@
-"""The rule that a robot must be able to brake before it touches anything; compiled.
+"""Rule that a robot must be able to brake before it touches anything; compiled.
 
-People keep their velocity meanwhile. That a robot at rest is walked into does not count against it.
+People keep their velocity meanwhile. A person who walks into the standing robot does not count
+against it.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ MotionState = tuple[float, float, float, float, float, float]
 
 
 class AroundRobot(NamedTuple):
-    """The surroundings of a robot.
+    """People and static obstacles around a robot.
 
     Attributes:
         people: (N, 5) x, y, vx, vy, radius; m, m/s.
@@ -34,7 +35,7 @@ class AroundRobot(NamedTuple):
 
 @kernel
 def gap_at(world: AroundRobot, x: float, y: float, yaw: float, t: float) -> float:
-    """Return the least gap to people in ``t`` seconds and to what stands, m."""
+    """Return the least gap to people after ``t`` seconds and to static obstacles, m."""
     best = math.inf
     c, s = math.cos(yaw), math.sin(yaw)
     for d in range(world.robot.shape[0]):
@@ -58,7 +59,7 @@ def can_brake(
     slew: tuple[float, float],
     times: tuple[float, float],
 ) -> bool:
-    """Return True if nothing is touched while the robot takes on a command and then brakes.
+    """Return True if the robot touches nothing if it accelerates to a command and then brakes.
 
     Args:
         state: x, y, yaw, v, w, vy of the robot.

@@ -14,10 +14,10 @@ _MOST = 5
 
 
 def covering_discs(told: float | None, body: RobotBody | None) -> Array:
-    """Return discs (K, 3) that together hold the robot: x, y of the centre and radius, m.
+    """Return discs (K, 3) that together cover the robot: x, y of the centre and radius, m.
 
-    One disc for a round robot; otherwise discs along the longer side of the box around its
-    outline, which stand out of the box by a few centimetres.
+    One disc for a round robot; otherwise discs along the longer side of the box around its outline,
+    which exceed the box by a few centimetres.
 
     Args:
         told: radius from the planner's spec, m, or None.

@@ -28,7 +28,7 @@ class DistanceField:
         self.fill(np.ones((1, 2)), 0.0, 0.0)
 
     def fill(self, points: Array, x: float, y: float) -> None:
-        """Compute the distances around a place.
+        """Compute the distances around a position.
 
         Args:
             points: (P, 2) m.
@@ -41,7 +41,7 @@ class DistanceField:
 
 @kernel
 def distance_at(values: Array, corner: tuple[float, float], x: float, y: float) -> float:
-    """Return the distance at a place, m, between cells linear; far outside of the grid."""
+    """Return the distance at a position, m, by linear interpolation; large outside the grid."""
     u, v = (x - corner[0]) / CELL - 0.5, (y - corner[1]) / CELL - 0.5
     i, j = math.floor(u), math.floor(v)
     if i < 0 or j < 0 or i >= CELLS - 1 or j >= CELLS - 1:

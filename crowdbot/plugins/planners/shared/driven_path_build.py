@@ -8,7 +8,7 @@ from crowdbot.plugin import Array
 
 
 def driven(velocities: Array, step: float) -> Array:
-    """Return the places (T, 2) after each velocity, in the frame of the first one, m.
+    """Return the positions (T, 2) after each velocity, in the frame of the first one, m.
 
     Args:
         velocities: (T, 3) v, w, vy; m/s, rad/s, m/s.

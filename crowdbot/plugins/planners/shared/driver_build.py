@@ -1,4 +1,4 @@
-"""Parts of a planner that chooses a velocity: see, head past what stands, choose, drive."""
+"""Base of planners that choose a velocity: perceive, plan around obstacles, choose, drive."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _BESIDE = 0.12
 
 
 class VelocityPlanner(ABC):
-    """A planner that chooses a velocity in each step; subclasses say which.
+    """Base of planners that choose a velocity in each step.
 
     Attributes:
         limits, body: of the robot.
@@ -83,11 +83,11 @@ class VelocityPlanner(ABC):
 
     @abstractmethod
     def forget(self) -> None:
-        """Forget everything of the last run, and compile what is not compiled yet."""
+        """Reset the memory, and compile kernels."""
 
     @abstractmethod
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
-        """Return the velocity to take on, m/s, in the frame of the scene.
+        """Return the chosen velocity, m/s, in the frame of the scene.
 
         Args:
             obs: for its time and signals.

@@ -1,4 +1,4 @@
-"""Drive along a wanted velocity: sideways, or by turning and going ahead."""
+"""Commands that follow a wanted velocity: sideways, or by turning and driving ahead."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _STILL = 0.02
 
 
 def follow(wanted: tuple[float, float], yaw: float, facing: float, limits: RobotLimits) -> Command:
-    """Return the command with which a robot takes on a velocity.
+    """Return the command with which a robot follows a velocity.
 
     Args:
         wanted: velocity in the frame of ``yaw``, m/s.

@@ -127,7 +127,7 @@ def _within(
 def best_velocity(
     lines: Array, count: int, hard: int, top: float, wish: tuple[float, float], scratch: Array
 ) -> tuple[float, float]:
-    """Return the velocity nearest to a wish in all half-planes; else the one that violates least.
+    """Return the velocity in all half-planes nearest to a wanted one, or the least violating.
 
     Args:
         lines: (L, 4), the first ``count`` are in use; the first ``hard`` are never violated.

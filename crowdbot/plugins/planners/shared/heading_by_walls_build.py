@@ -1,4 +1,4 @@
-"""Estimate the heading from the walls that the lidars see.
+"""Estimate the robot's heading from walls in lidar scans.
 
 When a person bumps into a robot, it turns with slipping wheels, which wheel odometry misses. The
 histogram of directions of straight runs of lidar points turns with the robot; the shift that best
@@ -64,7 +64,7 @@ def directions(points: Array, out: Array) -> float:
 
 @kernel
 def turned(memory: Array, seen: Array, guess: float, filled: Indices) -> float:
-    """Return the turn that best fits the seen histogram to the memory, near a guess; rad.
+    """Return the rotation that best fits the histogram to the remembered one, near a guess; rad.
 
     Args:
         memory, seen: (BINS,) histograms.
@@ -101,7 +101,7 @@ def turned(memory: Array, seen: Array, guess: float, filled: Indices) -> float:
 
 @kernel
 def learn(memory: Array, seen: Array, yaw: float, share: float) -> None:
-    """Mix the seen histogram, turned by the yaw (rad) and blurred, into the memory, in place."""
+    """Mix the histogram, rotated by the yaw (rad) and blurred, into the old one, in place."""
     shift = round(yaw / math.pi * BINS)
     for k in range(BINS):
         memory[k] *= 1.0 - share
@@ -116,9 +116,9 @@ def learn(memory: Array, seen: Array, yaw: float, share: float) -> None:
 def heading(
     points: Array, guess: float, knows: bool, memory: Array, seen: Array, filled: Indices
 ) -> float:
-    """Return the yaw at which the walls fit the memory, rad, and update the memory.
+    """Return the yaw that fits the walls to the remembered ones, rad, and remember them.
 
-    NaN without walls, or with too few for so large a turn.
+    NaN without walls, or with too few for so large a rotation.
 
     Args:
         points: as for `directions`.
@@ -175,7 +175,7 @@ class HeadingByWalls:
 
 
 def compile_heading() -> None:
-    """Compile what is not compiled yet, with a made-up wall seen twice."""
+    """Compile the kernels, with a made-up wall seen twice."""
     wall = np.column_stack([np.linspace(0.0, 2.0, 40), np.ones(40)])
     heading = HeadingByWalls()
     for _ in range(2):

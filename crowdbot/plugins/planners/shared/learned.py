@@ -18,7 +18,7 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class ValueSearchSpec(RungSpec):
-    """Numbers of CrowdNav's configuration files; the weights were trained with some of these."""
+    """Parameters of CrowdNav's configuration files, as used in training."""
 
     weights: Asset = Field(
         description="File of weights: PyTorch's `.pth` of a `state_dict`, or numpy's `.npz`."

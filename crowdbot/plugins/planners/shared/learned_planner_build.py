@@ -1,4 +1,4 @@
-"""A planner that tries each action for one step, and asks a network what comes after it."""
+"""Base of learned planners: try each action for one step, and rate the next state by a network."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class ValueNetwork(Protocol):
 
 
 class LearnedPlanner(VelocityPlanner):
-    """Decides at the rate at which the network was trained, and keeps the velocity meanwhile."""
+    """Decides at the rate of the network's training, and keeps the velocity meanwhile."""
 
     def __init__(self, spec: ValueSearchSpec, network: ValueNetwork) -> None:
         super().__init__(spec)
@@ -42,7 +42,7 @@ class LearnedPlanner(VelocityPlanner):
         self._next, self._chosen = -math.inf, (0.0, 0.0)
 
     def forget(self) -> None:
-        """Forget the last decision; compile what is not compiled yet."""
+        """Reset the last decision; compile kernels."""
         self._next, self._chosen = -math.inf, (0.0, 0.0)
         spec = self._spec
         self._choices = actions(
@@ -53,7 +53,7 @@ class LearnedPlanner(VelocityPlanner):
         touches(self._choices, 0.0, np.ones((1, 2)), (0.3, 1.0), 0)
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
-        """Return the velocity of the best action, m/s; the wish where there are no people."""
+        """Return the velocity of the best action, m/s; without people that towards the goal."""
         if len(scene.people) == 0:
             self._next = -math.inf
             return float(wish[0]), float(wish[1])

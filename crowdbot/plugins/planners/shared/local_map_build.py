@@ -1,4 +1,4 @@
-"""A small local map for getting out of dead ends: obstacles, and the path past them."""
+"""A small local map for finding a path out of dead ends."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ AIM = 0.7
 
 
 def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
-    """Return the remembered points, updated with a new scan.
+    """Return the points of the map, updated with a new scan.
 
     Args:
         memory: (N, 2) points seen before, world frame, m.
@@ -37,7 +37,7 @@ def remembered(memory: Array, seen: Array, x: float, y: float, reach: float) -> 
 
 
 def kept_points(memory: Array, seen: Array, x: float, y: float, reach: float) -> Array:
-    """Return the remembered points that are hidden, out of range or still there.
+    """Return the map's points that are hidden, out of range or still there.
 
     Arguments as for `remembered`.
     """
@@ -51,7 +51,7 @@ def kept_points(memory: Array, seen: Array, x: float, y: float, reach: float) ->
 
 
 def thinned(points: Array) -> Array:
-    """Return the first of the points (N, 2) in each cell, in the order of the cells."""
+    """Return the points (N, 2) with only the first one in each cell."""
     cells = np.round(points / CELL)
     order = np.lexsort((cells[:, 1], cells[:, 0]))
     cells, first = cells[order], np.ones(len(points), np.bool_)
@@ -158,7 +158,7 @@ def _cost_to_go(blocked: NDArray[np.bool_], gx: float, gy: float) -> Array:
 def way_out(
     points: Array, x: float, y: float, gx: float, gy: float, radius: float
 ) -> tuple[bool, float]:
-    """Return where the shortest path to the goal begins.
+    """Return a point on the shortest path to the goal, to head for.
 
     Args:
         points: (N, 2) obstacles, world frame, m.

@@ -1,4 +1,4 @@
-"""Points of what ultrasound, infrared sensors and depth cameras see and no lidar does.
+"""Points that ultrasound, infrared sensors and depth cameras see but no lidar does.
 
 A planar lidar sees one height only. Cones of ultrasound reach kerbs, and a depth camera sees gates
 that hang above the lidar's plane.

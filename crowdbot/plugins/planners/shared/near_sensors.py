@@ -1,4 +1,4 @@
-"""Sensors beside the lidars that a planner takes, if it is told to and the robot has them."""
+"""Optional near sensors of planners: ultrasound, infrared, depth cameras."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ NEAR_SENSORS = ("ultrasound", "infrared", "camera", "imu", "bumper")
 
 
 def near_sensors_field() -> Any:
-    """Return the field of planners that may take near sensors; hashes are as without it."""
+    """Return the field ``near_sensors``, which is outside the hash while it has its default."""
     return Field(
         default=False,
         exclude_if=lambda value: value is False,

@@ -1,4 +1,4 @@
-"""Libraries that only one planner needs, as extras of crowdbot."""
+"""Libraries of single planners, installed by extras of crowdbot."""
 
 from __future__ import annotations
 

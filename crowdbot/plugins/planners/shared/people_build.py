@@ -1,9 +1,9 @@
-"""Replace the legs that a lidar sees by discs of people; compiled.
+"""Replace legs in lidar points by discs of people; compiled.
 
 A planar lidar near the floor sees legs, while people collide with a wider disc. Runs of points as
 narrow as a leg are paired, as leg detectors do (Arras, Mozos, Burgard, "Using boosted features for
 the detection of people in 2D range data", ICRA 2007), and the near half of the disc around each
-pair takes the place of their points, as if the lidar had seen it. Walls stay as they are.
+pair replaces their points, as if the lidar had seen it. Walls stay unchanged.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ def _middles(legs: Array) -> Array:
 
 @array_kernel
 def people_in(points: Array, reach: float) -> tuple[Array, Array]:
-    """Split the points into people and the rest.
+    """Return people detected in points, and the remaining points.
 
     Args:
         points: (P, 2) base frame, m, those of one lidar in the order of its beams.
@@ -173,7 +173,7 @@ def with_discs(points: Array, people: Array, radius: float) -> Array:
 
 @kernel
 def carry(points: Array, velocities: Array, people: Array, going: Array, radius: float) -> None:
-    """Set the velocities of points on people's discs to those of the people (K, 2), in place."""
+    """Give points on people's discs the velocities of the people (K, 2), in place."""
     for i in range(points.shape[0]):
         best = radius + 0.05
         for k in range(people.shape[0]):

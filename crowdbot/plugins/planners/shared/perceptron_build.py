@@ -1,6 +1,6 @@
-"""Layers of a trained network, in single precision, as they were trained; compiled.
+"""Layers of a trained network in single precision; compiled.
 
-A library of linear algebra would be as fast, but its sums depend on its number of threads, and runs
+A linear algebra library would be as fast, but its sums depend on its number of threads, and runs
 have to be the same in every process.
 """
 
@@ -49,12 +49,12 @@ class Perceptron:
 
     @property
     def width_in(self) -> int:
-        """Return how many numbers it takes."""
+        """Return the number of its inputs."""
         return int(self._layers[0][0].shape[0])
 
     @property
     def width_out(self) -> int:
-        """Return how many numbers it gives."""
+        """Return the number of its outputs."""
         return int(self._layers[-1][0].shape[1])
 
     def __call__(self, rows: Singles, *, last: bool = False) -> Singles:
@@ -90,7 +90,7 @@ def _layer(rows: Singles, weight: Singles, bias: Singles, rectify: bool, out: Si
 
 
 def check_names(weights: Mapping[str, Array], parts: Sequence[str], where: str) -> None:
-    """Refuse weights of another network.
+    """Raise an error for weights of another network.
 
     Raises:
         InputError: a part is missing, or there is one more.
@@ -104,7 +104,7 @@ def check_names(weights: Mapping[str, Array], parts: Sequence[str], where: str) 
 
 
 def check_widths(where: str, *wanted: tuple[str, int, int]) -> None:
-    """Refuse layers that take another number of inputs.
+    """Raise an error for layers with another number of inputs.
 
     Args:
         where: the file.

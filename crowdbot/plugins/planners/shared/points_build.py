@@ -1,4 +1,4 @@
-"""Points around a robot: thinned out, how they seem to move, which stand apart; compiled."""
+"""Points around a robot: thinning, apparent motion, isolated points; compiled."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def wrapped(angle: float) -> float:
 
 @kernel
 def unsigned(angle: float) -> float:
-    """Return the size of an angle, in [0, pi] rad."""
+    """Return the absolute value of an angle, in [0, pi] rad."""
     return abs(wrapped(angle))
 
 
@@ -145,7 +145,7 @@ def apparent_velocities(
     slowest: float,
     fastest: float,
 ) -> tuple[Array, Array]:
-    """Apply `apparent_velocity` to points, and to people and the other points of before."""
+    """Apply `apparent_velocity` to points, against earlier people and other points."""
     return (
         apparent_velocity(now, before, dt, slowest, fastest),
         apparent_velocity(people, others, dt, slowest, fastest),

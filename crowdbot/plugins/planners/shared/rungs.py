@@ -1,4 +1,4 @@
-"""Parameters of planners that reason about people: rungs of the ladder of sensing."""
+"""Parameters of planners on the ladder of sensing, which reason about people."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.plugins.planners.shared.near_sensors import NEAR_SENSORS, near_sen
 
 
 class LadderSpec(PlannerSpec):
-    """The ladder of sensing: the same planner with better and better knowledge.
+    """The ladder of sensing: the same planner with increasingly better knowledge.
 
     On its last rungs, ``truth``, the planner is privileged.
     """
@@ -43,12 +43,12 @@ class LadderSpec(PlannerSpec):
 
     @property
     def privileged(self) -> bool:
-        """Return True if a rung is the truth."""
+        """Return True if the planner gets the ground truth."""
         return "truth" in (self.tracks, self.localisation)
 
 
 class RungSpec(LadderSpec):
-    """A planner on the ladder of sensing that drives by itself."""
+    """A planner on the ladder of sensing that drives the robot, without a user."""
 
     speed: Annotated[float, Gt(0), Le(1)] = Field(
         default=1.0, description="Cruising speed as a fraction of the robot's largest."

@@ -1,4 +1,4 @@
-"""Simple plans on every side of people, for planners that improve plans locally; compiled."""
+"""Simple initial plans on every side of people, for local improvement; compiled."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def starts(
     dt: float,
     top: float,
 ) -> Array:
-    """Return plans (S, N, 2 or 3) that turn aside and then to the aim, within limits and slew.
+    """Return plans (S, N, 2 or 3) that first turn aside and then towards a point, within limits.
 
     Args:
         state: x, y, yaw, v, w, vy of the robot.
-        aim: m.
+        aim: point to drive to, m.
         limits: the robot's.
-        shape: of one plan.
+        shape: shape of one plan, (N, 2 or 3).
         dt: length of a stage, s.
         top: largest speed, m/s.
     """
@@ -73,7 +73,7 @@ def _write(
 
 
 def moved_on(plan: Array, stages: float) -> Array:
-    """Return a plan that begins some stages later, between them linear; the last is kept."""
+    """Return a plan shifted by some stages, with linear interpolation; the last one is repeated."""
     last = len(plan) - 1
     at = np.clip(np.arange(len(plan)) + max(0.0, stages), 0, last)
     low = np.minimum(at.astype(int), max(last - 1, 0))

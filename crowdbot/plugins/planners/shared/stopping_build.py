@@ -1,4 +1,4 @@
-"""The gap that a robot keeps on the arc of a command, until it stands; compiled."""
+"""Least gap on the arc of a command until the robot has stopped; compiled."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _STEP = 0.1
 def arc_gap_moving(
     bodies: Array, robot: Array, v: float, w: float, time: float, brake: float
 ) -> float:
-    """Return the least gap along an arc on which the robot drives, then brakes; inf without bodies.
+    """Return the least gap on the arc of a command, then braking, m; inf without obstacles.
 
     Args:
         bodies: (N, 5) x, y, vx, vy, radius of what is around, base frame; they go on as they do.

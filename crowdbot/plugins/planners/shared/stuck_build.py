@@ -1,10 +1,9 @@
-"""Notice a robot that pushes without moving, remember the place, and lead it away.
+"""Detect a robot that pushes without moving, remember the place, and drive away from it.
 
 A barrier that no lidar sees, such as a kerb or a raised gate, stops the robot while its wheels slip
-or stall. On board this shows in four ways: the scan stays as it was although the wheels roll, the
-wheels hardly roll although they are told to, the IMU feels a jolt that no command causes, or a
-bumper is pressed. Where a lidar sees what is in the way, nothing is noticed here: avoiding that is
-the planner's own task.
+or stall. Four signs show this: the scan stays the same although the wheels roll, the wheels hardly
+roll although they are commanded to, the IMU measures a jolt that no command causes, or a bumper is
+pressed. Barriers that a lidar sees are ignored here: avoiding those is the planner's own task.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ _NOTHING = np.empty((0, 2))
 
 
 class Stuck:
-    """Watches a robot, and remembers the places where it pushed without moving.
+    """Monitors a robot, and remembers the places where it pushed without moving.
 
     Args:
         told: radius of the robot from the planner's spec, m, or None.
@@ -120,7 +119,7 @@ class Stuck:
         return False
 
     def way_back(self, obs: Observation, pose: Pose, points: Array) -> Command | None:
-        """Return the command that leads away from what was pushed; None if there is none.
+        """Return the command that drives away from a barrier; None without one.
 
         Args:
             obs: of this step.
@@ -158,7 +157,7 @@ class Stuck:
         return Pose(held.x, held.y, pose.yaw) if self._slips else pose
 
     def told(self, command: Command, period: float) -> Command:
-        """Note a command that holds for a period (s), and return it."""
+        """Store a command that holds for a period (s), and return it."""
         self._told += command.v * period
         return command
 

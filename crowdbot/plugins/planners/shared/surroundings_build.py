@@ -1,4 +1,4 @@
-"""Surroundings: what a planner knows of people, walls and its own place, on each rung."""
+"""Surroundings: a planner's knowledge of people, walls and its own pose, on each rung."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ X, Y, VX, VY, RADIUS = range(5)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannerScene:
-    """The robot's surroundings in one step, in the frame of odometry, which does not move.
+    """The robot's surroundings in one step, in the fixed frame of odometry.
 
     Attributes:
         pose: the robot's.
@@ -61,7 +61,7 @@ class PlannerScene:
 
 
 class PlannerSurroundings:
-    """Makes a `PlannerScene` of each observation; made and reset together with a planner.
+    """Computes a `PlannerScene` from each observation; has the lifetime of a planner.
 
     Args:
         spec: of the planner.
@@ -81,7 +81,7 @@ class PlannerSurroundings:
         self._heading, self._motion = HeadingByWalls(), PeopleMotion(_LOOK_BACK)
 
     def reset(self, sensors: Mapping[str, SensorInfo], body: RobotBody | None = None) -> None:
-        """Forget everything; compile what is not compiled yet.
+        """Reset the memory; compile kernels.
 
         Args:
             sensors: description of each sensor that the planner gets.
@@ -160,7 +160,7 @@ def _from_robot(tracks: Array, here: Array, to_world: Array) -> Array:
 
 
 def in_base(pose: Pose, places: Array) -> Array:
-    """Return places (K, 2) of the frame of a pose in the base frame, m."""
+    """Return points (K, 2) of a pose's frame in the base frame, m."""
     c, s = math.cos(pose.yaw), math.sin(pose.yaw)
     return np.asarray((places - (pose.x, pose.y)) @ np.array([[c, -s], [s, c]]))
 
@@ -224,7 +224,7 @@ def others(points: Array, people: Array, own: float) -> Array:
 
 
 def bodies_in_base(scene: PlannerScene) -> Array:
-    """Return what is around, (N, 5) x, y, vx, vy, radius in the base frame; m, m/s."""
+    """Return all bodies around, (N, 5) x, y, vx, vy, radius in the base frame; m, m/s."""
     c, s = math.cos(scene.pose.yaw), math.sin(scene.pose.yaw)
     to_base = np.array([[c, -s], [s, c]])  # of row vectors
     still = np.zeros((len(scene.points), 3))

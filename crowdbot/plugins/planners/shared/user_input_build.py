@@ -1,4 +1,4 @@
-"""The command that the robot's user asks for."""
+"""The command of the robot's user."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class UserInput:
         self._limits = limits
 
     def command(self, obs: Observation) -> Command:
-        """Return the user's command within the limits; before the first reading to stop."""
+        """Return the user's command within the limits; zero before the first reading."""
         reading = obs.readings.get(self._name)
         if reading is None or self._limits is None:
             return Command(0.0, 0.0)

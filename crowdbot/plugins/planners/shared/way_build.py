@@ -1,4 +1,4 @@
-"""The way to the goal past what stands: where to head for when the straight line is blocked."""
+"""Path to the goal around static obstacles: the next point to head for."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ROW = 1_000_003
 
 
 class Way:
-    """Remembers what stands around the robot, and leads past it.
+    """Remembers static obstacles around the robot, and plans paths around them.
 
     Args:
         radius: radius of the disc that must stay free, m.
@@ -43,7 +43,7 @@ class Way:
     def aim(
         self, t: float, pose: Pose, seen: Array, goal: tuple[float, float]
     ) -> tuple[float, float]:
-        """Return the point to head for: the goal, or one on the shortest way to it.
+        """Return the point to head for: the goal, or one on the shortest path to it, m.
 
         Args:
             t: now, s.

@@ -18,7 +18,7 @@ _SECTORS = 8
 
 
 class SocialForce(VelocityPlanner):
-    """Feels in each step what it sees."""
+    """The social force planner, without memory."""
 
     def __init__(self, spec: SocialForceSpec) -> None:
         super().__init__(spec)

@@ -1,1 +1,1 @@
-"""Social Momentum: a robot that shows early on which side it will pass."""
+"""Social Momentum: a planner that shows early on which side the robot will pass."""

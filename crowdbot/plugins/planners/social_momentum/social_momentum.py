@@ -1,4 +1,4 @@
-"""Social Momentum: pass people on the side that is settled already, and show it early."""
+"""Social Momentum: pass people on the side that is already likely, and show it early."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Social Momentum: of the velocities that touch no one, the one that says most clearly which way.
+"""Social Momentum: of collision-free velocities, the one that shows the passing side best.
 
 Mavrogiannis, Thomason, Knepper, "Social Momentum: a framework for legible navigation in dynamic
-multi-agent environments", HRI 2018. The sign of the angular momentum of robot and person about
-the point between them says on which side they pass. A velocity is worth its progress, and the
-momenta with everybody ahead if it changes no sign.
+multi-agent environments", HRI 2018. The sign of the angular momentum of robot and person about the
+point between them tells on which side they pass. A velocity is rated by its progress, plus the
+momenta with all people ahead if it changes no sign.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _SPEEDS, _LEAST = (1.0, 0.5), 1e-6
 
 
 class SocialMomentum(VelocityPlanner):
-    """Chooses in each step from what it sees; remembers nothing."""
+    """The Social Momentum planner, without memory."""
 
     def __init__(self, spec: SocialMomentumSpec) -> None:
         super().__init__(spec)
@@ -72,7 +72,7 @@ def choose(
     ahead: tuple[float, float],
     weights: tuple[float, float, float],
 ) -> tuple[int, float]:
-    """Return the number of the best velocity, or -1, and its momentum, m^2/s.
+    """Return the index of the best velocity, or -1, and its momentum, m^2/s.
 
     Args:
         choices: (A, 2) velocities, m/s.
@@ -136,7 +136,7 @@ def is_free(
     place: tuple[float, float, float],
     horizon: float,
 ) -> bool:
-    """Return True if a velocity touches no one who walks on, and nothing, within the horizon."""
+    """Return True if a velocity touches nothing within the horizon; people keep theirs."""
     x, y, radius = place
     for i in range(people.shape[0]):
         dx, dy = people[i, 0] - x, people[i, 1] - y
@@ -150,9 +150,9 @@ def is_free(
 
 @kernel
 def touches(dx: float, dy: float, u: float, v: float, radius: float, horizon: float) -> bool:
-    """Return True if a disc that moves by u, v comes nearer to a point within the horizon.
+    """Return True if a disc with velocity (u, v) touches a point within the horizon.
 
-    What is touched already may be left: only a velocity towards it touches.
+    If it touches already, only a velocity towards the point counts.
     """
     closing = dx * u + dy * v
     if closing <= 0.0:

@@ -209,7 +209,7 @@ def safe_speed(room: Array, approach: Array, deceleration: float, reaction_time:
 def time_to_contact(
     points: Array, velocities: Array, speed: float, heading: float, radius: float
 ) -> float:
-    """Return when a moving robot and moving points first touch, s; infinite if never.
+    """Return the time until a moving robot and moving points first touch, s; inf if never.
 
     Points behind it are ignored: people coming from there see the robot.
 

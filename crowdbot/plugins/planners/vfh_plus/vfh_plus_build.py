@@ -1,9 +1,9 @@
-"""VFH+: obstacles around the robot become a histogram of directions, in which it chooses.
+"""VFH+: choose a direction from a histogram of obstacles around the robot.
 
 Ulrich, Borenstein, "VFH+: reliable obstacle avoidance for fast mobile robots", ICRA 1998. Lidar
-points take the place of the cells of a certainty grid, each certain; people count as the near side
-of their discs. Sectors that the robot would reach only by an arc that touches something are masked
-by what lies beside its turning circles.
+points replace the cells of a certainty grid, each certain; people count as the near side of their
+discs. Sectors that the robot could reach only by an arc that touches something are masked, by the
+obstacles beside its turning circles.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _TURNING = 0.25
 
 
 class VfhPlus(VelocityPlanner):
-    """Remembers which sectors were open, and its last direction."""
+    """The VFH+ planner; remembers the open sectors and its last direction."""
 
     def __init__(self, spec: VfhPlusSpec) -> None:
         super().__init__(spec)
@@ -32,7 +32,7 @@ class VfhPlus(VelocityPlanner):
         self._last: float | None = None
 
     def forget(self) -> None:
-        """Forget all sectors; compile what is not compiled yet."""
+        """Reset all sectors; compile kernels."""
         self._open[:] = True
         self._last = None
         histogram(np.ones((1, 3)), (0.0, 0.0), 0.3, 2.5, self._density)
@@ -91,7 +91,7 @@ def _sector(angle: float, sectors: int) -> int:
 
 
 def openings(free: Mask, goal: float, wide: int) -> list[float]:
-    """Return the directions that are worth a comparison: of each opening, its middle or edges.
+    """Return the candidate directions: the middle or the edges of each opening, rad.
 
     Args:
         free: (S,) open sectors; the first begins at angle 0.

@@ -1,1 +1,1 @@
-"""Synthetic users: what drives a robot with a joystick in place of a person."""
+"""Synthetic users: simulated people who drive a robot with a joystick."""

@@ -1,4 +1,4 @@
-"""Synthetic users: each steers for the goal and past people, and has a fault of its own."""
+"""Synthetic users: each steers for the goal and around people, with one impairment."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _BUILD = "crowdbot.plugins.sensors.users.users_build:build"
 
 
 class UserSpec(SensorSpec):
-    """Reading: v (m/s), w (rad/s), the velocity that a synthetic user asks for.
+    """Reading: v (m/s), w (rad/s), the velocity that a synthetic user commands.
 
     Direction by the steering dynamics of Fajen and Warren, speed by the gap ahead (Moussaïd).
     """
@@ -91,14 +91,14 @@ class NoisyUserSpec(UserSpec):
 
 
 class DelayedUserSpec(UserSpec):
-    """A user who reacts late, or drives over a slow line."""
+    """A user who reacts late, or drives over a connection with delay."""
 
     kind: Literal["delayed_user"] = "delayed_user"
     delay: Delay = Field(default=0.6, description="From seeing to the stick's deflection, s.")
 
 
 class BiasedUserSpec(UserSpec):
-    """A user whose straight ahead is not the robot's, as in spatial neglect."""
+    """A user whose sense of straight ahead is rotated, as in spatial neglect."""
 
     kind: Literal["biased_user"] = "biased_user"
     bias: Angle = Field(
@@ -107,10 +107,11 @@ class BiasedUserSpec(UserSpec):
 
 
 class OneSwitchUserSpec(UserSpec):
-    """A user with one switch: marks go round, a press takes the marked one, the next stops.
+    """A user with one switch, who selects from directions that are offered in turn.
 
-    The marks are ahead, left, right; while the robot stands they follow each other every
-    `scan_period`. It turns for the goal, and waits for people.
+    The directions are ahead, left, right; while the robot stands they are offered one after
+    another, each for `scan_period`. A press selects the offered one, the next press stops the
+    robot. The user turns for the goal, and waits for people.
     """
 
     kind: Literal["one_switch_user"] = "one_switch_user"
@@ -132,7 +133,7 @@ class OneSwitchUserSpec(UserSpec):
 
 
 class FatiguedUserSpec(UserSpec):
-    """A user who has driven for long: shakier, later, and absent now and then.
+    """A tired user: shakier, later, and inattentive now and then.
 
     Tiredness rises as 1 - exp(-time / `tiring_time`); its effects are those at full tiredness.
     """

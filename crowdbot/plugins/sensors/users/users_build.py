@@ -1,4 +1,4 @@
-"""Synthetic users as joysticks: the wish, its delay, the hand's error; or one switch.
+"""Synthetic users as joysticks: wanted deflection, its delay, the hand's error; or one switch.
 
 The hand's error is an Ornstein-Uhlenbeck process, exact at any step (Gillespie, Physical Review E
 54, 1996, p. 2084). All state is in the sensor's memory, which begins with a common head; two
@@ -22,7 +22,7 @@ STARTED, TIME, V, W, HEAD = range(5)
 
 
 class SyntheticUser(ABC):
-    """Reading: (2,) v (m/s), w (rad/s); subclasses say what becomes of a wish."""
+    """Base of synthetic users; reading: (2,) v (m/s), w (rad/s)."""
 
     def __init__(
         self, spec: UserSpec, context: SensorContext, *, memory: int, random: bool
@@ -71,10 +71,10 @@ class SyntheticUser(ABC):
 
 
 class StickUser(SyntheticUser):
-    """A user of a stick: late by a delay, with a shaky hand, absent in lapses.
+    """A user of a stick: delayed, with a shaky hand, inattentive in lapses.
 
     Memory: the hand's error ahead and aside, the end of a lapse, the deflections that were held in
-    it, and a ring of wishes.
+    it, and a ring buffer of wanted deflections.
     """
 
     _ERROR, _LAPSE, _HELD, _RING = 0, 2, 3, 5
@@ -142,8 +142,8 @@ class StickUser(SyntheticUser):
 class SwitchUser(SyntheticUser):
     """A user of one switch.
 
-    Memory: the chosen mark (0: none, the marks go round), when that began, the time of the next
-    press (0: there is no reason for one).
+    Memory: the selected direction (0: none, they are offered in turn), when that began, the time of
+    the next press (0: no reason for one).
     """
 
     _MARK, _SINCE, _PRESS = range(3)
@@ -157,7 +157,7 @@ class SwitchUser(SyntheticUser):
     def deflect(
         self, wanted: Wish, t: float, rng: np.random.Generator, memory: Array
     ) -> tuple[float, float]:
-        """Return the deflections of the chosen mark at a new time."""
+        """Return the deflections of the selected direction at a new time."""
         spec, own = self._switch, memory[HEAD:]
         draw = float(rng.standard_normal()) if self._info.random else 0.0
         mark = int(own[self._MARK])
@@ -181,7 +181,7 @@ class SwitchUser(SyntheticUser):
 
 
 def build(spec: UserSpec, context: SensorContext) -> SyntheticUser:
-    """Return a user; goal and limits that the spec leaves open are the robot's."""
+    """Return a user; goal and limits default to those of the robot."""
     if isinstance(spec, OneSwitchUserSpec):
         return SwitchUser(spec, context)
     return StickUser(spec, context)

@@ -1,4 +1,4 @@
-"""The deflection that a synthetic user wishes: direction and speed from what it sees.
+"""The deflection that a synthetic user wants: direction and speed from what it sees.
 
 Direction: Fajen, Warren, "Behavioral dynamics of steering, obstacle avoidance, and route
 selection", J. Exp. Psychol. HPP 29(2), 2003: the goal attracts the heading, each obstacle repels
@@ -26,7 +26,7 @@ _BESIDE = 0.05
 
 
 class Wish(NamedTuple):
-    """The wish of a user.
+    """The deflection that a user wants, before delay and error.
 
     Attributes:
         ahead, aside: deflections of a stick, forward and to the left, from -1 to 1.
@@ -48,7 +48,7 @@ def wish(
     scene: Scene,
     pose: Pose,
 ) -> Wish:
-    """Return the user's wish.
+    """Return the deflection that a user wants.
 
     Args:
         goal: world frame, m.
@@ -70,7 +70,7 @@ def wish(
 
 
 def full(deflection: float) -> float:
-    """Limit a deflection to the stick's full one."""
+    """Clip a deflection to the stick's range."""
     return min(1.0, max(-1.0, deflection))
 
 

@@ -183,7 +183,10 @@ def prepare(
     params: Pointer,
     work: Pointer,
 ) -> int:
-    """Row 0: number of neighbours, sum(k). Then d, q, v_j, k, heaviest first."""
+    """Write the neighbours that matter to ``work``, those with the largest weight first.
+
+    Row 0: their number, and the sum of k. Then d, q, v_j and k of each.
+    """
     room, descends = near_count + wall_count, agent.descends != 0.0
     count = _list(agent, near, near_count, walls, wall_count, params, work)
     _weigh(count, room, agent.fastest, descends, params, work)

@@ -26,7 +26,7 @@ class Params(CostParams):
 
 
 class Header:
-    """Row 0 of ``work``: how many neighbours follow, and the sum of all weights."""
+    """Row 0 of ``work``: number of neighbours that follow, and the sum of all weights."""
 
     count: float
     total: float

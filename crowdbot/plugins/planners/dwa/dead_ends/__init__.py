@@ -1,1 +1,1 @@
-"""Ways out for a robot that comes no farther: a small map, and manoeuvres of long robots."""
+"""Recovery of a robot without progress: a small map, and manoeuvres of long robots."""

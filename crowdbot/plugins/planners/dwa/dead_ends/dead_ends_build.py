@@ -1,4 +1,4 @@
-"""Dead ends: a robot that comes no farther backs off, finds a way on a map, or manoeuvres."""
+"""Dead ends: a robot without progress backs off, plans a path on a map, or manoeuvres."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _NOTHING = np.empty((0, 2))
 
 
 class Detour(NamedTuple):
-    """Changes to one step in a dead end.
+    """Changes to one step that lead out of a dead end.
 
     Attributes:
         goal, room: bearing (rad) and distance (m) of the goal or, on the map, of the next stretch.
@@ -49,7 +49,7 @@ class Detour(NamedTuple):
 
 
 class DeadEnds:
-    """Remembers since when the robot makes no way, and then a small map.
+    """Detects missing progress, and then builds a small map.
 
     Args:
         spec: of the planner.
@@ -117,7 +117,7 @@ class DeadEnds:
         return Detour(self._way - pose.yaw, room, escaping, mapped=True, beside=beside)
 
     def lose_way(self, t: float, distance: float) -> None:
-        """Look for another way at once: the straight one is barred.
+        """Search another path at once, since the straight one is blocked.
 
         Args:
             t: now, s.
@@ -176,7 +176,7 @@ class DeadEnds:
 
 
 def compile_map() -> None:
-    """Compile what `DeadEnds` calls, so that no step of a run waits for it."""
+    """Compile the functions that `DeadEnds` calls, so that no step waits for it."""
     way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, 99.0)  # no way at all is soon found
     apart(np.ones((1, 2)), np.ones((1, 2)), LEGS)
     nearest_per_sector(with_discs(np.ones((1, 2)), np.ones((1, 2)), 0.1), SECTORS, REACH)

@@ -34,7 +34,7 @@ _NONE = np.empty((0, 2))
 
 
 class Manoeuvring:
-    """Remembers standing obstacles and the legs of the manoeuvre.
+    """Plans and drives manoeuvres; remembers static obstacles and the remaining legs.
 
     Pieces of walls seen at an angle are as narrow as legs, and a false person would block a door:
     only isolated points in the map count as standing people.
