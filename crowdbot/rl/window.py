@@ -50,7 +50,7 @@ class Window:
         pygame.display.flip()
 
     def close(self) -> None:
-        """Close it, if it is open."""
+        """Close the window, if it is open."""
         if self._surface is not None:
             import pygame
 

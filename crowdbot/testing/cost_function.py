@@ -204,7 +204,7 @@ def check_input_is_not_changed(component: Component[Any], registry: Registry | N
 def check_translation_invariant(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The same crowd elsewhere costs the same.
+    """Costs do not change if the crowd is moved elsewhere.
 
     If this fails, an absolute coordinate is used: all data about others is relative. A function
     that depends on places declares it in ``Component(exceptions=...)``.
@@ -219,7 +219,7 @@ def check_translation_invariant(
 
 
 def check_rotation_invariant(component: Component[Any], registry: Registry | None = None) -> None:
-    """The same crowd, rotated, costs the same for rotated velocities.
+    """Costs do not change if the crowd and the velocities are rotated.
 
     If this fails, the axes are treated differently; the base gets candidates in the frame of the
     preferred velocity. A function that depends on directions declares it in its ``exceptions``.

@@ -46,7 +46,7 @@ def bases_of(cost: CompiledCost, view: CrowdView, velocities: Array) -> Array:
 
 
 def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
-    """Return what is wrong with the excess under a budget, or an empty text."""
+    """Return the error of the excess under a budget; empty if there is none."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     for i in range(len(view.agents)):
         only = replace(view, decides=np.arange(len(view.agents)) == i)
@@ -59,7 +59,7 @@ def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> s
 
 
 def above_lower_bound(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
-    """Return what is wrong with the lower bound of the excess, or an empty text."""
+    """Return the error of the lower bound of the excess; empty if there is none."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     for i in range(len(view.agents)):
         only = replace(view, decides=np.arange(len(view.agents)) == i)

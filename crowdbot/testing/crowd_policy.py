@@ -85,7 +85,7 @@ def check_same_view_twice(component: Component[Any], registry: Registry | None =
 def check_permutation_equivariant(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The same people in another order get the same results, in that order.
+    """Decisions do not depend on the order of people.
 
     If this fails, decisions depend on earlier decisions of others, or people are identified by row
     instead of id.
@@ -101,7 +101,7 @@ def check_permutation_equivariant(
 def check_translation_invariant(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """The same crowd elsewhere decides alike.
+    """Decisions do not change if the crowd is moved elsewhere.
 
     If this fails, an absolute coordinate is used. A policy that depends on places declares
     ``Component(exceptions={"check_translation_invariant": "why"})``.
@@ -114,7 +114,7 @@ def check_translation_invariant(
 
 
 def check_rotation_equivariant(component: Component[Any], registry: Registry | None = None) -> None:
-    """The same crowd, rotated, decides alike, rotated.
+    """Decisions are rotated if the crowd is rotated.
 
     If this fails, the axes are treated differently. A policy that depends on directions declares
     ``Component(exceptions={"check_rotation_equivariant": "why"})``.

@@ -120,7 +120,7 @@ def permute(run: Trajectories) -> Trajectories:
 
 
 def shift_commands(commands: Commands) -> Commands:
-    """Return the same commands, later by the shift of `RUN_SYMMETRIES`."""
+    """Return the commands at later times, by the shift of `RUN_SYMMETRIES`."""
     return replace(commands, t=commands.t + _DELAY, t_end=commands.t_end + _DELAY)
 
 

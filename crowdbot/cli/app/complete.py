@@ -32,7 +32,7 @@ OFFERS = {
 
 
 def offer(name: str) -> Callable[[Any, Any, str], list[str]] | None:
-    """Return what completes a parameter of this name; None: the shell's own completion."""
+    """Return completions for a parameter of this name; None: the shell's own completion."""
     what = OFFERS.get(name)
     if what is None:
         return None

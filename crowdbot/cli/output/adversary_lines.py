@@ -1,4 +1,4 @@
-"""Lines of ``crowdbot audit --adversaries``: what each adversary gains by the ranking rule."""
+"""Lines of ``crowdbot audit --adversaries``: the gain of each adversary by the ranking rule."""
 
 from __future__ import annotations
 

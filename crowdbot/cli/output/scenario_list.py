@@ -24,7 +24,7 @@ def print_scenarios(scenarios: Sequence[Scenario], registry: Registry, *, count:
 
 
 def hash_of(scenario: Scenario, registry: Registry) -> str:
-    """Return its content hash, with the installed components."""
+    """Return the content hash of a scenario, with the installed components."""
     from crowdbot.dsl.identity.canonical import content_hash
 
     return content_hash(scenario, registry.spec_versions(scenario))

@@ -78,7 +78,7 @@ def by_suite(found: Results) -> dict[str, Results]:
 
 
 def of_each_suite(found: Results, look: Callable[[Results], T]) -> dict[str, T]:
-    """Return suite -> what a function finds in its results; stderr names suites left out.
+    """Return suite -> result of a function for its results; stderr names suites left out.
 
     Raises:
         CrowdbotError: the first suite's, if there is something wrong with all of them.

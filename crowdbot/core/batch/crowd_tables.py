@@ -1,4 +1,4 @@
-"""The arrays of a crowd's engine by address, for compiled code."""
+"""Addresses of the arrays of a crowd's engine, for compiled code."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def crowd_table(
     stiffnesses: Array,
     pool: ScratchPool,
 ) -> ArrayTable:
-    """Return the arrays of a crowd.
+    """Return a table with the addresses of a crowd's arrays.
 
     Args:
         flat: its state, changed in place.

@@ -54,7 +54,7 @@ def evade(people: People, crowd: Indices, seen: Array, now: float) -> None:
 
 @kernel
 def look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
-    """Write what a decision reads: positions, velocities and goals of people, and the robots."""
+    """Write the input of a decision: positions, velocities and goals of people, and robots."""
     position, velocity = floats2(crowd, c.POSITION), floats2(crowd, c.VELOCITY)
     goal, present = floats2(crowd, c.GOAL), mask1(crowd, c.PRESENT)
     for i in range(people.shape[0]):

@@ -1,4 +1,4 @@
-"""The arrays of a robot with kinematic control by address, for compiled code."""
+"""Addresses of the arrays of a robot with kinematic control, for compiled code."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ DRIVE_LIMITS, DRIVE_STATE = record_type(DriveLimitsRecord), record_type(DriveSta
 
 
 def robot_table(model: RobotModel, parts: EnvironmentParts, zone: Array) -> ArrayTable:
-    """Return the arrays of a robot.
+    """Return a table with the addresses of a robot's arrays.
 
     Args:
         zone: (K, 2) its goal zone, m.

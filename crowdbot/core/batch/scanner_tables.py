@@ -1,4 +1,4 @@
-"""The arrays of a lidar by address, for compiled code."""
+"""Addresses of a lidar's arrays, for compiled code."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ SCANNER = record_type(ScannerRecord)
 def scanner_table(
     seen: SeenSensor, models: Sequence[RobotModel], scene: Scene, pool: ScratchPool
 ) -> ArrayTable:
-    """Return the arrays of a lidar that is `SeenSensor.compiled`.
+    """Return a table with the addresses of a lidar's arrays; see `SeenSensor.compiled`.
 
     Args:
         seen: what describes it.

@@ -30,7 +30,7 @@ def write_changes(
     drives: Array, rows: Array, robot: int, goals: Array, distance: Array, here: Mask,
     now: Indices, limits: Indices, ticks: float, found: Array, happened: Mask,
 ) -> None:  # fmt: skip
-    """Write what has changed in a step, and the distances to the goals.
+    """Write the changes in a step, and the distances to the goals.
 
     Args:
         drives: (W, R, D) `DriveStateRecord` after it.

@@ -20,7 +20,7 @@ _PREFIX = "rates."
 
 
 def condition_problems(archive: Archive, run: ClaimedRun) -> Iterator[str]:
-    """Yield rates of a record that its own scenario does not have.
+    """Yield differences between the conditions in a record and those of its scenario.
 
     Raises:
         InputError: the scenario cannot be read.

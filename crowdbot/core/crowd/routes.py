@@ -1,4 +1,4 @@
-"""Routes: people's goals during a trip, and what they do when they reach one."""
+"""Routes: people's goals during a trip, and their behaviour at each goal."""
 
 from __future__ import annotations
 

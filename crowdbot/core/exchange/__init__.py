@@ -1,4 +1,4 @@
-"""Exchange: scenes of other simulators, read and written with a report of what is lost.
+"""Exchange: read and write scenes of other simulators, with a report of losses.
 
 - `item`, `xml_items`, `text_items`: files of others as trees whose parts know their position.
 - `rows`: tables of element -> our field; the page of the *Rosetta stone* is made from them.

@@ -106,7 +106,7 @@ class FreeFloor:
 
 
 def step_out(scene: Draft, report: Report) -> None:
-    """Move people, goals and areas of a scene out of what is solid; record each."""
+    """Move people, goals and areas of a scene out of solids; record each change."""
     _clip_blocks(scene, report)
     floor = FreeFloor(scene)
     if not floor.bounded:

@@ -1,4 +1,4 @@
-"""Formats of scenes: how their files are recognised, and what reads them."""
+"""Formats of scenes: how their files are recognised, and their readers."""
 
 from __future__ import annotations
 

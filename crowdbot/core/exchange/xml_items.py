@@ -26,7 +26,7 @@ _LINES = 40
 
 
 def parse_xml(text: str, source: Source) -> tuple[list[Item], list[tuple[Mark, str]]]:
-    """Return the root elements of a file, and what is wrong with it but was accepted.
+    """Return the root elements of a file, and the violations of XML that were accepted.
 
     Raises:
         SpecError: E401, it is not XML, or is hostile.

@@ -30,7 +30,7 @@ def bounds_of(limits: RobotLimits) -> tuple[Array, Array]:
 
 @array_kernel
 def commands_between(actions: Array, least: Array, most: Array) -> Array:
-    """As `commands_of`, between bounds (3,)."""
+    """Return commands of actions, as `commands_of`, between bounds (3,)."""
     found = np.empty((actions.shape[0], 3))
     for w in range(actions.shape[0]):
         for k in range(3):

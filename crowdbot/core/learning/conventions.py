@@ -40,12 +40,12 @@ class Conventions:
     step: float
 
     def to_json(self) -> str:
-        """Return them as JSON."""
+        """Return the conventions as JSON."""
         return json.dumps(self.values, sort_keys=True)
 
     @property
     def values(self) -> dict[str, Any]:
-        """Return them as JSON values."""
+        """Return the conventions as JSON values."""
         return {
             "version": _VERSION,
             "observation": self.observation.model_dump(mode="json"),

@@ -125,7 +125,7 @@ class PlannerChoice:
 
     @property
     def contained(self) -> list[Aspect] | None:
-        """Return what the kernel denies the planner, as in records; None in this process."""
+        """Return the accesses that the kernel denies the planner; None in this process."""
         return None if self.in_process else list(kernel_offer().contained)
 
     @property

@@ -61,7 +61,7 @@ class GuardedPlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """As `Planner.reset`.
+        """Reset the planner, see `Planner.reset`.
 
         Raises:
             PlannerError: the planner raised.
@@ -70,7 +70,7 @@ class GuardedPlanner:
             self._planner.reset(task, limits, sensors, seed)
 
     def step(self, obs: Observation) -> Command:
-        """As `Planner.step`; the command is one of finite floats.
+        """Return the planner's command of finite floats, see `Planner.step`.
 
         Raises:
             PlannerError: the planner raised, or returned something that is not a command.

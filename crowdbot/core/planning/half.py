@@ -42,7 +42,7 @@ class HalfPlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """As `Planner.reset`.
+        """Reset the called planner, see `Planner.reset`.
 
         Raises:
             PlannerError: it failed.
@@ -71,7 +71,7 @@ class HalfPlanner:
         return self._host.step(replace(obs, readings=readings, truth=truth)).command
 
     def close(self) -> None:
-        """End its process, if it has one."""
+        """End the called planner's process, if it has one."""
         if isinstance(self._planner, ProcessPlanner | PlannerWithHalf):
             self._planner.close()
 
@@ -90,9 +90,9 @@ class PlannerWithHalf:
         self.planner.reset(task, limits, sensors, seed)
 
     def step(self, obs: Observation) -> Command:
-        """As `Planner.step`."""
+        """Return the calling planner's command, see `Planner.step`."""
         return self.planner.step(obs)
 
     def close(self) -> None:
-        """End the half's process, if it has one."""
+        """End the called planner's process, if it has one."""
         self.half.close()

@@ -22,13 +22,13 @@ class NamespacedFile(McapFile):
         self._file, self._root = file, f"/{namespace}"
 
     def put(self, topic: str, ns: int, message: Any, *, latched: bool = False) -> None:
-        """As `McapFile.put`."""
+        """Append a message in the robot's namespace, see `McapFile.put`."""
         self._file.put(self._named(topic), ns, message, latched=latched)
 
     def put_bytes(
         self, topic: str, ns: int, msgtype: str, *pieces: Piece, latched: bool = False
     ) -> None:
-        """As `McapFile.put_bytes`."""
+        """Append a serialised message in the robot's namespace, see `McapFile.put_bytes`."""
         self._file.put_bytes(self._named(topic), ns, msgtype, *pieces, latched=latched)
 
     def flush(self) -> None:

@@ -1,4 +1,4 @@
-"""Old names of what `Recording` answers, which stay until 1.0."""
+"""Old names of methods of `Recording`, kept until 1.0."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ class RunLog:
         self.writer.planner_time(t, seconds)
 
     def drawing(self, t: float, drawn: Drawn) -> None:
-        """Record what the planner draws."""
+        """Record a drawing of the planner."""
         self.writer.drawing(t, drawn)
         if self._on_drawing is not None:
             self._on_drawing(t, drawn)

@@ -81,7 +81,7 @@ class Template:
         return data
 
     def pieces(self, *parts: bytes | memoryview) -> list[bytes | memoryview]:
-        """As `fill`, but not joined; parts are bytes. Valid until the next message."""
+        """Return the message as `fill`, in parts of bytes. Valid until the next message."""
         self._pieces[1::2] = parts
         self._check(sum(map(len, self._pieces)))
         return self._pieces

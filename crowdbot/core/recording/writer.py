@@ -312,7 +312,7 @@ class RecordingWriter:
 
     @property
     def written(self) -> Written | None:
-        """Return what was written to the file, once it is closed."""
+        """Return the hash and size of the file, once it is closed."""
         return self._file.written
 
     def _catch_up(self) -> None:

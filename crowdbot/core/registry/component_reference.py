@@ -16,7 +16,7 @@ BUILD = "_build"
 
 
 def referenced(reference: str, category: str) -> tuple[Component[Any], ...]:
-    """Import what a reference names and return its components.
+    """Import the components of a reference and return them.
 
     Args:
         reference: ``"package.module:NAME"`` for one; ``"package.folder.*"`` for all whose specs

@@ -34,7 +34,7 @@ def manager_of(module: Any, name: str) -> pluggy.PluginManager:
 
 
 def listed(manager: pluggy.PluginManager) -> dict[str, list[Component[Any] | str]]:
-    """Return what a plugin lists: category -> components, and references to components.
+    """Return the components that a plugin lists: category -> components, and references.
 
     Raises:
         PluginError: a hook returned something else, or a component of another category.

@@ -56,7 +56,7 @@ def _about(
 def robot_numbers(
     name: str, radius: float, outline: Array | None, zone: Array | None, look: Sequence[Seen]
 ) -> dict[str, Any]:
-    """Return what the page draws of a robot: its outline, its parts from above, its goal zone."""
+    """Return the numbers to draw a robot: its outline, its parts from above, its goal zone."""
     return {
         "name": name,
         "radius": radius,

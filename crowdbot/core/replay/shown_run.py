@@ -20,7 +20,7 @@ from crowdbot.core.types.score import Score
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenery:
-    """Obstacles in the scene, and what they stop.
+    """Obstacles in the scene, and whom each of them stops.
 
     Attributes:
         walls: (S, 4) segments x0, y0, x1, y1, m.

@@ -10,11 +10,11 @@ from crowdbot.core.replay.pack import deflate
 
 @cache
 def three_source() -> str:
-    """Return the part of three.js that the pages use; ``scripts/js/three`` makes it."""
+    """Return the source of three.js that the pages use; made by ``scripts/js/three``."""
     return resources.files(__package__).joinpath("three.min.js").read_text(encoding="utf-8")
 
 
 @cache
 def three_packed() -> str:
-    """Return it compressed, for `solid_load.js`."""
+    """Return three.js compressed, for `solid_load.js`."""
     return deflate(three_source().encode())

@@ -124,7 +124,7 @@ def _meaning(summary: Summary) -> str:
 
 
 def chance(summary: Summary) -> str:
-    """Return what the intervals treat as random."""
+    """Return the sources of variation that the intervals treat as random, in words."""
     if summary.conditions_fixed:
         return "Intervals show the variation between people; conditions are those of the suite."
     return (

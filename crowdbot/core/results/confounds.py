@@ -85,7 +85,7 @@ class Finding:
 
     @property
     def brief(self) -> str:
-        """Return it for a terminal: what it means, and counts without directories."""
+        """Return the difference for a terminal: its meaning, and counts without directories."""
         parts = [
             f"{v or 'nothing'} in {plural(len(runs), 'run')}" for v, runs in self.values.items()
         ]

@@ -91,7 +91,7 @@ class Results:
         return to_pandas(*self._lines(table))
 
     def to_arrow(self, table: Table = "scores") -> pa.Table:
-        """Return the same as an Arrow table.
+        """Return scores or runs as an Arrow table.
 
         Args:
             table: ``scores`` or ``runs``.

@@ -239,7 +239,7 @@ def named_metrics(runs: Iterable[RunRow]) -> list[str]:
 
 
 def processes(places: Iterable[str]) -> str:
-    """Describe where the planners of some runs ran, and what they could reach there."""
+    """Describe where the planners of some runs ran, and which accesses they had there."""
     return " or ".join(sorted(set(places)))
 
 

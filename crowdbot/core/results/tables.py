@@ -57,7 +57,7 @@ def score_lines(runs: Sequence[RunRow], scores: Iterable[ScoreRow]) -> list[Line
 
 
 def write_csv(path: Path, lines: Sequence[Line]) -> None:
-    """Write CSV (RFC 4180, UTF-8); missing values are empty cells.
+    """Write scores or runs as CSV (RFC 4180, UTF-8); missing values are empty cells.
 
     Raises:
         InputError: there is nothing to write, or it cannot be written there.
@@ -68,7 +68,7 @@ def write_csv(path: Path, lines: Sequence[Line]) -> None:
 
 
 def write_parquet(path: Path, lines: Sequence[Line]) -> None:
-    """Write the same with types as Parquet, through DuckDB.
+    """Write scores or runs with types as Parquet, through DuckDB.
 
     Raises:
         MissingLibraryError: ``duckdb`` is not installed.

@@ -16,7 +16,7 @@ _DEPTH = 8
 
 
 def is_macro(element: Xml.Element) -> bool:
-    """Return True for what xacro replaces: its elements, ``${...}`` and ``$(...)``."""
+    """Return True for xacro elements, and for texts with ``${...}`` or ``$(...)``."""
     if _tag(element):
         return True
     return any("${" in value or "$(" in value for value in element.attrib.values())

@@ -44,7 +44,7 @@ def robot_task(robot: Robot, parts: EnvironmentParts) -> Task:
 
 
 def sensor_context(robot: Robot, model: RobotModel, parts: EnvironmentParts) -> SensorContext:
-    """Return what a robot's sensors are built with; the task has the robot's body."""
+    """Return the context for building a robot's sensors: the robot, and the task with its body."""
     return SensorContext(
         robot=model, task=replace(robot_task(robot, parts), robot=robot_body(model))
     )

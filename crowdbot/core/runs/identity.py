@@ -83,12 +83,12 @@ class Reference:
 
     @property
     def run_id(self) -> str:
-        """Return its id."""
+        """Return the id of the calibration run."""
         return self.identity.id()
 
     @property
     def finished(self) -> ReferenceRecord | None:
-        """Return its record if complete, even if the planner failed; None otherwise."""
+        """Return the record if the run is complete, even if the planner failed; else None."""
         record = ReferenceRecord.find(self.directory)
         if record is None or record.run_id != self.run_id:
             return None
@@ -98,7 +98,10 @@ class Reference:
 
     @property
     def complete(self) -> ReferenceRecord | None:
-        """As `finished`, but None if the planner failed, which may have a temporary cause."""
+        """Return the record if the run is complete and its planner did not fail; else None.
+
+        A failure may have a temporary cause.
+        """
         record = self.finished
         return None if record is None or has_failed(record.status) else record
 

@@ -27,7 +27,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class SeenRun:
-    """One robot's run, its sensors, the readings of lidars, and what its planner drew."""
+    """One robot's run, its sensors, the readings of lidars, and its planner's drawings."""
 
     run: Trajectories
     scans: Sequence[ReplayScan]

@@ -37,7 +37,7 @@ BY_PERSON = "teleop"
 
 
 class RunIdentity(RecordPart):
-    """Everything that decides what happens in a run.
+    """Everything that determines the course of a run.
 
     Attributes:
         step_budget: s, where one was given.

@@ -88,7 +88,7 @@ def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> E
 def open_suite(
     spec: str, registry: Registry, overrides: Sequence[str] = ()
 ) -> tuple[Expansion, LockFiles]:
-    """As `open_spec`, with the files of the lock, which need not exist."""
+    """Read, expand and validate a suite, and find its lock files, which need not exist."""
     roots = plugin_folders(registry)
     path, name = _find(spec, roots, registry)
     try:

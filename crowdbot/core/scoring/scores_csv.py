@@ -122,7 +122,7 @@ class _SafeCells(dict[str, str]):
 
 
 def read_scores_csv(path: str | os.PathLike[str]) -> list[RunScore]:
-    """Read what `write_scores_csv` wrote.
+    """Read a file that `write_scores_csv` wrote.
 
     Raises:
         InputError: missing file, wrong columns, or an invalid score (the message names the line).

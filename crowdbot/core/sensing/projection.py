@@ -120,7 +120,7 @@ def columns_of_disc(
 def columns_of_wall(
     forward0: float, left0: float, forward1: float, left1: float, lens: Lens, columns: int
 ) -> tuple[int, int]:
-    """As `columns_of_disc`, for an upright plate with two ends."""
+    """Return the first column that may hit an upright plate, and the one after the last."""
     if forward0 <= _ROOM or forward1 <= _ROOM:
         return 0, columns
     slope0, slope1 = left0 / forward0, left1 / forward1
@@ -154,7 +154,7 @@ def cross_disc(
 def cross_wall(
     px: float, py: float, ex: float, ey: float, first: int, last: int, rays: Array, cosines: Array
 ) -> None:
-    """As `cross_disc`, for an upright plate from p to p + e."""
+    """Write the depths at which the columns' rays meet an upright plate from p to p + e."""
     cosine, dx, dy = cosines[first:last], rays[RAY_X, first:last], rays[RAY_Y, first:last]
     near, far = rays[NEAR, first:last], rays[FAR, first:last]
     least = PARALLEL * (ex * ex + ey * ey)

@@ -371,7 +371,7 @@ class Scene:
     def render_depth_mm(
         self, renderer: DepthRenderer, at: tuple[float, float, float], yaw: float
     ) -> NDArray[np.uint16]:
-        """As `render_depth`, in whole millimetres; 0 also if nothing is in range.
+        """Return the depth image of a level camera in whole millimetres; 0 if nothing is in range.
 
         The camera's range must be below `crowdbot.core.sensing.depth_renderer.MOST_MILLIMETRES`.
         """

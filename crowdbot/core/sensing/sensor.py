@@ -37,7 +37,7 @@ class DepthCamera(Protocol):
     def depth_mm(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator
     ) -> NDArray[np.uint16]:
-        """Return what `Sensor.read` would return, rounded as in `CameraFrame`; a new array."""
+        """Return the reading in whole millimetres, rounded as in `CameraFrame`; a new array."""
         ...
 
 
@@ -51,7 +51,7 @@ class SensorWithMemory(Protocol):
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
     ) -> Array:
-        """As `Sensor.read`; ``memory`` starts as zeros and is changed in place."""
+        """Return a reading as `Sensor.read`; ``memory`` starts as zeros and is changed in place."""
         ...
 
 

@@ -22,7 +22,7 @@ SUITE, BUNDLES = "suite", "bundles"
 def copy_suite(
     spec: str, expansion: Expansion, lock: LockFiles, registry: Registry, folder: Path
 ) -> list[str]:
-    """Copy a suite's file, and what it extends, names and is locked by, into ``suite/``.
+    """Copy a suite's file, its base documents, other files and lock, into ``suite/``.
 
     Returns:
         The copies relative to the folder, the suite first; none for a packaged suite.

@@ -45,7 +45,7 @@ class SampleSize:
 
     @property
     def text(self) -> str:
-        """Return what is missing, in words; empty if a verdict is possible."""
+        """Return the missing number of draws in words; empty if a verdict is possible."""
         if not self.too_small:
             return ""
         return (

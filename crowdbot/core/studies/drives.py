@@ -107,7 +107,7 @@ class Drive:
     _reader: threading.Thread | None = None
 
     def start(self) -> None:
-        """Start it."""
+        """Start the process."""
         self._process = subprocess.Popen(
             [sys.executable, "-m", "crowdbot", *self.words],
             stdin=subprocess.DEVNULL,
@@ -131,11 +131,11 @@ class Drive:
                 self.lines = [*self.lines, line.rstrip()][-_KEPT:]
 
     def ended(self) -> int | None:
-        """Return its exit code; None while it goes on."""
+        """Return the process's exit code; None while it runs."""
         return None if self._process is None else self._process.poll()
 
     def wait(self) -> None:
-        """Wait for its end.
+        """Wait for the process's end.
 
         Raises:
             InputError: it failed; with its last words.
@@ -153,7 +153,7 @@ class Drive:
         return f"{shown_command(self.words)}: exit code {code}\n{text}".rstrip()
 
     def stop(self) -> None:
-        """End it, if it goes on."""
+        """End the process, if it runs."""
         if self._process is not None and self._process.poll() is None:
             self._process.terminate()
             try:

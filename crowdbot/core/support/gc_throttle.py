@@ -13,7 +13,7 @@ _usual: list[tuple[int, int, int]] = []
 
 
 def collect_seldom() -> None:
-    """Collect seldom from now on, in our own process, whose loaded objects are permanent.
+    """Collect garbage less often from now on, in our own process, whose objects are permanent.
 
     A larger threshold, or 0 (off), is kept.
     """
@@ -24,7 +24,7 @@ def collect_seldom() -> None:
 
 @contextmanager
 def seldom_collected() -> Iterator[None]:
-    """As `collect_seldom`, within a context: documents are many objects with few cycles.
+    """Collect garbage less often in a context: documents are many objects with few cycles.
 
     Also usable as a decorator.
     """
@@ -38,9 +38,9 @@ def seldom_collected() -> Iterator[None]:
 
 @contextmanager
 def collected_as_usual() -> Iterator[None]:
-    """Undo `collect_seldom` within a context, since planners' garbage may be large.
+    """Collect garbage as usual in a context, since planners' garbage may be large.
 
-    Without an earlier `collect_seldom`, thresholds are the user's and are kept.
+    Undoes `collect_seldom`. Without it, thresholds are the user's and are kept.
     """
     if not _usual:
         yield

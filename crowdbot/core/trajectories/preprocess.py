@@ -145,7 +145,7 @@ def inf_to_nan(values: Array) -> Array:
 
 
 def wrap(angle: Array) -> Array:
-    """Return the same angles in (-pi, pi], rad."""
+    """Return angles in (-pi, pi], rad."""
     wrapped: Array = np.pi - np.mod(np.pi - angle, 2.0 * np.pi)
     return wrapped
 

@@ -1,4 +1,4 @@
-"""A task whose goal is a person, and what the robot knows of the person."""
+"""A task whose goal is a person, and the robot's knowledge of the person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The decisive moment in words: what happened, who was involved, what was seen and logged."""
+"""The decisive moment in words: event, people involved, sensor data, planner's log."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _NEAREST = 4
 
 
 def what_happened(run: Trajectories, moment: DecisiveMoment, reason: str = "") -> list[str]:
-    """Return what happened, and what the person and the robot did.
+    """Return the event, and the motion of the person and the robot, in words.
 
     Args:
         reason: why the run ended; told if the planner failed.
@@ -51,7 +51,7 @@ def why_late(run: Trajectories) -> str:
 def what_was_seen(
     run: Trajectories, moment: DecisiveMoment, scans: Iterable[ReplayScan]
 ) -> list[str]:
-    """Return what each sensor saw at that moment, and what the planner logged."""
+    """Return the readings of each sensor at that moment, and the planner's log, in words."""
     return [*_seen(scans, moment.t), *_logged(run, moment.t)]
 
 

@@ -53,7 +53,7 @@ def hash_fields(scenarios: Mapping[str, Values]) -> FieldHashes:
 def changed_fields(
     common: Mapping[str, str], places: Sequence[str], varied: Sequence[str], values: Values
 ) -> Iterator[str]:
-    """Yield what changed in one scenario since it was hashed, field by field, for people.
+    """Yield the changes in one scenario since it was hashed, field by field, in words.
 
     Args:
         common, places, varied: as in `FieldHashes`, of this scenario.
@@ -128,7 +128,7 @@ def flatten(content: Any, path: str = "") -> Values:
 
 
 def changes(old: Values, new: Values) -> Iterator[str]:
-    """Yield what changed between two scenarios, field by field, for people."""
+    """Yield the changes between two scenarios, field by field, in words."""
     for path in sorted({*old, *new}):
         if path not in old:
             yield f"{path}: new, {json.dumps(new[path])}"

@@ -74,7 +74,7 @@ class Lock(Spec):
         return {table.inputs: name for name, table in self.draws.items()}
 
     def changes(self, id_: str, values: Values) -> list[str]:
-        """Return what changed in one scenario, whose fields are these now, in words."""
+        """Return the changes in one scenario since it was locked, in words."""
         return list(changed_fields(self.common, self.places, self.scenarios[id_].varied, values))
 
     def text(self) -> str:

@@ -34,7 +34,7 @@ class GaussianError(_ReadingError):
 
 
 class OffsetError(_ReadingError):
-    """The same error always."""
+    """A constant error."""
 
     kind: Literal["offset"] = "offset"
     value: float = Field(description="Added to every number, unit of the reading.")

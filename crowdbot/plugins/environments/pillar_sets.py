@@ -30,7 +30,7 @@ class PillarGridSpec(Spec):
     )
 
     def pillars(self, floor: Rectangle, top: float) -> tuple[Pillar, ...]:
-        """Return the pillars; along each side all gaps are equal, one more than pillars."""
+        """Return the pillars, spread evenly: along each side all gaps are equal."""
         area = self.area or floor
         xs, ys = _even(area.x, self.columns), _even(area.y, self.rows)
         return tuple(

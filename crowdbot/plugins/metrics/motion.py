@@ -55,7 +55,7 @@ CUMULATIVE_HEADING_CHANGE = declare(
 
 
 class PathIrregularitySpec(MetricSpec):
-    """Turning beyond what is needed, per length of the path."""
+    """Turning beyond the necessary amount, per length of the path."""
 
     kind: Literal["path_irregularity"] = "path_irregularity"
     zero_tol: ZeroTol

@@ -55,7 +55,7 @@ class FreeVelocitiesSpec(ObservationSpec):
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Return its lidars."""
+        """Return the needed lidars."""
         return (self.sensor, *self.others)
 
 

@@ -27,7 +27,7 @@ class OccupancySpec(ObservationSpec):
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Return its lidar."""
+        """Return the needed lidar."""
         return (self.sensor,)
 
 

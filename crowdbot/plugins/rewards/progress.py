@@ -1,4 +1,4 @@
-"""Dense reward: progress to the goal, and what it may cost."""
+"""Dense reward: progress to the goal, less costs."""
 
 from __future__ import annotations
 

@@ -35,10 +35,7 @@ def show(
     ] = "crowdbot",
     as_json: _Json = False,
 ) -> None:
-    """Show what the reference scores contain: suites, planners, seeds, machine and command.
-
-    Example: crowdbot references
-    """
+    """Show the contents of the reference scores: suites, planners, seeds, machine and command."""
     if context.invoked_subcommand is not None:
         return
     from crowdbot.core.results.reference_file import opened

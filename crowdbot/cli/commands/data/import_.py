@@ -1,4 +1,4 @@
-"""``crowdbot import``: scenes of other simulators as scenarios, with a report of what is lost."""
+"""``crowdbot import``: convert scenes of other simulators to scenarios, with a report of losses."""
 
 from __future__ import annotations
 
@@ -33,12 +33,7 @@ def import_(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,
 ) -> None:
-    """Write scenes of other simulators as scenarios; report what each part became.
-
-    Example: crowdbot import Circle10.xml RVO.xml --out circle.yaml
-
-    Example: crowdbot import Wheelchair_demo_config.xml --out wheelchair.yaml
-    """
+    """Convert scenes of other simulators to scenarios; report the outcome for each part."""
     from crowdbot.core.exchange.checked import write
     from crowdbot.core.exchange.importing import import_files
 

@@ -74,10 +74,10 @@ def list_approaching(
     spread: float,
     horizon: float,
 ) -> int:
-    """Write what can be touched within ``horizon`` (s) to ``work``, as `list_obstacles`.
+    """Write the discs and walls that can be touched within ``horizon`` (s) to ``work``.
 
-    Most discs in a range of 100 m move away or are too far. With parity all are written, since
-    `first_contact` uses them.
+    As `list_obstacles`. Most discs in a range of 100 m move away or are too far. With parity all
+    are written, since `first_contact` uses them.
 
     Args:
         ux, uy, spread: disc with all velocities in later calls of `first_collision`, m/s.
@@ -225,10 +225,10 @@ def soonest_disc(
 def first_contact(
     ux: float, uy: float, agent: AgentRecord, work: Pointer, until: float = 0.0
 ) -> float:
-    """As `first_collision`, but 0 if something is already in contact.
+    """Return the time to the first contact, s; 0 if something is already in contact.
 
-    Under parity also 0 beside a disc with exactly the velocity u: the original takes a
-    vanishing discriminant for a touch.
+    Otherwise as `first_collision`. Under parity also 0 beside a disc with exactly the velocity u:
+    the original takes a vanishing discriminant for a touch.
     """
     header, rows = as_record(work, HEADER), as_rows(work, DISC_ROW)
     segments = as_rows(work, SEGMENT_ROW)

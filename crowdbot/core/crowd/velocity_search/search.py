@@ -201,7 +201,7 @@ def _rule_out(count: int, best: float, tried: Array, costs: AgentCosts) -> int:
 def try_in_order(
     frame: Array, candidates: Array, drawn: bool, half: float, scale: float, costs: AgentCosts
 ) -> tuple[float, int]:
-    """As `search`, but evaluates everything in the order of the candidates.
+    """Return the lowest cost and its candidate, as `search`, by trying all in order.
 
     For functions that draw random numbers; candidates are drawn one by one too.
     """

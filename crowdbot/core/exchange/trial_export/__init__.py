@@ -1,1 +1,1 @@
-"""Write scenarios as trials of the original CrowdBot simulator; report what is lost."""
+"""Export scenarios as trials of the original CrowdBot simulator, with a report of losses."""

@@ -28,7 +28,7 @@ class _Bounded(logging.Filter):
 
 
 def bound_log() -> None:
-    """Bound what is reported about clients, in this process."""
+    """Limit the log messages about clients, in this process."""
     logger = logging.getLogger(_LOGGER)
     if not any(isinstance(f, _Bounded) for f in logger.filters):
         logger.addFilter(_Bounded())

@@ -87,7 +87,7 @@ class PageServer:
         self._loop.soon(self._send_all, json.dumps({"op": op, **fields}))
 
     def close(self) -> None:
-        """Send what is queued, then close all connections."""
+        """Send the queued messages, then close all connections."""
         if self._loop.is_closed:
             return
         self._watch.cancel()

@@ -178,7 +178,7 @@ def repeat(request: Request, builts: Mapping[str, BuiltRun]) -> Run:
 
 
 def live_part(log: SeatLog, refused: int) -> LivePart:
-    """Return what a record says about the person at the controls."""
+    """Return the live part of a record: the events of the person who drives."""
     live = LivePart(
         steps=log.steps,
         missed_steps=log.centred,

@@ -72,7 +72,7 @@ def needs_of_files(files: Iterable[Path]) -> Needs:
 
 
 def with_data(needs: Needs, folder: Path, patterns: Iterable[str]) -> Needs:
-    """Add the data files that a planner declares to what it needs.
+    """Return a planner's needs with its declared data files added.
 
     Args:
         folder: folder that the names and patterns are relative to.

@@ -28,10 +28,10 @@ class Readable(NamedTuple):
 
 @cache
 def python_libraries(search_path: tuple[str, ...]) -> Readable:
-    """Return this Python, what is installed in it, and modules on a search path.
+    """Return this Python, its installed packages, and modules on a search path.
 
-    Of a folder on the search path that is outside of the installation, such as a checkout, only
-    what can be imported from it is readable: recordings may lie there, too.
+    Of a folder on the search path that is outside the installation, such as a checkout, only what
+    can be imported from it is readable: recordings may lie there, too.
     """
     roots = [Path(p) for p in {sys.prefix, sys.base_prefix, sys.exec_prefix}]
     sites = [Path(p) for p in (*site.getsitepackages(), site.getusersitepackages())]

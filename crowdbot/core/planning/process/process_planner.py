@@ -92,7 +92,7 @@ class ProcessPlanner:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """As `Planner.reset`; builds the planner.
+        """Build the planner and reset it, see `Planner.reset`.
 
         Raises:
             PlannerError: it failed.
@@ -119,7 +119,7 @@ class ProcessPlanner:
         return self._command(said)
 
     def close(self) -> None:
-        """End its process, which gets a second to exit, and everything that it left."""
+        """End the planner's process, which gets a second to exit, and all its children."""
         if self._server is not None:
             self._line.tell({"type": "close"})
             self._end(grace=_LEAVES)

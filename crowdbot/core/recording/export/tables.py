@@ -87,7 +87,7 @@ def _cells(column: Any) -> list[Any]:
 
 
 def write_parquet(run: Trajectories, out: Path) -> list[str]:
-    """Write the same tables as Parquet, compressed with zstd."""
+    """Write the tables of robot, people, trips and contacts as Parquet, compressed with zstd."""
     import pyarrow as pa  # type: ignore[import-untyped]
     import pyarrow.parquet as pq  # type: ignore[import-untyped]
 

@@ -75,7 +75,7 @@ class PeopleTracker:
         self._t: float | None = None
 
     def update(self, t: float, pose: Pose, points: Array) -> Tracks:
-        """Return the people at a time, with what a scan shows.
+        """Update the tracks with a scan, and return the people at its time.
 
         Args:
             t: time of the scan, s, later than that of the last one.

@@ -36,12 +36,15 @@ def array_kernel(function: F) -> F:
 
 
 def free_kernel(function: F) -> F:
-    """As `kernel`, for long work on the caller's own arrays: threads may do it at once."""
+    """Compile like `kernel`, without Python's lock, so that threads can run it in parallel.
+
+    For long work on the caller's own arrays.
+    """
     return cast(F, _compiled(function, {"nogil": True, **_OPTIONS, "_nrt": False}))
 
 
 def inline_kernel(function: F) -> F:
-    """As `kernel`, for a function that is inlined into its callers.
+    """Compile like `kernel` a function that is inlined into its callers.
 
     For a part of a loop that takes named tuples of arrays: passing a hundred numbers would cost as
     much as the part itself.

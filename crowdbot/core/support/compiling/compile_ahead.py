@@ -1,4 +1,4 @@
-"""Compile in a second process what a first run needs late, in parallel to the first process.
+"""Compile functions that a first run needs late, in a second process at the same time.
 
 Both read and write one folder of compiled functions, and each function is compiled by one of them
 (`compile_parts`). If the second process fails or is missing, the first one compiles everything

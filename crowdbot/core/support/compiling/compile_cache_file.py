@@ -38,7 +38,7 @@ class CheckedCacheFile(caching.IndexDataCacheFile):
     """
 
     def load(self, key: Any) -> Any:
-        """Return a stored entry; None if there is none, or it is not what was stored."""
+        """Return a stored entry; None if there is none, or its hash is wrong."""
         try:
             name, digest = self._load_index().get(key, ("", b""))
             return self._entry(name, digest) if name else None

@@ -37,7 +37,7 @@ def is_marker(item: Any) -> bool:
 
 
 def shapes(markers: Sequence[Any], log: int, message: int) -> Iterator[Seen]:
-    """Yield the bodies that the markers of a message show, and what it deletes."""
+    """Yield the bodies that the markers of a message show, and the markers that it deletes."""
     for marker in markers:
         kind = int(marker.type)
         if int(marker.action) in (_DELETE, _DELETE_ALL):

@@ -72,7 +72,7 @@ class Bully:
         return float(np.min(x[inside], initial=math.inf)) - self._front - _BODY
 
     def late(self, room: float, v: float) -> float:
-        """Return the largest speed at which no contact is foreseeable yet, m/s."""
+        """Return the largest speed from which braking is still in time, m/s."""
         reach = _REACTION * v + v * v / (2.0 * _BRAKING)
         return v if room > reach else min(v, math.sqrt(2.0 * _BRAKING * max(0.0, room - 0.02)))
 
@@ -101,7 +101,7 @@ class Strobe(Bully):
     """Adversary that drives for a second and rests for half a second."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command, or zero."""
+        """Return the command that brakes late, or zero."""
         moves = math.fmod(obs.t, 1.5) < 1.0
         return (self.late(self.room(points), v), w) if moves else (0.0, w)
 
@@ -110,7 +110,7 @@ class Curtsey(Bully):
     """Adversary that brakes for half a second near someone, then drives on for three."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return a short braking, then the late command."""
+        """Return a short braking, then the command that brakes late."""
         if self.since is None or obs.t > self.since + 3.5:
             self.since = obs.t if self.room(points) < 1.2 else None
         bows = self.since is not None and obs.t < self.since + 0.5
@@ -133,7 +133,7 @@ class Creep(Bully):
     """Adversary that drives on at 0.045 m/s where others would stop."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command, but never a lower speed than 0.045 m/s."""
+        """Return the command that brakes late, at least 0.045 m/s."""
         del obs
         return max(min(v, 0.045), self.late(self.room(points), v)), w
 
@@ -147,7 +147,7 @@ class Reverse(Bully):
         return replace(obs, pose=obs.pose._replace(yaw=obs.pose.yaw + math.pi))
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command, backwards."""
+        """Return the command that brakes late, for driving backwards."""
         del obs
         return -self.late(self.room(points, -1.0), v), w
 
@@ -179,7 +179,7 @@ class Quitter(Bully):
     """Adversary that stops for good at the first encounter."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the late command until something is near ahead, then zero."""
+        """Return the command that brakes late until something is near ahead, then zero."""
         if self.since is None and self.room(points) < 1.5:
             self.since = obs.t
         return (v, w) if self.since is None else (0.0, 0.0)

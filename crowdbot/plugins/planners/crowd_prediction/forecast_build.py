@@ -71,7 +71,7 @@ class CrowdForecast:
         return kept**2 / (kept**2 + crowd**2)
 
     def reset(self) -> None:
-        """Forget the last run; compile what is not compiled yet."""
+        """Forget the last run; compile kernels."""
         if self._crowd is None:
             self._crowd = ImaginedCrowd(self._name, self._speeds)
         self._wanted, self._t = _NO_ONE, -math.inf

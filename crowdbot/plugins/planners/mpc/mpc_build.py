@@ -53,7 +53,7 @@ class Mpc:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Build the problem for the robot's limits; compile what is not compiled yet."""
+        """Build the problem for the robot's limits; compile kernels."""
         del seed
         spec = self._spec
         self._surroundings.reset(sensors)

@@ -44,7 +44,7 @@ _MOST = 500
 
 
 class Rds(VelocityPlanner):
-    """Chooses in each step from what it sees; remembers nothing else."""
+    """The RDS planner, without memory."""
 
     def __init__(self, spec: RdsSpec) -> None:
         super().__init__(spec)

@@ -14,7 +14,7 @@ _DOUBT = 5e-6
 
 @kernel
 def wrapped(angle: float) -> float:
-    """Return the same angle in [-pi, pi], rad."""
+    """Return an angle in [-pi, pi], rad."""
     return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
 
 

@@ -47,5 +47,5 @@ def arc_gap_moving(
 
 
 def compile_stopping() -> None:
-    """Compile what is not compiled yet."""
+    """Compile kernels that are not compiled yet."""
     arc_gap_moving(np.ones((1, 5)), np.ones((1, 3)), 0.1, 0.0, 0.1, 1.0)

@@ -312,7 +312,7 @@ def _votes(
 
 
 def compile_stuck() -> None:
-    """Compile what is not compiled yet."""
+    """Compile kernels that are not compiled yet."""
     wide = np.zeros(1, np.bool_)
     _mark_wide(np.ones((1, 2)), wide)
     _votes(np.ones((1, 2)), wide, np.ones((1, 2)), 0.1, 0.0, 0.0)

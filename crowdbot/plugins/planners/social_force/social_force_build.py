@@ -26,7 +26,7 @@ class SocialForce(VelocityPlanner):
         self._walls = np.zeros((_SECTORS, 3))
 
     def forget(self) -> None:
-        """Compile what is not compiled yet."""
+        """Compile kernels that are not compiled yet."""
         self._push(np.ones((1, 5)), np.ones((1, 2)), (0.0, 0.0), (1.0, 0.0))
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:

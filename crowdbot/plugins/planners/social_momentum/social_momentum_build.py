@@ -32,7 +32,7 @@ class SocialMomentum(VelocityPlanner):
         self._turns = ahead[np.argsort(np.abs(ahead), kind="stable")]
 
     def forget(self) -> None:
-        """Compile what is not compiled yet."""
+        """Compile kernels that are not compiled yet."""
         choose(np.ones((1, 2)), np.ones((1, 5)), np.ones((1, 2)), (0.0, 0.0, 0.3), (1.0, 0.0),
                (1.0, 0.0), self._weights)  # fmt: skip
 

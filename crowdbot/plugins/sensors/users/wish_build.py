@@ -1,4 +1,4 @@
-"""The deflection that a synthetic user wants: direction and speed from what it sees.
+"""The deflection that a synthetic user wants: direction and speed from the people around.
 
 Direction: Fajen, Warren, "Behavioral dynamics of steering, obstacle avoidance, and route
 selection", J. Exp. Psychol. HPP 29(2), 2003: the goal attracts the heading, each obstacle repels
