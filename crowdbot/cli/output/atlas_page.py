@@ -1,4 +1,4 @@
-"""The atlas of scores as a page of Markdown."""
+"""The atlas of scores, which shows what drives each metric, as a page of Markdown."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LITTLE = 0.05
 
 
 def atlas_page(entries: Mapping[str, Sequence[AtlasEntry]]) -> str:
-    """Return a table for each suite, with a heading where there are several."""
+    """Return the atlas as Markdown: a table for each suite."""
     parts = [_INTRODUCTION]
     for suite, some in entries.items():
         parts += [f"## {suite}\n"] if len(entries) > 1 else []

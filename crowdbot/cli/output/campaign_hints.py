@@ -32,13 +32,13 @@ def known_runs(plan: Plan) -> str:
 
 
 class OwnFirst:
-    """Prints once that only runs of floor and ceiling planners remain."""
+    """Tells the user once that only runs of floor and ceiling planners remain."""
 
     def __init__(self) -> None:
         self._waits = True
 
     def line(self, state: State) -> str:
-        """Return the line after the last job of the user's own planners, else an empty text."""
+        """Return a message, once the user's own planners are done; else an empty text."""
         left = state.left.values()
         if not (self._waits and left and all(job.added for job in left)):
             return ""

@@ -64,8 +64,8 @@ def draw_goal(
 ) -> None:
     """Set agent i's goal for the current trip: a point of the out-portal, one radius inside.
 
-    With `RulesRecord.goal_ahead` it lies in the out-portal as the start (x, y) lies in the
-    in-portal, clamped to its sides; otherwise it is drawn.
+    With `RulesRecord.goal_ahead` it has the same relative position in the out-portal as the start
+    (x, y) in the in-portal, clamped to its sides; otherwise it is drawn.
     """
     traits = people.traits[i]
     flow, radius = int(traits.flow), traits.radius

@@ -59,7 +59,7 @@ class Row:
 
     @property
     def fate(self) -> Fate:
-        """Return the outcome for the part."""
+        """Return the outcome for the file's part: carried over, interpreted, or left out."""
         if not self.ours:
             return Fate.LEFT_OUT
         return Fate.INTERPRETED if self.note else Fate.CARRIED

@@ -51,9 +51,9 @@ SPEED_TOLERANCE = 1e-9
 
 
 class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec], declared=TIME_TO_GOAL_SIMILARITY):
-    """Scores ``time_to_goal_similarity``: times; ``corrected`` per straight distance.
+    """Scores ``time_to_goal_similarity``: the robot's time to goal over that of people.
 
-    Needs trips, and no reference run.
+    ``corrected``: each per straight distance. Needs trips, and no reference run.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -71,9 +71,9 @@ class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec], declared=TIME_
 
 
 class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec], declared=PATH_LENGTH_SIMILARITY):
-    """Scores ``path_length_similarity``: lengths; ``corrected`` per straight distance.
+    """Scores ``path_length_similarity``: the robot's path length over that of people.
 
-    Needs trips, and no reference run.
+    ``corrected``: each per straight distance. Needs trips, and no reference run.
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -124,7 +124,7 @@ class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec], declared=HEADING_SIM
 
 
 class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec], declared=VELOCITY_SIMILARITY):
-    """Scores ``velocity_similarity``: the robot's speed against the mean speed of all people."""
+    """Scores ``velocity_similarity``: the robot's speed over the mean speed of all people."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         speeds = people_speeds(run, self.spec.jump_speed)
@@ -134,7 +134,7 @@ class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec], declared=VELOCITY_
 class NeighbourVelocitySimilarity(
     RobotMetric[NeighbourVelocitySimilaritySpec], declared=NEIGHBOUR_VELOCITY_SIMILARITY
 ):
-    """Scores ``neighbour_velocity_similarity``: speed against the mean of people near it."""
+    """Scores ``neighbour_velocity_similarity``: speed over the mean speed of people near it."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         speeds, distance = (

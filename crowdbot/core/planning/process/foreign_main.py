@@ -1,8 +1,8 @@
 """Run a planner in a Python without crowdbot: ``foreign_main.py FILE CLASS``.
 
-Run by that Python as a script. It uses only the standard library and the two files beside it, and
-supports Python 3.8. If that Python has numpy, planners get arrays, else tuples of numbers. They may
-``import crowdbot_planner``, which has the names below.
+That Python runs this file as a script. It uses only the standard library and the two files beside
+it, and supports Python 3.8. If that Python has numpy, planners get arrays, else tuples of numbers.
+They may ``import crowdbot_planner``, which has the names below.
 """
 
 from __future__ import annotations

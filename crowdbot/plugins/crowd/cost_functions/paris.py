@@ -1,7 +1,7 @@
-"""Paris: passing before or behind each neighbour.
+"""Paris: cost of passing before or behind each neighbour.
 
-Source: Paris, Pettré, Donikian, "Pedestrian reactive navigation for crowd simulation: a
-predictive approach", CGF 26 (2007), in the interpretation of van Toll et al., I3D 2020.
+Source: Paris, Pettré, Donikian, "Pedestrian reactive navigation for crowd simulation: a predictive
+approach", CGF 26 (2007), in the interpretation of van Toll et al., I3D 2020.
 """
 
 from __future__ import annotations
