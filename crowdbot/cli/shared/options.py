@@ -24,6 +24,34 @@ __all__ = [
     "planner_place",
 ]
 
+SuiteArgument = Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")]
+OnlyScenarios = Annotated[
+    list[str] | None, typer.Option(metavar="GLOB", help="Only scenarios that match; repeatable.")
+]
+EveryScenarioSet = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."),
+]
+Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")]
+OwnRecordings = Annotated[
+    list[Path] | None,
+    typer.Option(
+        metavar="FILE",
+        help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson "
+        "(TrajNet++), .txt (ETH, UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
+    ),
+]
+ScenarioSet = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
+]
+PlannerSet = Annotated[
+    list[str] | None,
+    typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
+]
+MakeReferences = Annotated[
+    bool, typer.Option(help="First run robot_alone and crowd_alone, unless done before.")
+]
 Plugins = Annotated[
     list[Path] | None,
     typer.Option(

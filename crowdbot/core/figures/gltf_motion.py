@@ -28,8 +28,8 @@ class _Track:
 class GltfMotion:
     """The walking animation of a file: the one named like a walk, else the first.
 
-    Some programs write an animation for each node. So without a walk by name, further ones come
-    along as far as they move what no earlier one does.
+    Some programs write one animation for each node. So without a walk by name, other animations are
+    combined with the first, as far as they move other nodes.
 
     Attributes:
         duration: s; 0 without an animation.

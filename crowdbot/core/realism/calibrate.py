@@ -92,7 +92,7 @@ class FitTask:
 
 
 class Fitted(Protocol):
-    """A fit in plain values that can be sent to workers, and its losses."""
+    """The inputs of a fit, in plain values that can be sent to workers; computes its losses."""
 
     @property
     def ceiling(self) -> float:

@@ -131,15 +131,7 @@ class RecordingWriter:
         self._image_bytes = 0
         self._now = 0
         self._closed = False
-        self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
-        tilts = tilts_message(header.sensors)
-        if tilts is not None:
-            self._file.put(Topic.TILTS, 0, tilts, latched=True)
-        if header.person is not None:
-            message = person_task_message(header.person)
-            self._file.put(Topic.PERSON_TASK, 0, message, latched=True)
-        for group in known:
-            self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
+        self._write_constants(header, known)
         self._wheels = (
             WheelMessages(description, wheels, header.namespace)
             if wheels and description and self._whole
@@ -150,6 +142,17 @@ class RecordingWriter:
             if record == "none"
             else ToolTopics(self._file, header, description, whole=self._whole)
         )
+
+    def _write_constants(self, header: RecordingHeader, known: Sequence[Choosers]) -> None:
+        self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
+        tilts = tilts_message(header.sensors)
+        if tilts is not None:
+            self._file.put(Topic.TILTS, 0, tilts, latched=True)
+        if header.person is not None:
+            message = person_task_message(header.person)
+            self._file.put(Topic.PERSON_TASK, 0, message, latched=True)
+        for group in known:
+            self._file.put(Topic.CANDIDATES, 0, group.to_message(), latched=True)
 
     @_later
     def wheels(self, t: float, angles: Sequence[float]) -> None:

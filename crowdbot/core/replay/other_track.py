@@ -31,7 +31,7 @@ class OtherTrack:
 
 
 def motion_of(robot: RobotTrack) -> Array:
-    """Return x, y, theta, v, w (5, N)."""
+    """Return a robot's motion x, y, theta, v, w (5, N); m, rad, m/s, rad/s."""
     return np.stack((robot.x, robot.y, robot.theta, robot.v, robot.w))
 
 

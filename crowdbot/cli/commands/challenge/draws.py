@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import NoPlugins, Plugins, SuiteArgument, installed
 
 if TYPE_CHECKING:
     from crowdbot.core.scenarios.hidden_draws import Change
@@ -107,7 +107,7 @@ def reveal(
 
 @draws.command("check")
 def check(
-    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
+    suite: SuiteArgument,
     commitment: Annotated[
         str | None,
         typer.Option(

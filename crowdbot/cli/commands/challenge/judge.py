@@ -18,6 +18,7 @@ from crowdbot.cli.shared.options import (
     installed,
     planner_place,
 )
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
 
 
@@ -47,7 +48,7 @@ def judge(
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Receive sealed planners, and run them once the suite's draws are open.
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
 
 
@@ -22,7 +23,7 @@ def judge_log(
         str | None,
         typer.Option(metavar="SHA256", help="Hash of a line that was published before."),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Check that no line of a judge's log was changed, removed or inserted, and list it.
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import NoPlugins, Plugins, SuiteArgument, installed
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def lock(
-    spec: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
+    spec: SuiteArgument,
     check: Annotated[
         bool, typer.Option("--check", help="Write nothing; exit 1 if the lock does not fit.")
     ] = False,
@@ -27,7 +28,7 @@ def lock(
     ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Draw the agents of a suite once and freeze them, with the hashes of its scenarios.
 

@@ -11,6 +11,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, printable
 
@@ -35,7 +36,7 @@ def seal(
     contact: Annotated[str, typer.Option(metavar="TEXT", help="How to reach the team.")] = "",
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Seal a planner: its files in one archive, whose hash fixes it before draws are revealed.
 

@@ -21,6 +21,7 @@ from crowdbot.cli.shared.options import (
     installed,
     planner_place,
 )
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.cli.shared.verify_references import said_of, verify_references
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def verify(
     ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Check a bundle and repeat some of its runs; exit code 1 if anything does not match.
 

@@ -12,7 +12,15 @@ import typer
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import (
+    EveryScenarioSet,
+    Jobs,
+    NoPlugins,
+    OnlyScenarios,
+    Plugins,
+    SuiteArgument,
+    installed,
+)
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
@@ -25,28 +33,20 @@ _CAREFUL = ("people_mpc",)
 
 
 def audit(
-    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
+    suite: SuiteArgument,
     scenarios: Annotated[
         int | None,
         typer.Option(
             min=1, metavar="N", help="Only N scenarios, with many different crowds; default: all."
         ),
     ] = None,
-    only: Annotated[
-        list[str] | None,
-        typer.Option(metavar="GLOB", help="Only scenarios that match; repeatable."),
-    ] = None,
+    only: OnlyScenarios = None,
     seeds: Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")] = "0",
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."
-        ),
-    ] = None,
+    overrides: EveryScenarioSet = None,
     out: Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")] = Path(
         "runs"
     ),
-    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
+    jobs: Jobs = 0,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
     adversaries: Annotated[
         bool,

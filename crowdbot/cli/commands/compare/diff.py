@@ -9,6 +9,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.run_arguments import AsJson
 
 if TYPE_CHECKING:
     from crowdbot.core.runs.diff_side import DiffSide
@@ -30,7 +31,7 @@ def diff(
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Compare two scenarios or two runs; exit 0 when equal, 1 when not.
 

@@ -10,7 +10,8 @@ import typer
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.cli.shared.options import NoPlugins, OwnRecordings, Plugins, check_ending, installed
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
@@ -34,14 +35,7 @@ def realism(
             "--robot also human or giving_way.",
         ),
     ],
-    reference: Annotated[
-        list[Path] | None,
-        typer.Option(
-            metavar="FILE",
-            help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson (TrajNet++), .txt (ETH, "
-            "UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
-        ),
-    ] = None,
+    reference: OwnRecordings = None,
     robot: Annotated[
         bool,
         typer.Option(
@@ -66,7 +60,7 @@ def realism(
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Compare a crowd with recorded people: an index with its parts, ceiling and floor.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import Jobs, NoPlugins, OnlyScenarios, Plugins, installed
 from crowdbot.core.support.text import plural
 
 if TYPE_CHECKING:
@@ -79,10 +79,7 @@ def make(
     seeds: Annotated[
         str, typer.Option(metavar="0,1,2|0..2", help="Run seeds of every scenario.")
     ] = "0..2",
-    only: Annotated[
-        list[str] | None,
-        typer.Option(metavar="GLOB", help="Only scenarios that match; repeatable."),
-    ] = None,
+    only: OnlyScenarios = None,
     runs: Annotated[
         Path, typer.Option(metavar="DIR", help="Root of the run directories, which are kept.")
     ] = Path("reference_runs"),
@@ -95,7 +92,7 @@ def make(
             metavar="crowdbot|FILE", help="Add to these; runs that they have are not made again."
         ),
     ] = None,
-    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
+    jobs: Jobs = 0,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: _Json = False,

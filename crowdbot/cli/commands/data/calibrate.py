@@ -10,7 +10,15 @@ import typer
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.cli.shared.options import (
+    Jobs,
+    NoPlugins,
+    OwnRecordings,
+    Plugins,
+    check_ending,
+    installed,
+)
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError
 
@@ -33,14 +41,7 @@ def calibrate(
             "response.",
         ),
     ],
-    reference: Annotated[
-        list[Path] | None,
-        typer.Option(
-            metavar="FILE",
-            help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson (TrajNet++), .txt (ETH, "
-            "UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
-        ),
-    ] = None,
+    reference: OwnRecordings = None,
     fit: Annotated[
         list[str] | None,
         typer.Option(
@@ -69,14 +70,14 @@ def calibrate(
     seed: Annotated[
         int, typer.Option(min=1, help="Seed of the fit; equal seeds give equal fits.")
     ] = 1,
-    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
+    jobs: Jobs = 0,
     out: Annotated[
         Path,
         typer.Option(metavar="FILE", help="File to write, .yaml; its log is beside it."),
     ] = Path("fitted.yaml"),
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Fit a crowd to recorded people and write it as a part; resumes an interrupted fit.
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, installed
+from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
@@ -20,20 +21,15 @@ _HEAD = 1.7
 
 
 def export_map(
-    spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
-    scenario: Annotated[
-        str | None, typer.Argument(metavar="[ID]", help="Id, unique beginning, or pattern.")
-    ] = None,
+    spec: SpecArgument,
+    scenario: ScenarioArgument = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder to write; default: ID.map, here.")
     ] = None,
     resolution: Annotated[
         float, typer.Option(metavar="METRES", help="Side of a cell of the grid.")
     ] = 0.05,
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
-    ] = None,
+    overrides: ScenarioSet = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="Paths and size as JSON.")] = False,

@@ -9,22 +9,18 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
+from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
 
 
 def export_trial(
-    spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
-    scenario: Annotated[
-        str | None, typer.Argument(metavar="[ID]", help="Id, unique beginning, or pattern.")
-    ] = None,
+    spec: SpecArgument,
+    scenario: ScenarioArgument = None,
     out: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="File to write, .xml; default: ID.xml, here."),
     ] = None,
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
-    ] = None,
+    overrides: ScenarioSet = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,

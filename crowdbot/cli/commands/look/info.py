@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.errors import InputError, printable
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ def info(
     file: Annotated[
         Path, typer.Argument(metavar="FILE|RUN_DIR", help="A recording, or a run directory.")
     ],
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Show the contents of a recording: topics with rates and sizes, duration, hash, completeness.
 

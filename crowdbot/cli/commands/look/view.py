@@ -13,7 +13,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.serving.serve_arguments import AllowOrigin
-from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text import listed
 from crowdbot.errors import InputError, UsageError
@@ -44,10 +44,7 @@ def view(
         ),
     ] = None,
     open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
-    ] = None,
+    overrides: ScenarioSet = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     foxglove: Annotated[

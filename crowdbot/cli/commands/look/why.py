@@ -12,6 +12,7 @@ import typer
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, open_results
 from crowdbot.cli.shared.options import check_ending
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UsageError
@@ -34,7 +35,7 @@ def why(
         typer.Option(metavar="FILE", help="File to write, .html: with pictures from above."),
     ] = None,
     altered: Altered = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Explain why runs ended as they did: the decisive moment, who was involved, what was seen.
 

@@ -20,7 +20,7 @@ from crowdbot.cli.shared.options import (
     installed,
     planner_place,
 )
-from crowdbot.cli.shared.run_arguments import RecordChoice
+from crowdbot.cli.shared.run_arguments import AsJson, RecordChoice
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.run import State
@@ -86,7 +86,7 @@ def campaign(
     planner_memory: PlannerMemory = MEMORY_GIB,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Run every scenario with every planner and seed; completed runs are skipped.
 

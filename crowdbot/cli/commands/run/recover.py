@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.run_arguments import AsJson
 
 
 def recover(
@@ -18,7 +19,7 @@ def recover(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="File to write; default: beside it.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Make a complete recording from an interrupted one; all but its last second is kept.
 

@@ -11,8 +11,10 @@ import typer
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     InProcess,
+    MakeReferences,
     NoPlugins,
     PlannerMemory,
+    PlannerSet,
     Plugins,
     ReplaceDraws,
     installed,
@@ -42,19 +44,14 @@ def simulate(
         ),
     ] = None,
     overrides: Overrides = None,
-    planner_set: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
-    ] = None,
+    planner_set: PlannerSet = None,
     seed: RunSeed = 0,
     out: OutRoot = Path("runs"),
     record: Annotated[
         RecordChoice | None,
         typer.Option(help="Sensors to simulate and record; default: the suite's, or used."),
     ] = None,
-    references: Annotated[
-        bool, typer.Option(help="First run robot_alone and crowd_alone, unless done before.")
-    ] = True,
+    references: MakeReferences = True,
     force: Annotated[
         bool, typer.Option("--force", help="Run again, even if the run is complete.")
     ] = False,

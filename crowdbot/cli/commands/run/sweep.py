@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import Jobs, NoPlugins, Plugins, SuiteArgument, installed
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.support.text import rough_time
 
@@ -29,7 +30,7 @@ class SweepHow(StrEnum):
 
 
 def sweep(
-    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")],
+    suite: SuiteArgument,
     planner: Annotated[str, typer.Option(metavar="NAME|FILE|file.py:Class", help="The planner.")],
     vary: Annotated[
         list[str],
@@ -69,10 +70,10 @@ def sweep(
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Folder to write; the same one resumes the sweep.")
     ] = Path("sweep"),
-    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
+    jobs: Jobs = 0,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Try parameters of a planner, on people that no edition uses; check the best on others.
 

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.serving.person_run import PageDoors, PersonRun, page_of, request_of, show_end
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
 from crowdbot.cli.shared.run_arguments import (
     AllScores,
     AsJson,
     OutRoot,
     Overrides,
+    Record,
     RecordChoice,
     RunSeed,
     ScenarioArgument,
@@ -40,10 +41,7 @@ def teleop(
             help="Planner that shares control with you; or ROBOT=PLANNER for another robot.",
         ),
     ] = None,
-    planner_set: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
-    ] = None,
+    planner_set: PlannerSet = None,
     port: PagePort = 0,
     open_: OpenPage = False,
     rosbridge: Annotated[
@@ -69,9 +67,7 @@ def teleop(
     overrides: Overrides = None,
     seed: RunSeed = 0,
     out: OutRoot = Path("runs"),
-    record: Annotated[
-        RecordChoice, typer.Option(help="Sensors to simulate and record.")
-    ] = RecordChoice.used,
+    record: Record = RecordChoice.used,
     references: Annotated[
         bool,
         typer.Option(

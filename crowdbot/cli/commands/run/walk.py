@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.serving.person_run import PageDoors, PersonRun, page_of, request_of, show_end
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import MakeReferences, NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
 from crowdbot.cli.shared.run_arguments import (
     AllScores,
     AsJson,
     OutRoot,
     Overrides,
+    Record,
     RecordChoice,
     RunSeed,
     ScenarioArgument,
@@ -54,10 +55,7 @@ def walk(
             help="The planner of the robot; default dwa. ROBOT=PLANNER for several; repeatable.",
         ),
     ] = None,
-    planner_set: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
-    ] = None,
+    planner_set: PlannerSet = None,
     duration: Annotated[
         float | None,
         typer.Option(metavar="SECONDS", help="Of a scenario without a robot; default 60."),
@@ -69,12 +67,8 @@ def walk(
     overrides: Overrides = None,
     seed: RunSeed = 0,
     out: OutRoot = Path("runs"),
-    record: Annotated[
-        RecordChoice, typer.Option(help="Sensors to simulate and record.")
-    ] = RecordChoice.used,
-    references: Annotated[
-        bool, typer.Option(help="First run robot_alone and crowd_alone, unless done before.")
-    ] = True,
+    record: Record = RecordChoice.used,
+    references: MakeReferences = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     everything: AllScores = False,

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Characters shown of a line that contains the search text.
@@ -41,7 +42,7 @@ def docs(
         bool, typer.Option("--developers", help="Also search the pages for crowdbot's developers.")
     ] = False,
     path: Annotated[bool, typer.Option("--path", help="Print only where the page is.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """List the pages of the documentation, print one, or search them. Works offline.
 

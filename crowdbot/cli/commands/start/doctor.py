@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.run_arguments import AsJson
 
 
 def doctor(
@@ -24,7 +25,7 @@ def doctor(
     licences: Annotated[
         bool, typer.Option("--licences", help="List all packages that crowdbot needs, and end.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Check versions, graphics, compiled kernels, cores and disk; simulate for a moment if asked.
 

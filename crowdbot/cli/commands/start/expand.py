@@ -10,7 +10,8 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.output.scenario_list import hash_of, print_scenarios
-from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
+from crowdbot.cli.shared.options import EveryScenarioSet, NoPlugins, Plugins, installed
+from crowdbot.cli.shared.run_arguments import AsJson, SpecArgument
 from crowdbot.errors import printable
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def expand(
-    spec: Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")],
+    spec: SpecArgument,
     only: Annotated[
         list[str] | None,
         typer.Option(metavar="GLOB", help="Only ids that match, e.g. 'in-*-c50-*'; repeatable."),
@@ -34,13 +35,8 @@ def expand(
     count: Annotated[bool, typer.Option("--count", help="Print only how many there are.")] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on stdout.")] = False,
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."
-        ),
-    ] = None,
+    as_json: AsJson = False,
+    overrides: EveryScenarioSet = None,
 ) -> None:
     """List the scenarios of a suite with their hashes, or print one in full.
 
