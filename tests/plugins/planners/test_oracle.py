@@ -85,7 +85,7 @@ def test_it_goes_round_a_row_of_people_early() -> None:
     for foreseen in (True, False):
         world = KnownWorld(row, start=Pose(2.5, 0.0, 0.0))
         world.foreseen = foreseen
-        out = world.run(build(OracleSpec()), stop_at=9.0, time_limit=30.0)
+        out = world.run(build(OracleSpec(foresight=True)), stop_at=9.0, time_limit=30.0)
         assert out.arrived
         times[foreseen] = out.t, len(out.contacts)
     assert times[True] < times[False]

@@ -1,4 +1,4 @@
-"""Oracle: the people MPC with the truth; it foresees people, who give way in each plan."""
+"""Oracle: the people MPC with the truth, whose people give way in each plan."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SHOWN_STEP = 6
 
 
 class Oracle(CrowdPrediction):
-    """Foresees people as if the robot was not there; plans decide what they do for it."""
+    """Predicts people as if the robot was not there; plans decide what they do for it."""
 
     name = "oracle"
 
@@ -38,10 +38,12 @@ class Oracle(CrowdPrediction):
         super().reset(task, limits, sensors, seed)
         spec = self._knows
         self._radius = None
+        self._to_go = UNKNOWN
+        if not spec.foresight:
+            return
         self._foreseen = Foreseen(spec.far_horizon, spec.look_again)
         self._speed = spec.speed * limits.v_max
         self._values, self._cost, self._cell = grid.blank(spec.far_horizon, self._speed)
-        self._to_go = UNKNOWN
         self._fill(np.zeros((1, 1, 2)), np.ones((1, 2)), (0.0, 0.0), (1.0, 0.0), (9.0, 0.0))
 
     def predicted(
@@ -49,7 +51,7 @@ class Oracle(CrowdPrediction):
     ) -> Array:
         """Return where people will be, (T, N, 2); draw it."""
         assert obs.truth is not None
-        if obs.truth.foresee is None:
+        if not self._knows.foresight or obs.truth.foresee is None:
             return super().predicted(obs, scene, rows, aim)
         looked = self._foreseen.look(obs.t, obs.truth)
         ahead = self._foreseen.places(obs.t, obs.truth)
@@ -97,7 +99,7 @@ class Oracle(CrowdPrediction):
     def to_go(self, obs: Observation, scene: PlannerScene, aim: tuple[float, float]) -> TimeToGo:
         """Return the time to the goal from places ahead; unknown if nothing is foreseen."""
         del scene, aim
-        if obs.truth is None or obs.truth.foresee is None:
+        if self._to_go is UNKNOWN or obs.truth is None or obs.truth.foresee is None:
             return UNKNOWN
         return self._to_go._replace(since=obs.t - self._looked)
 
