@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 PACKAGE = "crowdbot"
 _IMPORTERS = ("import_module", "__import__", "resolve_name")
@@ -23,10 +25,7 @@ def imports_as_text(root: Path, modules: Sequence[str]) -> list[Import]:
         modules: names of all modules; a text may also name one of their attributes.
     """
     known = set(modules)
-    found: list[Import] = []
-    for module in modules:
-        tree = ast.parse(_file(root, module).read_text("utf-8"))
-        found += [(module, _module_of(text, known)) for text in _texts(tree, module)]
+    found = [(m, _module_of(text, known)) for m in modules for text in _read(root, m).texts]
     return sorted(pair for pair in set(found) if pair[1])
 
 
@@ -35,14 +34,28 @@ def faces_imported_within(root: Path, modules: Sequence[str]) -> list[Import]:
 
     Such a module and the package import each other, whatever it takes from there.
     """
-    trees = {m: ast.parse(_file(root, m).read_text("utf-8")) for m in modules}
-    faces = {m for m in modules if _is_package(root, m) and _imports_own(trees[m])}
+    names = {m: _read(root, m).names for m in modules}
+    faces = {m for m in modules if _is_package(root, m) and _imports_own(names[m])}
     return [
         (module, package)
         for module in sorted(modules)
-        for package in sorted(_imported_names(trees[module]) & faces)
+        for package in sorted(names[module] & faces)
         if module.startswith(f"{package}.")
     ]
+
+
+class _Imports(NamedTuple):
+    """What a module imports: texts that name modules, and what stands after ``from``."""
+
+    texts: tuple[str, ...]
+    names: frozenset[str]
+
+
+@cache
+def _read(root: Path, module: str) -> _Imports:
+    """Parse a module, once for all that is asked about it."""
+    tree = ast.parse(_file(root, module).read_text("utf-8"))
+    return _Imports(tuple(_texts(tree, module)), _imported_names(tree))
 
 
 def _texts(tree: ast.Module, module: str) -> Iterator[str]:
@@ -84,13 +97,14 @@ def _module_of(text: str, known: set[str]) -> str:
     return name
 
 
-def _imports_own(tree: ast.Module) -> bool:
-    return any(name.startswith(f"{PACKAGE}.") for name in _imported_names(tree))
+def _imports_own(names: frozenset[str]) -> bool:
+    return any(name.startswith(f"{PACKAGE}.") for name in names)
 
 
-def _imported_names(tree: ast.Module) -> set[str]:
+def _imported_names(tree: ast.Module) -> frozenset[str]:
     """What stands after ``from`` in a module's imports, wherever they are."""
-    return {n.module for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module}
+    found = (n.module for n in ast.walk(tree) if isinstance(n, ast.ImportFrom))
+    return frozenset(name for name in found if name)
 
 
 def _is_package(root: Path, module: str) -> bool:
