@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Run `make demo`, `crowdbot doctor` and a small campaign on each Python that README names and this
-# machine has. The Python of .venv runs in this checkout, each other one in a fresh clone with the
-# packages of the lock, all side by side.
+# machine has. The Python of .venv runs in this checkout, each other one in a copy of it with the
+# packages of the lock, all side by side. Copies are kept in .venv/pythons, with their packages and
+# compiled functions: a first time takes two minutes of processor time for each.
 # Usage: scripts/demo_on_each_python.sh [VERSION...]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -24,14 +25,17 @@ version_here() {  # prints the version of this checkout's .venv, if it is set up
     "$root/.venv/bin/python" -c 'import sys; print("{}.{}".format(*sys.version_info))' 2>/dev/null || true
 }
 
-fresh_copy() {  # into folder $1: a clone, or what lies here if that differs or is not a clone
+renewed_copy() {  # of this checkout into folder $1; packages and compiled functions stay there
+    mkdir -p "$1/crowdbot"
+    find "$1" -mindepth 1 -maxdepth 1 ! -name .venv ! -name crowdbot -exec rm -rf {} +
+    find "$1/crowdbot" -type f ! -path '*/__pycache__/*' -delete
+    "$1/.venv/bin/python" -c pass 2>/dev/null || rm -rf "$1/.venv"  # of a Python that is gone
     if [ -z "$(git -C "$root" status --porcelain 2>&1)" ]; then
-        git clone --quiet "$root" "$1"
+        git -C "$root" ls-files -z | tar -C "$root" --null -T - -cf -
     else
-        mkdir -p "$1"
         tar -C "$root" --exclude=./.git --exclude=./.venv --exclude=./runs --exclude='./.*_cache' \
-            --exclude=__pycache__ --exclude=node_modules -cf - . | tar -C "$1" -xf -
-    fi
+            --exclude=__pycache__ --exclude=node_modules -cf - .
+    fi | tar -C "$1" -xf -
 }
 
 three_commands() {  # in checkout $1, with the interpreter $2
@@ -47,8 +51,8 @@ three_commands() {  # in checkout $1, with the interpreter $2
 run_on() {  # version $1, interpreter $2; prints one line, and all that was printed if it fails
     local checkout=$root log="$work/$1.log" begin=$SECONDS
     if [ "$1" != "$(version_here)" ]; then
-        checkout="$work/$1/crowdbot"
-        fresh_copy "$checkout"
+        checkout="$root/.venv/pythons/$1"
+        renewed_copy "$checkout"
     fi
     if ! three_commands "$checkout" "$2" >"$log" 2>&1; then
         cat "$log"
