@@ -12,6 +12,7 @@ from crowdbot.plugins.planners.crowd_prediction.crowd_prediction_build import Cr
 from crowdbot.plugins.planners.oracle import time_to_go_build as grid
 from crowdbot.plugins.planners.oracle.foreseen_build import Foreseen
 from crowdbot.plugins.planners.oracle.oracle import OracleSpec
+from crowdbot.plugins.planners.oracle.whole_forecast_build import WholeForecast
 from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP, UNKNOWN, TimeToGo
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
 
@@ -26,6 +27,7 @@ class Oracle(CrowdPrediction):
 
     def __init__(self, spec: OracleSpec) -> None:
         super().__init__(spec)
+        self._forecast = WholeForecast(spec.crowd, spec.settle_time, spec.memory)
         self._knows = spec
         self._foreseen = Foreseen(spec.far_horizon, spec.look_again)
         self._values, self._cost, self._cell = np.zeros((0, 0, 0)), np.zeros((0, 0)), 1.0
