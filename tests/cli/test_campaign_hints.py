@@ -18,7 +18,7 @@ def planned(out: Path, scenario: str, **changes: object) -> Plan:
     request = CampaignRequest(
         suites=["challenge-2026"],
         only=[scenario],
-        planners=["dwa", "follow_the_gap"],
+        planners=["dwa", "bully"],
         floors=True,
         out=out,
     )
@@ -43,7 +43,7 @@ def test_floors_come_last_with_what_only_they_need(plan: Plan) -> None:
     added = [job.added for job in plan.jobs]
     assert added == sorted(added)
     own = {(job.kind, job.label) for job in plan.jobs if not job.added}
-    assert {label for _, label in own} == {"dwa", "follow_the_gap"}
+    assert {label for _, label in own} == {"dwa", "bully"}
     assert {kind for kind, _ in own} == {"crowd_alone", "robot_alone", "run"}
     done: set[str] = set()
     for job in plan.jobs:
