@@ -35,7 +35,10 @@ def show(
     ] = "crowdbot",
     as_json: _Json = False,
 ) -> None:
-    """Show the contents of the reference scores: suites, planners, seeds, machine and command."""
+    """Show the contents of the reference scores: suites, planners, seeds, machine and command.
+
+    Example: crowdbot references
+    """
     if context.invoked_subcommand is not None:
         return
     from crowdbot.core.results.reference_file import opened

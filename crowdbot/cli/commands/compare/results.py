@@ -287,7 +287,10 @@ def power(
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
-    """Show how many runs are needed to detect a difference with 80 % power, per condition."""
+    """Show how many runs are needed to detect a difference with 80 % power, per condition.
+
+    Example: crowdbot results power --runs runs --size 0.05 --planner dwa --planner stop_and_go
+    """
     from crowdbot.cli.output.power_lines import lines_of
     from crowdbot.core.results.chosen_planners import of_planners
     from crowdbot.core.results.with_reference import reference_results

@@ -33,7 +33,12 @@ def import_(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,
 ) -> None:
-    """Convert scenes of other simulators to scenarios; report the outcome for each part."""
+    """Convert scenes of other simulators to scenarios; report the outcome for each part.
+
+    Example: crowdbot import Circle10.xml RVO.xml --out circle.yaml
+
+    Example: crowdbot import Wheelchair_demo_config.xml --out wheelchair.yaml
+    """
     from crowdbot.core.exchange.checked import write
     from crowdbot.core.exchange.importing import import_files
 
