@@ -9,6 +9,7 @@ from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
+    NonNegativeDuration,
     NonNegativeLength,
     PlannerRole,
     PositiveDuration,
@@ -69,6 +70,12 @@ class OracleSpec(CrowdPredictionSpec):
         default=10.0,
         exclude_if=lambda value: value == 10.0,
         description="The same for a person who sees it late or never, s.",
+    )
+    rehearse: NonNegativeDuration = Field(
+        default=0.0,
+        exclude_if=lambda value: value == 0.0,
+        description="A plan is first tried beside the crowd of the run for this time, and another "
+        "one driven if it touches someone, s; 0: never.",
     )
     hurry: Weight = hurry_field(1.0)
     hurry_within: PositiveDuration = Field(

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from crowdbot.plugin import Array, Indices, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Array, Command, Indices, Observation, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction_build import CrowdPrediction
 from crowdbot.plugins.planners.oracle import time_to_go_build as grid
 from crowdbot.plugins.planners.oracle.foreseen_build import Foreseen
 from crowdbot.plugins.planners.oracle.oracle import OracleSpec
+from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal
 from crowdbot.plugins.planners.oracle.whole_forecast_build import WholeForecast
+from crowdbot.plugins.planners.people_mpc import plans_build as plans
 from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP, UNKNOWN, TimeToGo
+from crowdbot.plugins.planners.shared.distance_field_build import distance_at
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base
 
 #: Predictions are drawn at intervals of this many steps.
 _SHOWN_STEP = 6
+#: Plans that are tried if one touches someone: share of its speed, and more turning, rad/s.
+_OTHERS = ((0.8, 0.0), (1.0, 0.4), (1.0, -0.4), (0.5, 0.0), (0.5, 0.4), (0.5, -0.4))
 
 
 class Oracle(CrowdPrediction):
@@ -32,6 +37,8 @@ class Oracle(CrowdPrediction):
         self._foreseen = Foreseen(spec.far_horizon, spec.look_again)
         self._values, self._cost, self._cell = np.zeros((0, 0, 0)), np.zeros((0, 0)), 1.0
         self._to_go, self._looked = UNKNOWN, 0.0
+        self._rehearsal = Rehearsal(spec.rehearse, self._robot)
+        self._planned: tuple[tuple[float, ...], tuple[float, float]] | None = None
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -41,6 +48,7 @@ class Oracle(CrowdPrediction):
         spec = self._knows
         self._radius = None
         self._to_go = UNKNOWN
+        self._rehearsal = Rehearsal(spec.rehearse, self._robot)
         if not spec.foresight:
             return
         self._foreseen = Foreseen(spec.far_horizon, spec.look_again)
@@ -48,11 +56,45 @@ class Oracle(CrowdPrediction):
         self._values, self._cost, self._cell = grid.blank(spec.far_horizon, self._speed)
         self._fill(np.zeros((1, 1, 2)), np.ones((1, 2)), (0.0, 0.0), (1.0, 0.0), (9.0, 0.0))
 
+    def step(self, obs: Observation) -> Command:
+        """Return the beginning of the best plan; with rehearsals, of one that touches no one."""
+        self._planned = None
+        command = super().step(obs)
+        if self._planned is None or command == Command(0.0, 0.0) or obs.truth is None:
+            return command
+        state, aim = self._planned
+        tried = [(self._last, self._aside, self._pace), *self._others()]
+        paths = [plans.path_of(self._p, state, aim, *plan) for plan in tried]
+        free = [0, *(k for k in range(1, len(tried)) if self._off_walls(paths[k]))]
+        chosen = free[self._rehearsal.first_clear(obs.truth, [paths[k] for k in free], state[:3])]
+        self._last, self._aside, self._pace = tried[chosen]
+        obs.log("oracle/rehearsed", float(chosen))
+        return Command(*self._last)
+
+    def _others(self) -> Iterator[tuple[tuple[float, float, float], float, float]]:
+        """Yield plans like the last one: slower, or turning more to one side; then a stop."""
+        (v, w, vy), most = self._last, float(self._p[plans.W_MAX])
+        for share, turn in _OTHERS:
+            first = share * v, max(-most, min(most, w + turn)), share * vy
+            yield first, self._aside, share * self._pace
+        yield (0.0, 0.0, 0.0), self._aside, 0.0
+
+    def _off_walls(self, path: Array) -> bool:
+        """Return True if a path keeps off what stands."""
+        field, radius = self._field, float(self._robot[:, 2].max()) + 0.5 * self._knows.margin
+        return all(
+            distance_at(field.values, field.corner, x, y) > radius
+            for x, y, _ in path[: self._rehearsal.steps].tolist()
+        )
+
     def predicted(
         self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
     ) -> Array:
         """Return where people will be, (T, N, 2); draw it."""
         assert obs.truth is not None
+        if self._knows.rehearse > 0.0 and obs.truth.foresee is not None:
+            pose = scene.pose
+            self._planned = (pose.x, pose.y, pose.yaw, *scene.twist), aim
         if not self._knows.foresight or obs.truth.foresee is None:
             return super().predicted(obs, scene, rows, aim)
         looked = self._foreseen.look(obs.t, obs.truth)

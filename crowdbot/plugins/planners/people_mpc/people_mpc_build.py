@@ -175,7 +175,7 @@ class PeopleMpc:
     def path(self, scene: PlannerScene, aim: tuple[float, float]) -> Array:
         """Return the positions (T, 2) of the chosen plan after each step, m."""
         state = (scene.pose.x, scene.pose.y, scene.pose.yaw, *scene.twist)
-        return plans.path_of(self._p, state, aim, self._last, self._aside, self._pace)
+        return plans.path_of(self._p, state, aim, self._last, self._aside, self._pace)[:, :2]
 
     def _firsts(self, twist: tuple[float, float, float], top: float, error: float) -> Array:
         """Return (C, 3) first velocities v, w, vy that the robot reaches within the window."""

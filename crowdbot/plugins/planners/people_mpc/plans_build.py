@@ -257,12 +257,12 @@ def path_of(
     aside: float,
     pace: float,
 ) -> Array:
-    """Return the positions (S, 2) of a plan at each step, ignoring hits, m.
+    """Return the poses (S, 3) of a plan at each step, ignoring hits: x, y (m), yaw (rad).
 
     Args:
         goal: m; the others as for `roll`.
     """
-    out = np.empty((int(p[HORIZON] / STEP), 2))
+    out = np.empty((int(p[HORIZON] / STEP), 3))
     x, y, yaw, v, w, vy = state
     for n in range(out.shape[0]):
         t = (n + 1) * STEP
@@ -280,5 +280,5 @@ def path_of(
         yaw += w * STEP
         x += (v * math.cos(yaw) - vy * math.sin(yaw)) * STEP
         y += (v * math.sin(yaw) + vy * math.cos(yaw)) * STEP
-        out[n, 0], out[n, 1] = x, y
+        out[n, 0], out[n, 1], out[n, 2] = x, y, yaw
     return out

@@ -1,0 +1,93 @@
+"""Rehearsal: the first of several plans that touches no one beside the people foreseen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from crowdbot.plugin import Array, Pose, Truth
+from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal
+from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP
+
+ROBOT = np.array([[0.0, 0.0, 0.2]])
+HERE = (0.0, 0.0, 0.0)
+
+
+def straight(speed: float, heading: float = 0.0, steps: int = 10) -> Array:
+    way = speed * STEP * np.arange(1, steps + 1)
+    return np.column_stack([way * np.cos(heading), way * np.sin(heading), np.full(steps, heading)])
+
+
+class People:
+    """People who walk on as they do, or who stop beside a robot that drives."""
+
+    def __init__(self, people: list[list[float]], *, shy: bool = False) -> None:
+        self.rows, self.shy, self.asked = np.array(people), shy, 0
+
+    def truth(self) -> Truth:
+        return Truth(
+            pose=Pose(*HERE),
+            velocity=(0.0, 0.0, 0.0),
+            people=self.rows[:, :2],
+            people_velocity=self.rows[:, 2:],
+            people_radius=np.full(len(self.rows), 0.2),
+            people_id=np.arange(len(self.rows)),
+            foresee=self._foresee,
+        )
+
+    def _foresee(self, steps: int, step: float, path: Array | None) -> Array:
+        assert path is not None
+        assert path.shape == (steps + 1, 3)
+        self.asked += 1
+        drives = np.any(path[1:, :2] != path[0, :2])
+        times = step * np.arange(1, steps + 1)[:, np.newaxis, np.newaxis]
+        going = 0.0 if self.shy and drives else 1.0
+        return np.asarray(self.rows[:, :2] + going * times * self.rows[:, 2:])
+
+
+def test_the_first_clear_plan_is_taken() -> None:
+    ahead = People([[1.0, 0.0, 0.0, 0.0]])
+    plans = [straight(0.65), straight(0.65, 0.1), straight(0.65, 1.2), straight(0.0)]
+    assert Rehearsal(1.5, ROBOT).first_clear(ahead.truth(), plans, HERE) == 2
+
+
+def test_what_people_do_for_a_plan_decides() -> None:
+    """Somebody who crosses would be touched, but stops for a robot that drives."""
+    crossing = [[0.7, 0.9, 0.0, -0.9]]
+    plans = [straight(0.65), straight(0.0)]
+    found = [
+        Rehearsal(1.5, ROBOT).first_clear(People(crossing, shy=shy).truth(), plans, HERE)
+        for shy in (False, True)
+    ]
+    assert found == [1, 0]
+
+
+def test_a_robot_that_stands_touches_no_one() -> None:
+    comes = People([[0.8, 0.0, -1.0, 0.0]])
+    plans = [straight(0.65), straight(0.0)]
+    assert Rehearsal(1.5, ROBOT).first_clear(comes.truth(), plans, HERE) == 1
+
+
+def test_of_plans_that_all_touch_the_last_to_do_so() -> None:
+    around = People([[np.cos(a), np.sin(a), 0.0, 0.0] for a in np.linspace(0.0, 6.0, 20)])
+    plans = [straight(0.65), straight(0.5), straight(0.6)]
+    assert Rehearsal(1.5, ROBOT).first_clear(around.truth(), plans, HERE) == 1
+
+
+def test_nobody_near_is_not_asked() -> None:
+    far = People([[9.0, 0.0, -0.5, 0.0]])
+    assert Rehearsal(1.5, ROBOT).first_clear(far.truth(), [straight(0.65)], HERE) == 0
+    assert far.asked == 0
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.0])
+def test_every_disc_of_the_robot_counts(yaw: float) -> None:
+    """A long robot that turns on the spot hits with its nose."""
+    long = np.array([[0.0, 0.0, 0.2], [0.6, 0.0, 0.2]])
+    beside = People([[0.6 * np.cos(yaw), 0.6 * np.sin(yaw), 0.0, 0.0]])
+    turning = straight(0.0) + np.column_stack([0.1 * np.arange(1, 11), np.zeros((10, 2))])
+    turning[:, 2] = yaw
+    stays = straight(0.0)
+    stays[:, 2] = yaw + 2.0
+    plans = [turning, stays]
+    assert Rehearsal(1.5, long).first_clear(beside.truth(), plans, (0.0, 0.0, yaw)) == 1
