@@ -12,8 +12,11 @@ from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
+    EveryScenarioSet,
     InProcess,
+    Jobs,
     NoPlugins,
+    OnlyScenarios,
     PlannerMemory,
     Plugins,
     ReplaceDraws,
@@ -25,10 +28,6 @@ from crowdbot.cli.shared.run_arguments import AsJson, RecordChoice
 if TYPE_CHECKING:
     from crowdbot.core.campaign.run import State
 
-_Set = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."),
-]
 _PlannerSet = Annotated[
     list[str] | None,
     typer.Option(metavar="KEY=VALUE", help="Change every planner; repeatable."),
@@ -43,15 +42,11 @@ _Crowds = Annotated[
         metavar="NAME,NAME", help="Run every scenario in each of these crowds: the axis 'crowd'."
     ),
 ]
-_Only = Annotated[
-    list[str] | None, typer.Option(metavar="GLOB", help="Only scenarios that match; repeatable.")
-]
 _Seeds = Annotated[
     str | None,
     typer.Option(metavar="0,1,2|0..4", help="Run seeds; default: those of the suite, or 0."),
 ]
 _Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
-_Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")]
 _Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
 
 
@@ -59,13 +54,13 @@ def campaign(
     suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Files or names.")],
     planner: _Planner = None,
     seeds: _Seeds = None,
-    only: _Only = None,
+    only: OnlyScenarios = None,
     crowds: _Crowds = None,
     out: _Out = Path("runs"),
-    jobs: _Jobs = 0,
+    jobs: Jobs = 0,
     record: _Record = RecordChoice.used,
     replay: Annotated[bool, typer.Option(help="Write the replay pages.")] = True,
-    overrides: _Set = None,
+    overrides: EveryScenarioSet = None,
     planner_set: _PlannerSet = None,
     floors: Annotated[
         bool,
