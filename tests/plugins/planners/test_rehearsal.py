@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
@@ -48,15 +50,15 @@ class People:
 def test_the_first_clear_plan_is_taken() -> None:
     ahead = People([[1.0, 0.0, 0.0, 0.0]])
     plans = [straight(0.65), straight(0.65, 0.1), straight(0.65, 1.2), straight(0.0)]
-    assert Rehearsal(1.5, ROBOT).first_clear(ahead.truth(), plans, HERE) == 2
+    assert Rehearsal(1.5, ROBOT).first_clear(ahead.truth(), enumerate(plans), HERE) == 2
 
 
 def test_what_people_do_for_a_plan_decides() -> None:
-    """Somebody who crosses would be touched, but stops for a robot that drives."""
+    """A person who crosses would be touched, but stops for a robot that drives."""
     crossing = [[0.7, 0.9, 0.0, -0.9]]
     plans = [straight(0.65), straight(0.0)]
     found = [
-        Rehearsal(1.5, ROBOT).first_clear(People(crossing, shy=shy).truth(), plans, HERE)
+        Rehearsal(1.5, ROBOT).first_clear(People(crossing, shy=shy).truth(), enumerate(plans), HERE)
         for shy in (False, True)
     ]
     assert found == [1, 0]
@@ -65,18 +67,18 @@ def test_what_people_do_for_a_plan_decides() -> None:
 def test_a_robot_that_stands_touches_no_one() -> None:
     comes = People([[0.8, 0.0, -1.0, 0.0]])
     plans = [straight(0.65), straight(0.0)]
-    assert Rehearsal(1.5, ROBOT).first_clear(comes.truth(), plans, HERE) == 1
+    assert Rehearsal(1.5, ROBOT).first_clear(comes.truth(), enumerate(plans), HERE) == 1
 
 
 def test_of_plans_that_all_touch_the_last_to_do_so() -> None:
     around = People([[np.cos(a), np.sin(a), 0.0, 0.0] for a in np.linspace(0.0, 6.0, 20)])
     plans = [straight(0.65), straight(0.5), straight(0.6)]
-    assert Rehearsal(1.5, ROBOT).first_clear(around.truth(), plans, HERE) == 1
+    assert Rehearsal(1.5, ROBOT).first_clear(around.truth(), enumerate(plans), HERE) == 1
 
 
-def test_nobody_near_is_not_asked() -> None:
+def test_the_crowd_is_not_asked_where_no_one_is_near() -> None:
     far = People([[9.0, 0.0, -0.5, 0.0]])
-    assert Rehearsal(1.5, ROBOT).first_clear(far.truth(), [straight(0.65)], HERE) == 0
+    assert Rehearsal(1.5, ROBOT).first_clear(far.truth(), enumerate([straight(0.65)]), HERE) == 0
     assert far.asked == 0
 
 
@@ -90,4 +92,25 @@ def test_every_disc_of_the_robot_counts(yaw: float) -> None:
     stays = straight(0.0)
     stays[:, 2] = yaw + 2.0
     plans = [turning, stays]
-    assert Rehearsal(1.5, long).first_clear(beside.truth(), plans, (0.0, 0.0, yaw)) == 1
+    assert Rehearsal(1.5, long).first_clear(beside.truth(), enumerate(plans), (0.0, 0.0, yaw)) == 1
+
+
+def test_further_plans_are_not_made_before_they_are_needed() -> None:
+    made = []
+
+    def plans() -> Iterator[tuple[int, Array]]:
+        for number in range(3):
+            made.append(number)
+            yield number, straight(0.65)
+
+    assert (
+        Rehearsal(1.5, ROBOT).first_clear(People([[9.0, 3.0, 0.0, 0.0]]).truth(), plans(), HERE)
+        == 0
+    )
+    assert made == [0]
+
+
+def test_an_empty_crowd() -> None:
+    empty = People(np.zeros((0, 4)).tolist())
+    empty.rows = np.zeros((0, 4))
+    assert Rehearsal(1.5, ROBOT).first_clear(empty.truth(), enumerate([straight(0.65)]), HERE) == 0

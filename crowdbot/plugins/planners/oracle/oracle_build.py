@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -24,6 +24,11 @@ _SHOWN_STEP = 6
 #: Plans that are tried if one touches someone: share of its speed, and more turning, rad/s.
 _OTHERS = ((0.8, 0.0), (1.0, 0.4), (1.0, -0.4), (0.5, 0.0), (0.5, 0.4), (0.5, -0.4))
 
+#: First velocity v, w, vy; angle of the second direction; pace: see `plans_build.roll`.
+Plan = tuple[tuple[float, float, float], float, float]
+#: x, y, yaw, v, w, vy of the robot.
+State = tuple[float, float, float, float, float, float]
+
 
 class Oracle(CrowdPrediction):
     """Predicts people as if the robot was not there; plans decide what they do for it."""
@@ -38,7 +43,7 @@ class Oracle(CrowdPrediction):
         self._values, self._cost, self._cell = np.zeros((0, 0, 0)), np.zeros((0, 0)), 1.0
         self._to_go, self._looked = UNKNOWN, 0.0
         self._rehearsal = Rehearsal(spec.rehearse, self._robot)
-        self._planned: tuple[tuple[float, ...], tuple[float, float]] | None = None
+        self._planned: tuple[State, tuple[float, float]] | None = None
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -62,16 +67,14 @@ class Oracle(CrowdPrediction):
         command = super().step(obs)
         if self._planned is None or command == Command(0.0, 0.0) or obs.truth is None:
             return command
-        state, aim = self._planned
         tried = [(self._last, self._aside, self._pace), *self._others()]
-        paths = [plans.path_of(self._p, state, aim, *plan) for plan in tried]
-        free = [0, *(k for k in range(1, len(tried)) if self._off_walls(paths[k]))]
-        chosen = free[self._rehearsal.first_clear(obs.truth, [paths[k] for k in free], state[:3])]
+        paths = self._paths(tried, *self._planned)
+        chosen = self._rehearsal.first_clear(obs.truth, paths, self._planned[0][:3])
         self._last, self._aside, self._pace = tried[chosen]
         obs.log("oracle/rehearsed", float(chosen))
         return Command(*self._last)
 
-    def _others(self) -> Iterator[tuple[tuple[float, float, float], float, float]]:
+    def _others(self) -> Iterator[Plan]:
         """Yield plans like the last one: slower, or turning more to one side; then a stop."""
         (v, w, vy), most = self._last, float(self._p[plans.W_MAX])
         for share, turn in _OTHERS:
@@ -79,8 +82,20 @@ class Oracle(CrowdPrediction):
             yield first, self._aside, share * self._pace
         yield (0.0, 0.0, 0.0), self._aside, 0.0
 
+    def _paths(
+        self, tried: Sequence[Plan], state: State, aim: tuple[float, float]
+    ) -> Iterator[tuple[int, Array]]:
+        """Yield number and path of each plan that stays clear of walls; the first and last anyway.
+
+        The first one has been checked, and the last one is a stop.
+        """
+        for number, plan in enumerate(tried):
+            path = plans.path_of(self._p, state, aim, *plan)
+            if number in (0, len(tried) - 1) or self._off_walls(path):
+                yield number, path
+
     def _off_walls(self, path: Array) -> bool:
-        """Return True if a path keeps off what stands."""
+        """Return True if a path stays clear of walls and other static obstacles."""
         field, radius = self._field, float(self._robot[:, 2].max()) + 0.5 * self._knows.margin
         return all(
             distance_at(field.values, field.corner, x, y) > radius

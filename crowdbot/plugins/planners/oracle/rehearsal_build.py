@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -32,20 +32,23 @@ class Rehearsal:
     def __init__(self, time: float, robot: Array) -> None:
         self.steps, self._robot = math.ceil(time / STEP), robot
 
-    def first_clear(self, truth: Truth, paths: Sequence[Array], pose: tuple[float, ...]) -> int:
-        """Return the index of a path; if all touch someone, of the one that does so last.
+    def first_clear(
+        self, truth: Truth, paths: Iterable[tuple[int, Array]], pose: tuple[float, ...]
+    ) -> int:
+        """Return the number of a path; if all touch someone, of the one that does so last.
 
         Args:
             truth: of a crowd that can be foreseen.
-            paths: (S, 3) poses after each step, each at least as long as the rehearsal.
+            paths: number and poses (S, 3) after each step, the wanted one first. They are read
+                only as far as needed.
             pose: now.
         """
         assert truth.foresee is not None
-        latest, best = -1.0, len(paths) - 1
-        for number, path in enumerate(paths):
+        latest, best = -1.0, 0
+        for at, (number, path) in enumerate(paths):
             poses = np.vstack([[pose], path[: self.steps]])
-            if number == 0 and self._is_far(truth, poses):
-                return 0
+            if at == 0 and self._is_far(truth, poses):
+                return number
             people = truth.foresee(len(poses) - 1, STEP, poses)
             touch = self._touched(poses, people, truth.people_radius)
             if touch == math.inf:
