@@ -71,7 +71,7 @@ class SameWay(Adversary):
 
 
 class Wiggle(Adversary):
-    """Turns its head left and right twice a second, so that nobody knows where it goes."""
+    """Turns its head left and right twice a second, so that no one knows where it goes."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
         """Return the late command, turning left and right."""
@@ -109,7 +109,7 @@ class Rock(Adversary):
 
 
 class Unseen(Adversary):
-    """Drives blindly while nobody looks at it, and stands while somebody does."""
+    """Drives blindly while no one looks at it, and stands while someone does."""
 
     def aim(self, obs: Observation, points: Array) -> Observation:
         """Return the observation; see who walks where."""

@@ -285,7 +285,7 @@ def test_each_person_counts_once_and_others_shove_is_not_the_robots() -> None:
 
 
 def bounced(after: float, *, touched: bool = True) -> Trajectories:
-    """Somebody ahead bounces off another person at 1 m/s, goes on at 0.4, then at ``after``."""
+    """A person ahead bounces off another person at 1 m/s, goes on at 0.4, then at ``after``."""
     t = grid(10.0, 1 / 16)
     slowed = np.clip(1.0 - 6.0 * (t - 4.0), 0.4, 1.0)
     speed = np.where(t < 4.5, slowed, np.minimum(0.4 + 1.2 * (t - 4.5), after))
