@@ -60,7 +60,7 @@ class Adversary(Bully):
 class SameWay(Adversary):
     """Follows a person who walks its way, who clears it; only a hand's breadth behind."""
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return the nearest person who walks ahead as the goal, if there is one."""
         people = self.people(obs, points)
         leads = (people[:, 2] > 0.3) & (people[:, 0] > 0.0) & (np.hypot(*people[:, :2].T) < 3.0)
@@ -83,7 +83,7 @@ class WallThenIn(Adversary):
 
     beside: ClassVar[float] = 4.2  # m from the middle
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return a goal along the wall until the goal is near."""
         del points
         if obs.goal[0] - obs.pose.x < 5.0:
@@ -111,7 +111,7 @@ class Rock(Adversary):
 class Unseen(Adversary):
     """Drives blindly while no one looks at it, and stands while someone does."""
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return the observation; see who walks where."""
         self._people = self.people(obs, points)
         return obs

@@ -29,7 +29,7 @@ import cbor2
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from crowdbot.core.live.message import OfferedTopic, told
+from crowdbot.core.live.message import OfferedTopic, live_message
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
@@ -95,7 +95,7 @@ class _Steps:
     def take(self) -> None:
         ns, begin = self.taken * 10**8, time.monotonic()
         self._session.ask(ns)
-        self._server.publish([told("/clock", ns, ros.clock(ns))])
+        self._server.publish([live_message("/clock", ns, ros.clock(ns))])
         twist = {"linear": {"x": 1e-3 * self.taken}}
         self._driver.send(json.dumps({"op": "publish", "topic": "/cmd_vel", "msg": twist}))
         answer = self._session.answer(60.0, lambda: None)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from crowdbot.core.exchange.all_formats import FORMATS
 from crowdbot.core.exchange.formats import SceneFormat
-from crowdbot.core.exchange.rows import Fate, RowTable
+from crowdbot.core.exchange.rows import PartOutcome, RowTable
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "reference" / "rosetta_stone.md"
 _HEAD = """\
@@ -33,8 +33,8 @@ def page() -> str:
     parts = [_HEAD, "| format | carried over | interpreted | left out | has no place here |\n"]
     parts.append("|---|---|---|---|---|\n")
     for form in FORMATS.values():
-        fates = [row.fate for table in form.tables for row in table.rows]
-        counts = " | ".join(str(fates.count(fate)) for fate in list(Fate)[:3])
+        outcomes = [row.outcome for table in form.tables for row in table.rows]
+        counts = " | ".join(str(outcomes.count(outcome)) for outcome in list(PartOutcome)[:3])
         parts.append(f"| [{form.title}](#{_anchor(form)}) | {counts} | {form.loses} |\n")
     for form in FORMATS.values():
         parts += ["\n", f"## {form.title[:1].upper()}{form.title[1:]}\n", *_tables(form.tables)]
@@ -53,14 +53,14 @@ class _Line:
     elements: tuple[str, ...]
     theirs: list[str]
     ours: list[str]
-    fate: Fate
+    outcome: PartOutcome
     note: str
 
     @property
-    def kind(self) -> tuple[tuple[str, ...], str, Fate, str]:
-        """What rows of one line share: elements, place of ours, fate and note."""
+    def kind(self) -> tuple[tuple[str, ...], str, PartOutcome, str]:
+        """What rows of one line share: elements, place of ours, outcome and note."""
         place = self.ours[0].rpartition(".")[0] if self.ours[0] else ""
-        return self.elements, place, self.fate, self.note
+        return self.elements, place, self.outcome, self.note
 
     def text(self) -> str:
         """Return the line in Markdown."""
@@ -71,29 +71,31 @@ class _Line:
         names = [first, *(name.removeprefix(place) for name in rest)] if first else []
         ours = ", ".join(f"`{name}`" for name in names)
         theirs = f"{elements}: {parts}" if parts else elements
-        return f"| {theirs} | {ours} | {self.fate.value} | {self.note} |\n"
+        return f"| {theirs} | {ours} | {self.outcome.value} | {self.note} |\n"
 
 
 def _tables(tables: Sequence[RowTable]) -> Iterator[str]:
-    yield "\n| part | becomes | fate | note |\n|---|---|---|---|\n"
+    yield "\n| part | becomes | outcome | note |\n|---|---|---|---|\n"
     yield from (line.text() for line in _within(_across(tables)))
 
 
 def _across(tables: Sequence[RowTable]) -> list[_Line]:
     """Return one line for the same row of several elements."""
-    found: dict[tuple[str, str, Fate, str], list[str]] = {}
+    found: dict[tuple[str, str, PartOutcome, str], list[str]] = {}
     for table in tables:
         for row in table.rows:
-            found.setdefault((row.theirs, row.ours, row.fate, row.note), []).append(table.element)
+            found.setdefault((row.theirs, row.ours, row.outcome, row.note), []).append(
+                table.element
+            )
     return [
-        _Line(tuple(dict.fromkeys(elements)), [theirs], [ours], fate, note)
-        for (theirs, ours, fate, note), elements in found.items()
+        _Line(tuple(dict.fromkeys(elements)), [theirs], [ours], outcome, note)
+        for (theirs, ours, outcome, note), elements in found.items()
     ]
 
 
 def _within(lines: Sequence[_Line]) -> list[_Line]:
     """Return one line for those of the same elements that differ in names only."""
-    found: dict[tuple[tuple[str, ...], str, Fate, str], _Line] = {}
+    found: dict[tuple[tuple[str, ...], str, PartOutcome, str], _Line] = {}
     for line in lines:
         if line.kind in found:
             found[line.kind].theirs += line.theirs

@@ -19,7 +19,7 @@ from crowdbot.cli.app.command_names import command_names
 from crowdbot.cli.app.mishaps import left_by, tell_of_threads
 from crowdbot.cli.app.streams import prepare_streams
 from crowdbot.core.registry.plugin_errors import telling_interrupts
-from crowdbot.core.support.gc_throttle import collect_seldom
+from crowdbot.core.support.gc_throttle import throttle_gc
 from crowdbot.core.support.skip_final_gc import end_without_collecting
 from crowdbot.errors import CrowdbotError, InputError, PluginError, SpecError, printable
 
@@ -76,7 +76,7 @@ def _run(argv: Sequence[str] | None) -> int:
         raise InputError("the environment's NUMBA_NUM_THREADS must be above 0, or not set")
     words = sys.argv[1:] if argv is None else list(argv)
     if argv is None and not _LOADING.isdisjoint(words[:1]):
-        collect_seldom()
+        throttle_gc()
     if argv is None and not _READING.isdisjoint(words[:1]):
         # Pydantic would search every distribution for plugins that only monitor services.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")

@@ -45,9 +45,9 @@ def check_documents(
 
 def _check(spec: str, registry: Registry, overrides: Sequence[str]) -> tuple[int, list[Diagnostic]]:
     """Return the number of scenarios, and the errors."""
-    from crowdbot.core.support.gc_throttle import seldom_collected
+    from crowdbot.core.support.gc_throttle import throttled_gc
 
-    with seldom_collected():
+    with throttled_gc():
         return _check_all(spec, registry, overrides)
 
 

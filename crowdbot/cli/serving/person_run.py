@@ -44,7 +44,7 @@ class PersonRun:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PageDoors:
+class PagePorts:
     """Ports of the person's page and of the servers for other programs.
 
     Attributes:
@@ -90,7 +90,7 @@ def request_of(given: PersonRun, registry: Registry) -> Request:
 
 
 @contextmanager
-def page_of(seat: Seat, mode: Mode, scenario: str, doors: PageDoors) -> Iterator[PageServer]:
+def page_of(seat: Seat, mode: Mode, scenario: str, ports: PagePorts) -> Iterator[PageServer]:
     """Serve a person's page, and the servers for other programs, until the run ends.
 
     Raises:
@@ -101,21 +101,21 @@ def page_of(seat: Seat, mode: Mode, scenario: str, doors: PageDoors) -> Iterator
     from crowdbot.core.live.person.page import render_person_page
     from crowdbot.core.live.person.page_server import PageServer
 
-    if not math.isfinite(doors.rate):
+    if not math.isfinite(ports.rate):
         raise UsageError("--rate wants a number, such as --rate 0.5")
     with ExitStack() as stack:
         name = "teleop" if mode == "drive" else "walk"
-        server = PageServer(seat, render_person_page(mode, scenario), doors.port, name)
+        server = PageServer(seat, render_person_page(mode, scenario), ports.port, name)
         stack.callback(server.close)
         listen = Listen(
-            host="127.0.0.1", port=doors.rosbridge or 0, token=None, ros=2, zenoh=doors.zenoh,
+            host="127.0.0.1", port=ports.rosbridge or 0, token=None, ros=2, zenoh=ports.zenoh,
             distro=DistroChoice.jazzy,
         )  # fmt: skip
         stack.enter_context(
-            listening_also(seat.session, listen, rosbridge=doors.rosbridge is not None)
+            listening_also(seat.session, listen, rosbridge=ports.rosbridge is not None)
         )
         say(f"{name}: {server.url}", err=True)
-        if doors.open_:
+        if ports.open_:
             typer.launch(server.url)
         yield server
 

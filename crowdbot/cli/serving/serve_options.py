@@ -14,10 +14,10 @@ from crowdbot.cli.serving.serve_arguments import ClockChoice, DistroChoice, Miss
 from crowdbot.errors import MissingLibraryError, UsageError
 
 if TYPE_CHECKING:
-    from crowdbot.core.live.door import Door
-    from crowdbot.core.live.manner import Manner
+    from crowdbot.core.live.live_connection import LiveConnection
     from crowdbot.core.live.services import Service
     from crowdbot.core.live.session import LiveSession
+    from crowdbot.core.live.step_policy import StepPolicy
     from crowdbot.core.recording.watcher import Watcher
     from crowdbot.core.runs.run_record import RunRecord
 
@@ -40,13 +40,13 @@ class Listen:
     origins: Sequence[str] = ()
 
 
-def manner_of(
+def step_policy_of(
     rate: float | None,
     clock: ClockChoice,
     missed: MissedChoice,
     times: Mapping[str, float | None],
     epoch: int,
-) -> Manner:
+) -> StepPolicy:
     """Return the timing of a live run's steps.
 
     Args:
@@ -55,7 +55,7 @@ def manner_of(
     Raises:
         UsageError: two options contradict each other, or a number is out of range.
     """
-    from crowdbot.core.live.manner import Manner
+    from crowdbot.core.live.step_policy import StepPolicy
 
     external = clock is ClockChoice.external
     if external and rate is not None:
@@ -64,7 +64,7 @@ def manner_of(
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise UsageError(f"--{name} must be above 0, not {value:g}")
     wait = times["wait"]
-    return Manner(
+    return StepPolicy(
         rate=rate,
         external_clock=external,
         budget=times["budget"] or 0.0,
@@ -76,7 +76,9 @@ def manner_of(
 
 
 @contextmanager
-def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[list[Door]]:
+def listening(
+    session: LiveSession, policy: StepPolicy, listen: Listen
+) -> Iterator[list[LiveConnection]]:
     """Open the servers for external programs; they are closed when the context ends.
 
     Raises:
@@ -85,63 +87,67 @@ def listening(session: LiveSession, manner: Manner, listen: Listen) -> Iterator[
     """
     with ExitStack() as stack:
         first = _rosbridge if listen.connect is None else _connected
-        doors: list[Door] = [first(session, manner, listen)]
-        stack.callback(doors[0].close)
+        connections: list[LiveConnection] = [first(session, policy, listen)]
+        stack.callback(connections[0].close)
         if listen.zenoh is not None:
-            doors.append(_zenoh(session, manner, listen.zenoh, listen))
-            stack.callback(doors[-1].close)
+            connections.append(_zenoh(session, policy, listen.zenoh, listen))
+            stack.callback(connections[-1].close)
         if listen.foxglove is not None:
-            doors.append(_foxglove(session, manner, listen, listen.foxglove))
-            stack.callback(doors[-1].close)
-        yield doors
+            connections.append(_foxglove(session, policy, listen, listen.foxglove))
+            stack.callback(connections[-1].close)
+        yield connections
 
 
 @contextmanager
 def listening_also(
     session: LiveSession, listen: Listen, *, rosbridge: bool
-) -> Iterator[list[Door]]:
+) -> Iterator[list[LiveConnection]]:
     """Open further servers beside a person's page; they are closed when the context ends."""
-    from crowdbot.core.live.manner import Manner
+    from crowdbot.core.live.step_policy import StepPolicy
 
-    manner = Manner(rate=1.0)
+    policy = StepPolicy(rate=1.0)
     with ExitStack() as stack:
-        doors: list[Door] = []
+        connections: list[LiveConnection] = []
         if rosbridge:
-            doors.append(_rosbridge(session, manner, listen))
-            stack.callback(doors[-1].close)
+            connections.append(_rosbridge(session, policy, listen))
+            stack.callback(connections[-1].close)
         if listen.zenoh is not None:
-            doors.append(_zenoh(session, manner, listen.zenoh, listen))
-            stack.callback(doors[-1].close)
-        yield doors
+            connections.append(_zenoh(session, policy, listen.zenoh, listen))
+            stack.callback(connections[-1].close)
+        yield connections
 
 
-def _connected(session: LiveSession, manner: Manner, listen: Listen) -> Door:
+def _connected(session: LiveSession, policy: StepPolicy, listen: Listen) -> LiveConnection:
     from crowdbot.core.live.rosbridge.client import RosbridgeClient
 
     needs("live", "websockets")
     assert listen.connect is not None
-    door = RosbridgeClient(
+    connection = RosbridgeClient(
         session,
         listen.connect,
         ros=1 if listen.ros == 1 else 2,
         stamped=listen.stamped,
-        external_clock=manner.external_clock,
+        external_clock=policy.external_clock,
     )
     _say(f"rosbridge: connected to {listen.connect}; waiting for commands on {_topics(session)}")
-    return door
+    return connection
 
 
-def _foxglove(session: LiveSession, manner: Manner, listen: Listen, port: int) -> Door:
+def _foxglove(
+    session: LiveSession, policy: StepPolicy, listen: Listen, port: int
+) -> LiveConnection:
     needs("live", "foxglove")
     from crowdbot.core.live.admission import Admission
-    from crowdbot.core.live.foxglove.door import FoxgloveDoor
+    from crowdbot.core.live.foxglove.server import FoxgloveServer
 
     if not _is_this_machine(listen.host):
         raise UsageError("--foxglove knows no token: it listens on this machine only")
     admission = Admission(server="foxglove", origins=listen.origins)
-    door = FoxgloveDoor(session, listen.host, port, _services(session), manner.epoch, admission)
-    _say(f"foxglove: ws://{listen.host}:{door.port}")
-    return door
+    connection = FoxgloveServer(
+        session, listen.host, port, _services(session), policy.epoch, admission
+    )
+    _say(f"foxglove: ws://{listen.host}:{connection.port}")
+    return connection
 
 
 def _topics(session: LiveSession) -> str:
@@ -154,11 +160,13 @@ def _is_this_machine(host: str) -> bool:
     return is_loopback(host)
 
 
-def _zenoh(session: LiveSession, manner: Manner, endpoint: str, listen: Listen) -> Door:
+def _zenoh(
+    session: LiveSession, policy: StepPolicy, endpoint: str, listen: Listen
+) -> LiveConnection:
     needs("ros2", "zenoh")
-    from crowdbot.core.live.zenoh_door import Network, ZenohDoor
+    from crowdbot.core.live.zenoh_connection import Network, ZenohConnection
 
-    door = ZenohDoor(
+    connection = ZenohConnection(
         session,
         Network(
             endpoint=endpoint,
@@ -167,15 +175,15 @@ def _zenoh(session: LiveSession, manner: Manner, endpoint: str, listen: Listen) 
             distro=listen.distro.value,
         ),
         _services(session),
-        resend=manner.lockstep,
-        external_clock=manner.external_clock,
+        resend=policy.lockstep,
+        external_clock=policy.external_clock,
     )
     role = "router at" if listen.zenoh_router else "connected to"
     _say(f"ROS 2 ({listen.distro.value}, domain {listen.domain}): zenoh, {role} {endpoint}")
-    return door
+    return connection
 
 
-def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
+def _rosbridge(session: LiveSession, policy: StepPolicy, listen: Listen) -> LiveConnection:
     from crowdbot.core.live.admission import is_loopback
     from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 
@@ -192,8 +200,8 @@ def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
         Address(host=listen.host, port=listen.port, token=token, origins=listen.origins),
         _services(session),
         ros=1 if listen.ros == 1 else 2,
-        resend=manner.lockstep,
-        external_clock=manner.external_clock,
+        resend=policy.lockstep,
+        external_clock=policy.external_clock,
     )
     shown = f"[{listen.host}]" if ":" in listen.host else listen.host
     query = f"/?token={token}" if token else ""
@@ -202,13 +210,15 @@ def _rosbridge(session: LiveSession, manner: Manner, listen: Listen) -> Door:
     return server
 
 
-def watchers_of(doors: Sequence[Door], meshcat: int | None) -> list[Watcher]:
+def watchers_of(connections: Sequence[LiveConnection], meshcat: int | None) -> list[Watcher]:
     """Return the viewers of a run's ground truth: Foxglove, and Meshcat at a port.
 
     Raises:
         InputError: the port is not available.
     """
-    found = [cast("Watcher", door) for door in doors if hasattr(door, "sample")]
+    found = [
+        cast("Watcher", connection) for connection in connections if hasattr(connection, "sample")
+    ]
     return found + meshcat_view(meshcat)
 
 

@@ -24,7 +24,7 @@ def installed(
         InputError: a path does not exist.
         PluginError: a given plugin failed.
     """
-    from crowdbot.core.support.gc_throttle import seldom_collected
+    from crowdbot.core.support.gc_throttle import throttled_gc
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
     from crowdbot.errors import InputError, PluginError
 
@@ -32,7 +32,7 @@ def installed(
     for path in paths:
         if not path.exists():
             raise InputError(f"--plugin {path}: no such file or folder")
-    with seldom_collected(), stdout_to_stderr():
+    with throttled_gc(), stdout_to_stderr():
         from crowdbot.core.registry.registry import discover
 
         registry = discover(extra=paths, allow=() if no_plugins else None)

@@ -35,7 +35,7 @@ _ONE_THREAD = (
 _ALLOCATOR = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=400"}
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
-    "from crowdbot.core.support.gc_throttle import collect_seldom; collect_seldom(); "
+    "from crowdbot.core.support.gc_throttle import throttle_gc; throttle_gc(); "
     "from crowdbot.core.campaign.worker_main import main; "
     "main(int(sys.argv[2]), int(sys.argv[3]))"
 )

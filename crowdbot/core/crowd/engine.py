@@ -68,8 +68,8 @@ class CrowdEngine:
 
     Attributes:
         policies: how they decide, as `Agents.policy` numbers them.
-        aim: column of the state where the point begins that policies see as the goal: the goal,
-            or a point on the way to it.
+        goal_column: first column of the point that policies see as the goal: the goal, or a
+            waypoint.
         groups: agents with the same policy and the same view, when there is a robot.
         ticks_per_decision: between two decisions.
         parameters: what `tick` takes of people, world and scratch, as numbers.
@@ -118,7 +118,7 @@ class CrowdEngine:
             if world.routing is None
             else Router(agents, world.walls, world.pillars, world.routing)
         )
-        self.aim = s.GOAL_X if self._router is None else s.WAYPOINT_X
+        self.goal_column = s.GOAL_X if self._router is None else s.WAYPOINT_X
         self._members, self._ends = groups_of(agents)
         self._cohesion = None if world.cohesion is None else world.cohesion.forces
         self.parameters = numbers_of(*self._people, *self._place, *Scratch.of(len(agents)))
@@ -147,7 +147,7 @@ class CrowdEngine:
             else:
                 enter(people, i, a.x[i], a.y[i], a.preferred_speed[i], 0.0)
         rows[:, s.ON_TRIP] = (a.at_goal == PORTAL) | (np.diff(a.first) > 0)
-        to_goal = rows[:, self.aim : self.aim + 2] - rows[:, s.X : s.Y + 1]
+        to_goal = rows[:, self.goal_column : self.goal_column + 2] - rows[:, s.X : s.Y + 1]
         distance = np.hypot(to_goal[:, :1], to_goal[:, 1:])
         facing = np.divide(to_goal, distance, out=np.zeros_like(to_goal), where=distance > 0.0)
         arrived = distance[:, 0] == 0.0
@@ -315,7 +315,7 @@ class CrowdEngine:
         header[s.TICK] = LATER
         rows[:, s.X : s.Y + 1], rows[:, s.VX : s.VY + 1] = position, velocity
         rows[:, s.GOAL_X : s.GOAL_Y + 1] = goal
-        rows[:, self.aim : self.aim + 2] = goal
+        rows[:, self.goal_column : self.goal_column + 2] = goal
         rows[:, s.WAITING] = np.where(present, s.PRESENT, s.NOT_YET)
         away = goal - position
         distance = np.hypot(away[:, :1], away[:, 1:])
@@ -373,7 +373,7 @@ class CrowdEngine:
             agents=self.agents,
             position=rows[:, s.X : s.Y + 1].copy(),
             velocity=rows[:, s.VX : s.VY + 1].copy(),
-            goal=rows[:, self.aim : self.aim + 2].copy(),
+            goal=rows[:, self.goal_column : self.goal_column + 2].copy(),
             present=present,
             robot=robots,
             walls=self.world.walls,

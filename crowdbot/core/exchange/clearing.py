@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 from crowdbot.core.exchange.report import Report, Trace
-from crowdbot.core.exchange.rows import Fate
+from crowdbot.core.exchange.rows import PartOutcome
 from crowdbot.core.exchange.scene import USUAL_RADIUS, Data, Draft, Path
 from crowdbot.core.geometry.valid_shape import valid_shape
 
@@ -218,7 +218,7 @@ def _record(
     scene: Draft, path: Path, theirs: str, ours: str, note: str, report: Report
 ) -> None:  # fmt: skip
     place = scene.origins.get(path)
-    report.entries.append(Trace(Fate.INTERPRETED, theirs, place, ours, note))
+    report.entries.append(Trace(PartOutcome.INTERPRETED, theirs, place, ours, note))
     if path[1] == "agents" and path not in scene.comments:
         scene.comments[path] = f"its {theirs} {note}"
 

@@ -29,7 +29,7 @@ class Imported:
         lines: the document.
         scenes: those that its lines name.
         ids: ids of its scenarios.
-        report: the fate of each part.
+        report: the outcome of each part.
         formats: titles of the formats that were read.
     """
 

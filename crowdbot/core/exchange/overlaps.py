@@ -7,7 +7,7 @@ contact then pushes them apart.
 from __future__ import annotations
 
 from crowdbot.core.exchange.report import Report, Trace
-from crowdbot.core.exchange.rows import Fate
+from crowdbot.core.exchange.rows import PartOutcome
 from crowdbot.core.exchange.scene import USUAL_RADIUS, Draft
 from crowdbot.dsl.checks.agents import Disc, overlapping
 
@@ -42,6 +42,8 @@ def _disc(scene: Draft, number: int, radius: float) -> Disc:
 def _delay(scene: Draft, report: Report, number: int, time: float) -> None:
     path = ("crowd", "agents", str(number))
     place = scene.origins.get(path)
-    report.entries.append(Trace(Fate.INTERPRETED, "start", place, "crowd.agents.start_time", _NOTE))
+    report.entries.append(
+        Trace(PartOutcome.INTERPRETED, "start", place, "crowd.agents.start_time", _NOTE)
+    )
     scene.comments[path] = "overlaps another: enters some milliseconds later"
     scene.agents[number]["start_time"] = time

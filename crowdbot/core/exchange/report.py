@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from crowdbot.core.exchange.item import Item
-from crowdbot.core.exchange.rows import Fate, RowTable
+from crowdbot.core.exchange.rows import PartOutcome, RowTable
 from crowdbot.dsl.text.diagnostics import Mark
 
 #: Most parts that a line of the report names of one that is left out as a whole.
@@ -21,15 +21,15 @@ class Trace:
     """The outcome for one part of a file: carried over, interpreted, left out or added.
 
     Attributes:
-        fate: what happened to it.
+        outcome: what happened to it.
         theirs: path of the part, or what was added.
         at: its position; None for what only our document has.
         ours: place in our document; empty if it has none.
         note: reason, or how it was interpreted.
-        within: paths and positions of the parts that share its fate, each path once.
+        within: paths and positions of the parts that share its outcome, each path once.
     """
 
-    fate: Fate
+    outcome: PartOutcome
     theirs: str
     at: Mark | None
     ours: str = ""
@@ -40,7 +40,7 @@ class Trace:
         """Return plain data for ``--json``; line and column count from 1."""
         place = {"file": self.at.source.name, **_line_and_column(self.at)} if self.at else {}
         within = [{"theirs": path, **_line_and_column(mark)} for path, mark in self.within]
-        return {"fate": self.fate.value, "theirs": self.theirs, **place, "ours": self.ours,
+        return {"fate": self.outcome.value, "theirs": self.theirs, **place, "ours": self.ours,
                 "note": self.note} | ({"within": within} if within else {})  # fmt: skip
 
 
@@ -57,12 +57,12 @@ class Report:
     def carried(self, item: Item, ours: str) -> None:
         """Record a part that is carried over as it is."""
         item.used = True
-        self.entries.append(Trace(Fate.CARRIED, item.path, item.mark, ours))
+        self.entries.append(Trace(PartOutcome.CARRIED, item.path, item.mark, ours))
 
     def interpreted(self, item: Item, ours: str, note: str) -> None:
         """Record a part that means nearly the same as a field of crowdbot."""
         item.used = True
-        self.entries.append(Trace(Fate.INTERPRETED, item.path, item.mark, ours, note))
+        self.entries.append(Trace(PartOutcome.INTERPRETED, item.path, item.mark, ours, note))
 
     def left_out(self, item: Item, note: str, *, whole: bool = True) -> None:
         """Record a part, by default with everything in it, that has no place in our language."""
@@ -74,16 +74,16 @@ class Report:
             item.take_all()
         item.used = True
         self.entries.append(
-            Trace(Fate.LEFT_OUT, item.path, item.mark, "", note, tuple(within.items()))
+            Trace(PartOutcome.LEFT_OUT, item.path, item.mark, "", note, tuple(within.items()))
         )
 
     def added(self, ours: str, note: str, at: Mark | None = None) -> None:
         """Record a field that our language needs and the files do not have."""
-        self.entries.append(Trace(Fate.ADDED, "", at, ours, note))
+        self.entries.append(Trace(PartOutcome.ADDED, "", at, ours, note))
 
     def odd(self, mark: Mark, note: str) -> None:
         """Record a violation of the file's format that was accepted."""
-        self.entries.append(Trace(Fate.INTERPRETED, "(syntax)", mark, "", note))
+        self.entries.append(Trace(PartOutcome.INTERPRETED, "(syntax)", mark, "", note))
 
     def take(self, item: Item, table: RowTable) -> dict[str, Any]:
         """Return crowdbot's fields for an item's parts, by its table; each is recorded.
@@ -96,7 +96,9 @@ class Report:
             for part in item.every(row.theirs):
                 if row.ours:
                     found[row.field] = row.read(part)
-                    self.entries.append(Trace(row.fate, part.path, part.mark, row.ours, row.note))
+                    self.entries.append(
+                        Trace(row.outcome, part.path, part.mark, row.ours, row.note)
+                    )
                 elif row.unless and _same(part, row.unless):
                     self.carried(part, f"(nothing to carry over: {row.unless})")
                 else:
@@ -123,19 +125,19 @@ class Report:
             stack += reversed(item.children)
 
     def counts(self) -> dict[str, int]:
-        """Return fate -> number of entries."""
-        found = Counter(entry.fate for entry in self.entries)
-        return {fate.value: found[fate] for fate in Fate}
+        """Return outcome -> number of entries."""
+        found = Counter(entry.outcome for entry in self.entries)
+        return {outcome.value: found[outcome] for outcome in PartOutcome}
 
     def lines(self) -> list[str]:
         """Return one line per kind of part that was not carried over as it is, then the sums."""
-        groups: dict[tuple[Fate, str, str, str], list[Trace]] = {}
+        groups: dict[tuple[PartOutcome, str, str, str], list[Trace]] = {}
         for entry in self.entries:
-            if entry.fate != Fate.CARRIED:
-                key = (entry.fate, entry.theirs, entry.ours, entry.note)
+            if entry.outcome != PartOutcome.CARRIED:
+                key = (entry.outcome, entry.theirs, entry.ours, entry.note)
                 groups.setdefault(key, []).append(entry)
-        order = sorted(groups, key=lambda key: list(Fate).index(key[0]))
-        sums = ", ".join(f"{number} {fate}" for fate, number in self.counts().items())
+        order = sorted(groups, key=lambda key: list(PartOutcome).index(key[0]))
+        sums = ", ".join(f"{number} {outcome}" for outcome, number in self.counts().items())
         return [*(_line(key, groups[key]) for key in order), sums]
 
 
@@ -153,11 +155,13 @@ def _below(path: str, whole: str) -> str:
     return path.removeprefix(whole).lstrip("/@") or path
 
 
-def _line(key: tuple[Fate, str, str, str], entries: list[Trace]) -> str:
-    fate, theirs, ours, note = key
+def _line(key: tuple[PartOutcome, str, str, str], entries: list[Trace]) -> str:
+    outcome, theirs, ours, note = key
     first = next((str(e.at) for e in entries if e.at), "")
     more = f" and {len(entries) - 1} more" if len(entries) > 1 else ""
     names = dict.fromkeys(_below(path, theirs) for entry in entries for path, _ in entry.within)
     shown = ", ".join([*list(names)[:_SHOWN], *(["…"] if len(names) > _SHOWN else [])])
     what = " -> ".join(filter(None, (f"{theirs} ({shown})" if shown else theirs, ours)))
-    return f"{fate.value}: {f'{first}{more}: ' if first else ''}{what}{f': {note}' if note else ''}"
+    return (
+        f"{outcome.value}: {f'{first}{more}: ' if first else ''}{what}{f': {note}' if note else ''}"
+    )

@@ -10,7 +10,7 @@ from typing import Any
 from crowdbot.core.exchange.item import Item
 
 
-class Fate(StrEnum):
+class PartOutcome(StrEnum):
     """The outcome for one part of a file: carried over, interpreted, left out or added."""
 
     CARRIED = "carried over"
@@ -58,11 +58,11 @@ class Row:
     unless: str = ""
 
     @property
-    def fate(self) -> Fate:
+    def outcome(self) -> PartOutcome:
         """Return the outcome for the file's part: carried over, interpreted, or left out."""
         if not self.ours:
-            return Fate.LEFT_OUT
-        return Fate.INTERPRETED if self.note else Fate.CARRIED
+            return PartOutcome.LEFT_OUT
+        return PartOutcome.INTERPRETED if self.note else PartOutcome.CARRIED
 
     @property
     def field(self) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 from crowdbot.core.exchange.clearing import FreeFloor, shape_of
 from crowdbot.core.exchange.report import Report, Trace
-from crowdbot.core.exchange.rows import Fate
+from crowdbot.core.exchange.rows import PartOutcome
 from crowdbot.core.exchange.scene import USUAL_RADIUS, Data, Draft, Path
 
 #: Least area in which a body could be placed, m^2.
@@ -98,4 +98,6 @@ def _cut(scene: Draft, path: Path, area: Data, part: Any, report: Report) -> Non
 
 
 def _record(scene: Draft, path: Path, ours: str, note: str, report: Report) -> None:
-    report.entries.append(Trace(Fate.INTERPRETED, "area", scene.origins.get(path), ours, note))
+    report.entries.append(
+        Trace(PartOutcome.INTERPRETED, "area", scene.origins.get(path), ours, note)
+    )

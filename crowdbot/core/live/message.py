@@ -40,6 +40,6 @@ class LiveMessage:
         return ros.from_cdr(self.data, self.msgtype)
 
 
-def told(topic: str, ns: int, message: Any, *, latched: bool = False) -> LiveMessage:
+def live_message(topic: str, ns: int, message: Any, *, latched: bool = False) -> LiveMessage:
     """Return a message object as a `LiveMessage`."""
     return LiveMessage(topic, message.__msgtype__, ns, ros.to_cdr(message), latched)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, live_message
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import template
@@ -113,9 +113,9 @@ class Observed:
             parts = template.stamp(ns), template.two(*obs.pose[:2]), template.turn(obs.pose.yaw)
             yield LiveMessage(str(Topic.TF), self._tf.msgtype, ns, self._tf.fill(*parts))
         if wanted(JOINTS):
-            yield told(JOINTS, ns, self._wheels.message(ns))
+            yield live_message(JOINTS, ns, self._wheels.message(ns))
         if wanted(OBSERVATION):
-            yield told(OBSERVATION, ns, _observation(ns, obs, self._frame))
+            yield live_message(OBSERVATION, ns, _observation(ns, obs, self._frame))
         if wanted(Topic.CLOCK):
             data = self._clock.fill(template.stamp(ns))
             yield LiveMessage(str(Topic.CLOCK), self._clock.msgtype, ns, data)

@@ -25,7 +25,7 @@ class LivePlanner:
 
     def __init__(self, steps: LiveSteps, scene: LiveScene) -> None:
         self._steps, self._scene = steps, scene
-        self._session, self._manner = steps.session, steps.manner
+        self._session, self._policy = steps.session, steps.policy
         self._alone = 0.0
         self._last, self._heard = Command(0.0, 0.0), -math.inf
 
@@ -34,7 +34,7 @@ class LivePlanner:
     ) -> None:
         """Announce the topics of this robot, and publish its constant data."""
         del limits
-        messages = RobotMessages(self._scene, task, sensors, seed, self._manner.epoch)
+        messages = RobotMessages(self._scene, task, sensors, seed, self._policy.epoch)
         self._steps.join(self._scene.name, messages)
 
     def step(self, obs: Observation) -> Command:
@@ -46,7 +46,7 @@ class LivePlanner:
         """
         if not self._steps.begin(self._scene.name, obs):
             return Command(0.0, 0.0)
-        answer = self._answer() if self._manner.lockstep else self._newest(obs.t)
+        answer = self._answer() if self._policy.lockstep else self._newest(obs.t)
         self._steps.taken(self._scene.name)
         return self._obeyed(answer, obs.t)
 
@@ -54,7 +54,7 @@ class LivePlanner:
         """Wait for the command of this step."""
         session, robot, steps = self._session, self._scene.namespace, self._steps
         driven = session.is_driven(robot)
-        patience = self._manner.budget
+        patience = self._policy.budget
         if driven:
             self._alone = 0.0
         else:
@@ -71,7 +71,7 @@ class LivePlanner:
         if fresh:
             self._heard = t
             return command
-        if t - self._heard <= self._manner.hold and command is not None:
+        if t - self._heard <= self._policy.hold and command is not None:
             self._session.counts.missed += 1
             return command
         return None
@@ -84,8 +84,8 @@ class LivePlanner:
         if self._session.must_stop:
             return Command(0.0, 0.0)
         self._session.counts.missed += 1
-        if self._manner.missed == "fail":
+        if self._policy.missed == "fail":
             raise PlannerError(f"no command came for the step at {t:g} s")
-        if self._manner.missed == "hold":
+        if self._policy.missed == "hold":
             return self._last
         raise NoValidCommand

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, live_message
 from crowdbot.core.live.observed import Observed
 from crowdbot.core.live.robot_topics import robot_topic
 from crowdbot.core.live.scene import LiveScene, latched
@@ -69,7 +69,9 @@ def constant_of(robots: Iterable[RobotMessages]) -> list[LiveMessage]:
     frames = [m for m in every if m.topic == Topic.TF_STATIC]
     if len(frames) > 1:
         whole = ros.transforms([t for m in frames for t in m.fields.transforms])
-        found[Topic.TF_STATIC] = told(str(Topic.TF_STATIC), frames[0].ns, whole, latched=True)
+        found[Topic.TF_STATIC] = live_message(
+            str(Topic.TF_STATIC), frames[0].ns, whole, latched=True
+        )
     return list(found.values())
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.live.message import LiveMessage, told
+from crowdbot.core.live.message import LiveMessage, live_message
 from crowdbot.core.recording import markers, scenery
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording.header import (
@@ -57,7 +57,7 @@ def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessag
     if len(walls):
         found.append((Topic.WALLS, scenery.wall_lines(walls)))
         found.append((Topic.MAP, scenery.occupancy_grid(ns, walls, goal=task.goal)))
-    return [told(str(topic), ns, message, latched=True) for topic, message in found]
+    return [live_message(str(topic), ns, message, latched=True) for topic, message in found]
 
 
 def _header(scene: LiveScene, task: Task) -> RecordingHeader:

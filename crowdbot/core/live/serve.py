@@ -9,14 +9,14 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 
-from crowdbot.core.live.door import Door
+from crowdbot.core.live.live_connection import LiveConnection
 from crowdbot.core.live.live_record import with_live_part
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.manner import Manner
 from crowdbot.core.live.planner import LivePlanner
 from crowdbot.core.live.robot_topics import namespaces
 from crowdbot.core.live.scene import LiveScene
 from crowdbot.core.live.session import LiveSession, State
+from crowdbot.core.live.step_policy import StepPolicy
 from crowdbot.core.live.steps import LiveSteps, status
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.recording.watcher import Watcher
@@ -44,8 +44,8 @@ class LiveServe:
     """
 
     session: LiveSession
-    doors: Sequence[Door]
-    manner: Manner
+    connections: Sequence[LiveConnection]
+    policy: StepPolicy
     scenarios: Sequence[Scenario]
     request: Callable[[Scenario, PlannerChoice, int], Request]
     name: str = "live"
@@ -108,11 +108,11 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
     from crowdbot.core.sim.preflight import preflight
     from crowdbot.core.sim.simulate import make_run
 
-    session, manner, robots = service.session, service.manner, tuple(scenario.robots)
+    session, policy, robots = service.session, service.policy, tuple(scenario.robots)
     scenes: dict[str, LiveScene] = {}
-    steps = LiveSteps(session, service.doors, manner, robots)
+    steps = LiveSteps(session, service.connections, policy, robots)
     choice = live_choice(
-        service.name, manner, robots, lambda robot: LivePlanner(steps, scenes[robot])
+        service.name, policy, robots, lambda robot: LivePlanner(steps, scenes[robot])
     )
     request = service.request(scenario, choice, session.seed)
     stop = lambda: session.must_stop  # noqa: E731
@@ -139,21 +139,21 @@ def _serve_one(service: LiveServe, scenario: Scenario) -> Run | None:
         return None
     finally:
         session.finish(state)
-        for door in service.doors:
-            door.publish([status(session, manner.epoch)])
-    run = _remember(run, session, manner)
+        for connection in service.connections:
+            connection.publish([status(session, policy.epoch)])
+    run = _remember(run, session, policy)
     service.on_run(run)
     return run
 
 
 def live_choice(
-    name: str, manner: Manner, robots: Sequence[str], build: Callable[[str], LivePlanner]
+    name: str, policy: StepPolicy, robots: Sequence[str], build: Callable[[str], LivePlanner]
 ) -> PlannerChoice:
     """Return a planner choice that listens to external commands.
 
     Args:
         name: the planner's name.
-        manner: timing of the steps.
+        policy: timing of the steps.
         robots: names of the robots.
         build: function that builds the planner of a robot.
 
@@ -162,7 +162,7 @@ def live_choice(
     """
     if not name or name.startswith(".") or set(name) & set("/\\\0"):
         raise InputError(f"'{name}' cannot be the name of a planner, which a folder has")
-    spec = {k: v for k, v in asdict(manner).items() if k != "wait"}
+    spec = {k: v for k, v in asdict(policy).items() if k != "wait"}
     choice = PlannerChoice(
         name=name,
         spec_dump={"kind": "live", **spec},
@@ -200,10 +200,10 @@ def _scenes(request: Request, builts: Mapping[str, BuiltRun]) -> dict[str, LiveS
     }
 
 
-def _remember(run: Run, session: LiveSession, manner: Manner) -> Run:
+def _remember(run: Run, session: LiveSession, policy: StepPolicy) -> Run:
     """Add data of the live run to run.json."""
     counts = session.counts
     live = LivePart(steps=counts.steps, missed_steps=counts.missed, refused_commands=counts.refused)
-    if manner.rate is not None:
+    if policy.rate is not None:
         live = live.model_copy(update={"largest_lag": round(counts.most_lag, 4)})
     return with_live_part(run, live)

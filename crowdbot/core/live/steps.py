@@ -6,12 +6,12 @@ import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from crowdbot.core.live.door import Door
-from crowdbot.core.live.manner import Manner
-from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
+from crowdbot.core.live.live_connection import LiveConnection
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, live_message
 from crowdbot.core.live.robot_messages import RobotMessages, clock_last, constant_of
 from crowdbot.core.live.robot_topics import STATUS, namespaces
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.live.step_policy import StepPolicy
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.recording import messages as ros
 
@@ -26,17 +26,21 @@ class LiveSteps:
     then on, commands for all robots count for that step.
 
     Attributes:
-        session, manner: the session, and the timing.
+        session, policy: the session, and the timing.
         shown: when the current step was published, s of `time.monotonic`.
     """
 
     def __init__(
-        self, session: LiveSession, doors: Sequence[Door], manner: Manner, robots: Sequence[str]
+        self,
+        session: LiveSession,
+        connections: Sequence[LiveConnection],
+        policy: StepPolicy,
+        robots: Sequence[str],
     ) -> None:
         """Prepare the steps of one recording after the other. ``robots``: names of all robots."""
-        self.session, self.manner = session, manner
+        self.session, self.policy = session, policy
         self.shown = 0.0
-        self._doors, self._spaces = doors, namespaces(robots)
+        self._connections, self._spaces = connections, namespaces(robots)
         self._robots: dict[str, RobotMessages] = {}
         self._look: Callable[[], Mapping[str, Observation]] = dict
         self._seen: Mapping[str, Observation] = {}
@@ -64,9 +68,9 @@ class LiveSteps:
         offers = [OfferedTopic(m.topic, m.msgtype, latched=True) for m in constant]
         offers.append(OfferedTopic(STATUS, _STATUS, latched=True))
         offers += [offer for each in self._robots.values() for offer in each.offers()]
-        for door in self._doors:
-            door.open(list(dict.fromkeys(offers)))
-            door.publish(constant)
+        for connection in self._connections:
+            connection.open(list(dict.fromkeys(offers)))
+            connection.publish(constant)
         self._tell()
 
     def begin(self, robot: str, obs: Observation) -> bool:
@@ -103,15 +107,15 @@ class LiveSteps:
 
     def _begin(self, t: float) -> None:
         """Wait until the step may be taken, and publish it."""
-        session, manner = self.session, self.manner
+        session, policy = self.session, self.policy
         if self._began == -math.inf:
-            session.wait_for_driver(manner.wait)
-            self._began = time.monotonic() - (0.0 if manner.rate is None else t / manner.rate)
+            session.wait_for_driver(policy.wait)
+            self._began = time.monotonic() - (0.0 if policy.rate is None else t / policy.rate)
         held = time.monotonic()
         session.wait_while_paused()
         self._began += time.monotonic() - held
-        if manner.lockstep:
-            ns = manner.epoch + ros.nanoseconds(t)
+        if policy.lockstep:
+            ns = policy.epoch + ros.nanoseconds(t)
             session.ask(ns, [self._spaces[name] for name in self._seen])
         else:
             self._keep_pace(t)
@@ -124,11 +128,11 @@ class LiveSteps:
 
     def _keep_pace(self, t: float) -> None:
         """Wait for a clock."""
-        session, manner = self.session, self.manner
-        if manner.external_clock:
+        session, policy = self.session, self.policy
+        if policy.external_clock:
             session.wait_for_clock(t)
-        elif manner.rate is not None:
-            due = self._began + t / manner.rate
+        elif policy.rate is not None:
+            due = self._began + t / policy.rate
             session.sleep(due)
             session.counts.lag = max(time.monotonic() - due, 0.0)
             session.counts.most_lag = max(session.counts.most_lag, session.counts.lag)
@@ -142,18 +146,18 @@ class LiveSteps:
     def _pass_on(self, found: Iterable[LiveMessage]) -> set[str]:
         """Publish messages; return their topics."""
         messages = clock_last(found)
-        for door in self._doors:
-            door.publish(messages)
+        for connection in self._connections:
+            connection.publish(messages)
         return {m.topic for m in messages}
 
     def _wanted(self, topic: str) -> bool:
-        return any(door.wants(topic) for door in self._doors)
+        return any(connection.wants(topic) for connection in self._connections)
 
     def _tell(self) -> None:
         self._told = time.monotonic()
-        message = status(self.session, self.manner.epoch)
-        for door in self._doors:
-            door.publish([message])
+        message = status(self.session, self.policy.epoch)
+        for connection in self._connections:
+            connection.publish([message])
 
 
 def status(session: LiveSession, epoch: int) -> LiveMessage:
@@ -170,4 +174,4 @@ def status(session: LiveSession, epoch: int) -> LiveMessage:
         steps=counts.steps,
         missed=counts.missed,
     )
-    return told(STATUS, epoch + ros.nanoseconds(session.t), message, latched=True)
+    return live_message(STATUS, epoch + ros.nanoseconds(session.t), message, latched=True)

@@ -32,7 +32,7 @@ class RunLog:
         sideways: bool = False,
         people: bool = True,
         robot: int | None = 0,
-        aim: int = s.GOAL_X,
+        goal_column: int = s.GOAL_X,
         on_sample: Callable[[float, Sequence[float] | None, Array | None], None] | None = None,
         on_drawing: Callable[[float, Drawn], None] | None = None,
     ) -> None:
@@ -44,7 +44,7 @@ class RunLog:
             people: True to record people and their trips, False to record only contacts with them:
                 people near a fleet are recorded once for all robots.
             robot: its number among those of the crowd's state; None records no contacts.
-            aim: column of the crowd's state where the point begins to which people walk.
+            goal_column: column of the crowd's state where the point begins to which people walk.
             on_sample: is given each sample, too: time, the robot's row, people.
             on_drawing: is given what the planner draws, too, and the time.
         """
@@ -52,7 +52,7 @@ class RunLog:
         self.writer = writer
         self._sideways, self._keeps_people, self._robot = sideways, people, robot
         self._id = agent_id
-        self._aim = aim
+        self._goal_column = goal_column
         self._jumps = np.zeros(len(agent_id))  # at the latest sample
         self._arrivals = np.zeros(len(agent_id))  # already recorded
         self._agent_contacts = np.zeros(len(agent_id))
@@ -70,7 +70,7 @@ class RunLog:
             count = len(people)
             agents, goals = np.empty((4, count)), np.empty((2, count))
             jump = np.empty(count, np.bool_)
-            _take_sample(people, self._aim, self._jumps, agents, goals, jump)
+            _take_sample(people, self._goal_column, self._jumps, agents, goals, jump)
         row = None if robot is None else self._row(robot)
         self.writer.state(t, row, agents, jump, goals=goals)
         if robot is not None:
@@ -167,13 +167,18 @@ class RunLog:
 
 @kernel
 def _take_sample(
-    people: Array, aim: int, jumps: Array, agents: Array, goals: Array, jump: NDArray[np.bool_]
+    people: Array,
+    goal_column: int,
+    jumps: Array,
+    agents: Array,
+    goals: Array,
+    jump: NDArray[np.bool_],
 ) -> None:
     """Write the columns of a sample in one pass over the crowd.
 
     Args:
         people: (M, C) rows of the crowd's state.
-        aim: first column of people's waypoints.
+        goal_column: first column of people's waypoints.
         jumps: (M,) counts until the last sample, updated to this one.
         agents, goals, jump: (4, M), (2, M), (M,) results, arguments of `RecordingWriter.state`.
     """
@@ -181,6 +186,6 @@ def _take_sample(
         present = people[i, s.WAITING] == s.PRESENT
         for c in range(4):
             agents[c, i] = people[i, s.X + c] if present else math.nan
-        goals[0, i], goals[1, i] = people[i, aim], people[i, aim + 1]
+        goals[0, i], goals[1, i] = people[i, goal_column], people[i, goal_column + 1]
         jump[i] = people[i, s.JUMPS] != jumps[i]
         jumps[i] = people[i, s.JUMPS]

@@ -24,7 +24,7 @@ from crowdbot.core.registry.narrowed_models import Models, models_of
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
 from crowdbot.core.registry.registry_source import RegistrySource, Whereabouts
-from crowdbot.core.support.gc_throttle import seldom_collected
+from crowdbot.core.support.gc_throttle import throttled_gc
 from crowdbot.dsl.scenario.components import components
 from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Robot, Scenario
 from crowdbot.dsl.spec.component import Component
@@ -286,7 +286,7 @@ def _sources(plugin: Plugin, component: Component[Any]) -> frozenset[str]:
     return frozenset(f for f in (plugin.file, *files) if f)
 
 
-@seldom_collected()
+@throttled_gc()
 def discover(
     *, extra: Sequence[Path] = (), allow: Iterable[str] | None = None, entry_points: bool = True
 ) -> Registry:

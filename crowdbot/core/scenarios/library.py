@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Self
 from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry, registry_of
 from crowdbot.core.registry.registry_source import Whereabouts, whereabouts
-from crowdbot.core.support.gc_throttle import seldom_collected
+from crowdbot.core.support.gc_throttle import throttled_gc
 from crowdbot.core.support.text_files import suggest_files
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.scenario.scenario import Locked, Scenario
@@ -49,7 +49,7 @@ class OpenDocument:
     suite: ParsedSuite
 
 
-@seldom_collected()
+@throttled_gc()
 def open_document(spec: str, registry: Registry) -> OpenDocument:
     """Read a suite or scenario with everything it extends, without expanding it.
 
@@ -84,7 +84,7 @@ def open_spec(spec: str, registry: Registry, overrides: Sequence[str] = ()) -> E
     return expansion
 
 
-@seldom_collected()
+@throttled_gc()
 def open_suite(
     spec: str, registry: Registry, overrides: Sequence[str] = ()
 ) -> tuple[Expansion, LockFiles]:

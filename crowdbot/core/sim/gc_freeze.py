@@ -6,7 +6,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from crowdbot.core.support.gc_throttle import collected_as_usual
+from crowdbot.core.support.gc_throttle import usual_gc
 
 
 @contextmanager
@@ -19,12 +19,12 @@ def gc_frozen() -> Iterator[None]:
     thousands of objects, that is some seventy runs or 180 MB.
     """
     if gc.get_freeze_count():  # the code that froze objects before has to unfreeze them
-        with collected_as_usual():
+        with usual_gc():
             yield
         return
     gc.freeze()
     try:
-        with collected_as_usual():
+        with usual_gc():
             yield
     finally:
         gc.collect()

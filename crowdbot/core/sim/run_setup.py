@@ -84,7 +84,9 @@ def record_crowd(setup: RunSetup, duration: float) -> Outcome:
 
     with recording(setup, header, engine) as (writer, ending):
         watched = WatchedRun(setup.watchers, header, {}, {}).watch("", people=True)
-        log = RunLog(writer, ids(engine), robot=None, aim=engine.aim, on_sample=watched)
+        log = RunLog(
+            writer, ids(engine), robot=None, goal_column=engine.goal_column, on_sample=watched
+        )
         if setup.on_crowd is not None:
             setup.on_crowd(engine, writer.signal)
         whole = run_crowd(
@@ -158,6 +160,6 @@ def choosers(engine: CrowdEngine | None) -> list[Choosers]:
     return found
 
 
-def aim_of(engine: CrowdEngine | None) -> int:
+def goal_column_of(engine: CrowdEngine | None) -> int:
     """Return the first column of people's waypoints in the crowd's state."""
-    return crowd_state.GOAL_X if engine is None else engine.aim
+    return crowd_state.GOAL_X if engine is None else engine.goal_column

@@ -8,11 +8,11 @@ from contextlib import contextmanager
 
 #: New objects before a collection, instead of 700: about 50 MB of small ones.
 _MANY = 500_000
-#: Thresholds before `collect_seldom`; empty in host processes of the API.
+#: Thresholds before `throttle_gc`; empty in host processes of the API.
 _usual: list[tuple[int, int, int]] = []
 
 
-def collect_seldom() -> None:
+def throttle_gc() -> None:
     """Collect garbage less often from now on, in our own process, whose objects are permanent.
 
     A larger threshold, or 0 (off), is kept.
@@ -23,7 +23,7 @@ def collect_seldom() -> None:
 
 
 @contextmanager
-def seldom_collected() -> Iterator[None]:
+def throttled_gc() -> Iterator[None]:
     """Collect garbage less often in a context: documents are many objects with few cycles.
 
     Also usable as a decorator.
@@ -37,10 +37,10 @@ def seldom_collected() -> Iterator[None]:
 
 
 @contextmanager
-def collected_as_usual() -> Iterator[None]:
+def usual_gc() -> Iterator[None]:
     """Collect garbage as usual in a context, since planners' garbage may be large.
 
-    Undoes `collect_seldom`. Without it, thresholds are the user's and are kept.
+    Undoes `throttle_gc`. Without it, thresholds are the user's and are kept.
     """
     if not _usual:
         yield

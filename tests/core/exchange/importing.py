@@ -32,6 +32,6 @@ def document_of(found: Imported) -> Any:
     return to_data(parse(text, Source("imported"), []))
 
 
-def notes(found: Imported, fate: str) -> dict[str, str]:
+def notes(found: Imported, outcome: str) -> dict[str, str]:
     """The reasons in a report, by what they concern."""
-    return {e.theirs or e.ours: e.note for e in found.report.entries if e.fate.value == fate}
+    return {e.theirs or e.ours: e.note for e in found.report.entries if e.outcome.value == outcome}

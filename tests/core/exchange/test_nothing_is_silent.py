@@ -48,7 +48,7 @@ def _places(report: Report) -> dict[str, tuple[int, int]]:
     found = {}
     for entry in report.entries:
         for path, mark in [(entry.theirs, entry.at), *entry.within]:
-            if mark is not None and entry.fate.value == "left out":
+            if mark is not None and entry.outcome.value == "left out":
                 found[re.split("[/@]", path)[-1]] = (mark.line, mark.column)
     return found
 
@@ -95,7 +95,7 @@ def test_in_a_recording(tmp_path: Path) -> None:
 
 def notes_of(report: Report) -> dict[str, str]:
     """The reasons of what was left out, by what it concerns."""
-    return {e.theirs: e.note for e in report.entries if e.fate.value == "left out"}
+    return {e.theirs: e.note for e in report.entries if e.outcome.value == "left out"}
 
 
 def test_a_document_that_would_be_too_large_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

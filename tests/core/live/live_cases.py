@@ -11,7 +11,7 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
-from crowdbot.core.live.message import LiveMessage, OfferedTopic, told
+from crowdbot.core.live.message import LiveMessage, OfferedTopic, live_message
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
@@ -23,7 +23,7 @@ _NUMBERS = itertools.count()
 
 
 def clock(ns: int) -> LiveMessage:
-    return told("/clock", ns, ros.clock(ns))
+    return live_message("/clock", ns, ros.clock(ns))
 
 
 @contextmanager

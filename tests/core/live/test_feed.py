@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core.live.message import LiveMessage
 from crowdbot.core.live.rosbridge.bad_frame import BadFrame
-from crowdbot.core.live.rosbridge.feed import Feed, Wishes, wishes
+from crowdbot.core.live.rosbridge.feed import Feed, SubscriptionOptions, subscription_options
 from crowdbot.core.live.rosbridge.fragments import Joiner, split
 from crowdbot.core.live.rosbridge.outbox import Outbox
 from tests.core.live.live_cases import clock
@@ -42,12 +42,12 @@ def _feed(**fields: Any) -> tuple[Feed, Time, list[int]]:
     sent: list[int] = []
     time = Time()
 
-    def send(message: LiveMessage, wish: Wishes) -> None:
-        del wish
+    def send(message: LiveMessage, options: SubscriptionOptions) -> None:
+        del options
         sent.append(message.ns)
 
     feed = Feed(send, time.later, lambda: time.now)
-    feed.subscribe("a", Wishes(**fields))
+    feed.subscribe("a", SubscriptionOptions(**fields))
     return feed, time, sent
 
 
@@ -88,7 +88,7 @@ def test_what_waits_is_not_sent_after_the_end_of_a_subscription() -> None:
 
 def test_of_two_subscriptions_the_more_eager_one_counts() -> None:
     feed, _, sent = _feed(throttle=1.0)
-    feed.subscribe("b", Wishes())
+    feed.subscribe("b", SubscriptionOptions())
     feed.take(clock(1))
     feed.take(clock(2))
     assert sent == [1, 2]
@@ -102,17 +102,17 @@ def test_of_two_subscriptions_the_more_eager_one_counts() -> None:
 @pytest.mark.parametrize("value", [-1, "1", True, [], float("nan"), float("inf"), 2**70])
 def test_wishes_are_numbers_from_0_on(field: str, value: object) -> None:
     with pytest.raises(BadFrame, match=field):
-        wishes({field: value})
+        subscription_options({field: value})
 
 
 def test_fragments_are_off_for_cbor() -> None:
-    assert wishes({"compression": "cbor", "fragment_size": 10})[0].fragment == 0
-    assert wishes({"compression": "none", "fragment_size": 10})[0].fragment == 10
+    assert subscription_options({"compression": "cbor", "fragment_size": 10})[0].fragment == 0
+    assert subscription_options({"compression": "none", "fragment_size": 10})[0].fragment == 10
 
 
 def test_an_unknown_compression_is_told_and_left_out() -> None:
-    wish, remark = wishes({"compression": "png"})
-    assert wish.form == "none"
+    options, remark = subscription_options({"compression": "png"})
+    assert options.form == "none"
     assert "png" in remark
 
 

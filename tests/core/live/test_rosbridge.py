@@ -13,7 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
 
-from crowdbot.core.live.message import OfferedTopic, told
+from crowdbot.core.live.message import OfferedTopic, live_message
 from crowdbot.core.live.rosbridge.server import Address, RosbridgeServer
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
@@ -32,7 +32,9 @@ SCAN = SensorInfo(
 def _scan() -> Any:
     assert SCAN.angles is not None
     ranges = np.array([1.5, 2.5, np.inf, 0.1])
-    return told("/scan", 3_000_000_004, ros.laser_scan(3_000_000_004, SCAN, SCAN.angles, ranges))
+    return live_message(
+        "/scan", 3_000_000_004, ros.laser_scan(3_000_000_004, SCAN, SCAN.angles, ranges)
+    )
 
 
 def _cbor(socket: ClientConnection) -> Any:
@@ -118,7 +120,7 @@ def test_in_real_time_only_latched_messages_wait_for_who_comes_late() -> None:
                 OfferedTopic("/map", "x", latched=True),
             ]
         )
-        still = told("/map", 1, ros.clock(1), latched=True)
+        still = live_message("/map", 1, ros.clock(1), latched=True)
         server.publish([clock(5), still])
         say(socket, "subscribe", topic="/clock")
         say(socket, "subscribe", topic="/map")

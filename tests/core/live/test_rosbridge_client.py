@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.server import ServerConnection, serve
 
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.message import OfferedTopic, told
+from crowdbot.core.live.message import OfferedTopic, live_message
 from crowdbot.core.live.rosbridge.client import RosbridgeClient
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
@@ -77,7 +77,7 @@ def _connected(**more: Any) -> Iterator[tuple[RosbridgeClient, LiveSession, Othe
 def test_it_advertises_listens_and_is_driven() -> None:
     with _connected() as (client, session, others):
         assert session.driven
-        client.publish([told("/map", 1, ros.clock(1), latched=True)])
+        client.publish([live_message("/map", 1, ros.clock(1), latched=True)])
         for k in range(20):
             session.ask(k)
             client.publish([clock(k)])
@@ -114,7 +114,7 @@ def test_ros_1_types_and_stamped_commands() -> None:
 
 def test_a_connection_that_breaks_is_made_again() -> None:
     with _connected() as (client, session, others):
-        client.publish([told("/map", 1, ros.clock(1), latched=True)])
+        client.publish([live_message("/map", 1, ros.clock(1), latched=True)])
         until(lambda: "/map" in others.said("publish"))
         others.sockets[0].socket.shutdown(socket.SHUT_RDWR)
         until(lambda: len(others.sockets) == 2)

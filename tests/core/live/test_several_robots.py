@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from crowdbot.api import registry
-from crowdbot.core.live.manner import Manner
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.serve import LiveServe, live_robots, serve_runs
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.live.step_policy import StepPolicy
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.runs.run import Request, Run
 from crowdbot.core.runs.run_options import RunOptions
@@ -78,9 +78,9 @@ def _live(
             seed=seed, out=folder, options=options,
         )  # fmt: skip
 
-    manner = Manner(budget=budget, wait=0.0)
+    policy = StepPolicy(budget=budget, wait=0.0)
     live = LiveServe(
-        session=session, doors=[driver], manner=manner, scenarios=(world,), request=request
+        session=session, connections=[driver], policy=policy, scenarios=(world,), request=request
     )
     return live, driver
 
@@ -144,7 +144,7 @@ def test_calibration_runs_are_driven_as_well(tmp_path: Path) -> None:
 
 def test_real_time_keeps_one_pace_for_all_robots(tmp_path: Path) -> None:
     live, driver = _live(tmp_path, {"a": 0.4, "b": 0.2})
-    run = serve_runs(replace(live, manner=Manner(rate=1.0, wait=0.0)))
+    run = serve_runs(replace(live, policy=StepPolicy(rate=1.0, wait=0.0)))
     assert run.record.live is not None
     assert run.record.live.steps == len(driver.on("/clock")) == len(driver.on("/b/odom"))
     assert run.record.live.missed_steps == 0

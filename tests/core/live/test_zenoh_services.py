@@ -17,7 +17,7 @@ from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.simulation_interfaces import simulation_services
 from crowdbot.core.live.simulation_types import PACKAGE, SERVICES
 from crowdbot.errors import InputError
-from tests.core.live.test_zenoh_door import _both
+from tests.core.live.test_zenoh_connection import _both
 
 #: As the generators of ROS 2 print them; simulation_interfaces is of 2.1.0.
 PUBLISHED = {

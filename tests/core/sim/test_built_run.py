@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from crowdbot.api import registry
-from crowdbot.core.live.manner import Manner
 from crowdbot.core.live.serve import LiveServe, serve_runs
 from crowdbot.core.live.session import LiveSession
+from crowdbot.core.live.step_policy import StepPolicy
 from crowdbot.core.planning.planner import Observation
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
 from crowdbot.core.recording.container.records import Record, Records
@@ -154,9 +154,9 @@ def test_a_live_run_shows_clients_what_is_simulated(tmp_path: Path) -> None:
             options=RunOptions(references=False, replay=False),
         )  # fmt: skip
 
-    manner = Manner(rate=None, budget=0.001, wait=0.0)
+    policy = StepPolicy(rate=None, budget=0.001, wait=0.0)
     live = LiveServe(
-        session=LiveSession(), doors=(), manner=manner, scenarios=(world,), request=request
+        session=LiveSession(), connections=(), policy=policy, scenarios=(world,), request=request
     )
     assert serve_runs(live).status == "timeout"
     one = world.robots["robot"]

@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.support import gc_throttle as module
-from crowdbot.core.support.gc_throttle import collect_seldom
+from crowdbot.core.support.gc_throttle import throttle_gc
 
 
 class _Knot:
@@ -38,7 +38,7 @@ def test_cycles_are_collected_as_usual_in_a_process_that_collects_seldom(
 ) -> None:
     monkeypatch.setattr(module, "_usual", [])
     before = gc.get_threshold()
-    collect_seldom()
+    throttle_gc()
     seldom = gc.get_threshold()
     try:
         with gc_frozen():

@@ -52,7 +52,7 @@ from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
     from crowdbot.cli.serving.serve_options import Listen
-    from crowdbot.core.live.manner import Manner
+    from crowdbot.core.live.step_policy import StepPolicy
     from crowdbot.core.planning.resolve import PlannerChoice
     from crowdbot.core.registry.registry import Registry
     from crowdbot.core.runs.run import Request, Run
@@ -99,12 +99,12 @@ def serve(
 
     Example: crowdbot serve challenge-2020 in-d0125-slow-c01-r02 --port 9090
     """
-    from crowdbot.cli.serving.serve_options import Listen, manner_of
+    from crowdbot.cli.serving.serve_options import Listen, step_policy_of
     from crowdbot.cli.shared.one_run import print_run
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     times = {"budget": budget, "hold": hold, "wait": wait}
-    manner = manner_of(rate, clock, missed, times, epoch)
+    policy = step_policy_of(rate, clock, missed, times, epoch)
     listen = Listen(
         host=host, port=port, token=token, ros=ros, connect=connect, stamped=stamped,
         zenoh=zenoh, zenoh_router=zenoh_router, domain=domain, distro=distro, foxglove=foxglove,
@@ -117,7 +117,7 @@ def serve(
             out=out, record=record, references=references, name=name, seed=seed, stay=stay,
             meshcat=meshcat,
         )  # fmt: skip
-        run = _serve(what, how, manner, listen)
+        run = _serve(what, how, policy, listen)
     print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
@@ -159,7 +159,7 @@ def _what(
     return _What(registry=registry, expansion=expansion, first=first)
 
 
-def _serve(what: _What, how: _Serving, manner: Manner, listen: Listen) -> Run:
+def _serve(what: _What, how: _Serving, policy: StepPolicy, listen: Listen) -> Run:
     from crowdbot.cli.serving.serve_options import listening, report, watchers_of
     from crowdbot.cli.shared.one_run import import_simulate, interruptible
 
@@ -169,18 +169,18 @@ def _serve(what: _What, how: _Serving, manner: Manner, listen: Listen) -> Run:
 
     with interruptible() as stop:
         session = LiveSession(interrupted=stop, robots=live_robots(what.expansion.scenarios))
-        with listening(session, manner, listen) as doors:
+        with listening(session, policy, listen) as connections:
             service = LiveServe(
                 session=session,
-                doors=doors,
-                manner=manner,
+                connections=connections,
+                policy=policy,
                 scenarios=what.expansion.scenarios,
                 first=what.first,
                 request=lambda *asked: _request(what, how, *asked),
                 name=how.name,
                 seed=how.seed,
                 stay=how.stay,
-                watchers=watchers_of(doors, how.meshcat),
+                watchers=watchers_of(connections, how.meshcat),
                 on_run=lambda run: report(run.record),
             )
             return serve_runs(service)

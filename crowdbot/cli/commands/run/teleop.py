@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.serving.person_run import PageDoors, PersonRun, page_of, request_of, show_end
+from crowdbot.cli.serving.person_run import PagePorts, PersonRun, page_of, request_of, show_end
 from crowdbot.cli.shared.options import NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
 from crowdbot.cli.shared.run_arguments import (
@@ -115,17 +115,17 @@ def teleop(
             run = _again(request, controls, replay)
         else:
             with interruptible() as stop:
-                doors = PageDoors(
+                ports = PagePorts(
                     port=port, open_=open_, rosbridge=rosbridge, zenoh=zenoh, rate=rate
                 )
-                run = _driven(request, controls, doors, stop)
+                run = _driven(request, controls, ports, stop)
     print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
 
 
 def _driven(
-    request: Request, controls: Controls, doors: PageDoors, stop: Callable[[], bool]
+    request: Request, controls: Controls, ports: PagePorts, stop: Callable[[], bool]
 ) -> Run:
     """Make the run with the person of the page."""
     from dataclasses import replace
@@ -135,9 +135,9 @@ def _driven(
     from crowdbot.core.scenarios.lock import population
 
     scenario, robot = request.scenario, controls.robot
-    seat = live.seat_at(robot, stop, doors.rate)
+    seat = live.seat_at(robot, stop, ports.rate)
     request, builts = live.built_with_stick(request, controls, live.seat_stick(seat))
-    with page_of(seat, "drive", scenario.id, doors) as server:
+    with page_of(seat, "drive", scenario.id, ports) as server:
         people = population(scenario, request.registry).agents
         about = {"driven": list(builts).index(robot), "walker": -1}
         parts = next(iter(builts.values())).parts

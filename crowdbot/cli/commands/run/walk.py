@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli.serving.person_run import PageDoors, PersonRun, page_of, request_of, show_end
+from crowdbot.cli.serving.person_run import PagePorts, PersonRun, page_of, request_of, show_end
 from crowdbot.cli.shared.options import MakeReferences, NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
 from crowdbot.cli.shared.run_arguments import (
@@ -102,8 +102,8 @@ def walk(
             run = walk_again(request, builts, without.scenario, replay)
         else:
             with interruptible() as stop:
-                doors = PageDoors(port=port, open_=open_, rate=rate)
-                run = _walked(request, builts, without.scenario, doors, stop, speed)
+                ports = PagePorts(port=port, open_=open_, rate=rate)
+                run = _walked(request, builts, without.scenario, ports, stop, speed)
     print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
@@ -145,7 +145,7 @@ def _walked(
     request: Request,
     builts: Mapping[str, BuiltRun],
     without: Scenario,
-    doors: PageDoors,
+    ports: PagePorts,
     stop: Callable[[], bool],
     speed: float,
 ) -> Run:
@@ -163,8 +163,8 @@ def _walked(
     me = int(np.flatnonzero(people.id == PERSON)[0])
     about = {"driven": 0, "walker": me, "yaw": float(people.heading[me])}
     parts = build_environment(request.registry, scenario.environment)
-    seat = seat_in_the_crowd(stop, doors.rate)
-    with page_of(seat, "walk", scenario.id, doors) as server:
+    seat = seat_in_the_crowd(stop, ports.rate)
+    with page_of(seat, "walk", scenario.id, ports) as server:
         picture = LivePicture(server, scenario, parts, builts, people, about)
         picture.show()
         watched = replace(request, watchers=[picture], on_begin=picture.begin_run)

@@ -87,7 +87,7 @@ class RosbridgeClient:
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(what, *given)
 
-    # ------------------------------------------------------------------ the thread of the door
+    # ------------------------------------------------------------------ the connection's thread
     def _run(self) -> None:
         self._task = self._loop.create_task(self._stay())
         with suppress(asyncio.CancelledError):

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from crowdbot.core.live.commands import time_ns, twist
 from crowdbot.core.live.message import LiveMessage
 from crowdbot.core.live.rosbridge.bad_frame import BadFrame
-from crowdbot.core.live.rosbridge.feed import Feed, Wishes, wishes
+from crowdbot.core.live.rosbridge.feed import Feed, SubscriptionOptions, subscription_options
 from crowdbot.core.live.rosbridge.fragments import Joiner, split
 from crowdbot.core.live.rosbridge.frames import Frame, parse
 from crowdbot.core.live.rosbridge.outbox import Outbox
@@ -49,7 +49,7 @@ class Hub(Protocol):
         """Handle changed subscriptions."""
         ...
 
-    def encoded(self, message: LiveMessage, wish: Wishes) -> Frame:
+    def encoded(self, message: LiveMessage, options: SubscriptionOptions) -> Frame:
         """Return a message as a frame, shared by all clients with the same format."""
         ...
 
@@ -105,7 +105,7 @@ class Connection:
 
     def _subscribe(self, message: Mapping[str, Any]) -> None:
         topic = _topic(message)
-        wish, remark = wishes(message)
+        options, remark = subscription_options(message)
         if remark:
             self._tell("warning", remark, message.get("id"))
         feed = self.feeds.get(topic)
@@ -113,7 +113,7 @@ class Connection:
             self._room(self.feeds)
             later = asyncio.get_running_loop().call_later
             feed = self.feeds[topic] = Feed(self._pass_on, later, time.monotonic)
-        feed.subscribe(_name(message), wish)
+        feed.subscribe(_name(message), options)
         self._hub.changed()
         last = self._hub.latest(topic)
         if last is not None:
@@ -209,16 +209,16 @@ class Connection:
         if feed is not None:
             feed.take(message)
 
-    def _pass_on(self, message: LiveMessage, wish: Wishes) -> None:
-        frame = self._hub.encoded(message, wish)
-        if wish.fragment and isinstance(frame, str):
+    def _pass_on(self, message: LiveMessage, options: SubscriptionOptions) -> None:
+        frame = self._hub.encoded(message, options)
+        if options.fragment and isinstance(frame, str):
             try:
-                for piece in split(frame, wish.fragment, next(self._numbers)):
+                for piece in split(frame, options.fragment, next(self._numbers)):
                     self._outbox.put(piece)
             except BadFrame as error:
                 self._tell("error", f"{message.topic}: {error}")
         else:
-            self._outbox.put(frame, message.topic, wish.queue)
+            self._outbox.put(frame, message.topic, options.queue)
 
     def _tell(self, level: str, text: str, about: object = None) -> None:
         if _LEVELS[level] <= self._level:

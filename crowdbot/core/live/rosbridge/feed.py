@@ -17,7 +17,7 @@ _MOST_IDS, _MOST_QUEUED = 64, 10_000
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
+class SubscriptionOptions:
     """Options of one subscription.
 
     Attributes:
@@ -32,7 +32,7 @@ class Wishes:
     form: Form = "none"
 
 
-def wishes(message: Mapping[str, Any]) -> tuple[Wishes, str]:
+def subscription_options(message: Mapping[str, Any]) -> tuple[SubscriptionOptions, str]:
     """Return the options of a ``subscribe``, and unsupported ones.
 
     Raises:
@@ -44,9 +44,9 @@ def wishes(message: Mapping[str, Any]) -> tuple[Wishes, str]:
     form = message.get("compression") or "none"
     if form in get_args(Form):
         pieces = fragment if form == "none" else 0
-        return Wishes(throttle / 1e3, queue, pieces, cast(Form, form)), ""
+        return SubscriptionOptions(throttle / 1e3, queue, pieces, cast(Form, form)), ""
     why = f"compression '{form}' is not supported: none, cbor and cbor-raw are; none is used"
-    return Wishes(throttle / 1e3, queue, fragment, "none"), why
+    return SubscriptionOptions(throttle / 1e3, queue, fragment, "none"), why
 
 
 def _number(message: Mapping[str, Any], name: str, most: int = 2**31) -> int:
@@ -59,7 +59,7 @@ def _number(message: Mapping[str, Any], name: str, most: int = 2**31) -> int:
 
 
 Later = Callable[[float, Callable[[], None]], object]
-Send = Callable[[LiveMessage, Wishes], None]
+Send = Callable[[LiveMessage, SubscriptionOptions], None]
 
 
 class Feed:
@@ -68,13 +68,13 @@ class Feed:
     def __init__(self, send: Send, later: Later, clock: Callable[[], float]) -> None:
         """Build a feed. ``later(s, f)`` calls ``f`` after a delay; ``clock`` is the time in s."""
         self._send, self._later, self._clock = send, later, clock
-        self._by_id: dict[str, Wishes] = {}
+        self._by_id: dict[str, SubscriptionOptions] = {}
         self._waiting = deque[LiveMessage]()
         self._last = float("-inf")
         self._called = False
-        self.wishes = Wishes()
+        self.options = SubscriptionOptions()
 
-    def subscribe(self, name: str, wishes: Wishes) -> None:
+    def subscribe(self, name: str, options: SubscriptionOptions) -> None:
         """Add or replace one subscription.
 
         Raises:
@@ -82,7 +82,7 @@ class Feed:
         """
         if name not in self._by_id and len(self._by_id) >= _MOST_IDS:
             raise BadFrame(f"at most {_MOST_IDS} subscriptions to one topic")
-        self._by_id[name] = wishes
+        self._by_id[name] = options
         self._merge()
 
     def unsubscribe(self, name: str | None) -> bool:
@@ -95,9 +95,9 @@ class Feed:
 
     def _merge(self) -> None:
         """Merge subscriptions: the highest rate, and the latest format."""
-        every = list(self._by_id.values()) or [Wishes()]
+        every = list(self._by_id.values()) or [SubscriptionOptions()]
         fragments = [w.fragment for w in every if w.fragment]
-        self.wishes = Wishes(
+        self.options = SubscriptionOptions(
             min(w.throttle for w in every),
             min(w.queue for w in every),
             min(fragments, default=0) if every[-1].form == "none" else 0,
@@ -106,25 +106,25 @@ class Feed:
 
     def take(self, message: LiveMessage) -> None:
         """Send a message to the client at once, delayed, or not at all, by its rate and queue."""
-        wish = self.wishes
-        if wish.throttle <= 0.0:
-            self._send(message, wish)
-        elif not self._waiting and self._clock() - self._last >= wish.throttle:
+        options = self.options
+        if options.throttle <= 0.0:
+            self._send(message, options)
+        elif not self._waiting and self._clock() - self._last >= options.throttle:
             self._now(message)
-        elif wish.queue > 0:
+        elif options.queue > 0:
             self._waiting.append(message)
-            while len(self._waiting) > wish.queue:
+            while len(self._waiting) > options.queue:
                 self._waiting.popleft()
             self._call()
 
     def _now(self, message: LiveMessage) -> None:
         self._last = self._clock()
-        self._send(message, self.wishes)
+        self._send(message, self.options)
 
     def _call(self) -> None:
         if not self._called:
             self._called = True
-            self._later(max(self._last + self.wishes.throttle - self._clock(), 0.0), self._due)
+            self._later(max(self._last + self.options.throttle - self._clock(), 0.0), self._due)
 
     def _due(self) -> None:
         self._called = False

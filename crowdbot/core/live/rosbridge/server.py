@@ -17,7 +17,7 @@ from crowdbot.core.live.admission import Admission
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
 from crowdbot.core.live.plain import Ros
 from crowdbot.core.live.rosbridge.connection import Connection
-from crowdbot.core.live.rosbridge.feed import Wishes
+from crowdbot.core.live.rosbridge.feed import SubscriptionOptions
 from crowdbot.core.live.rosbridge.frames import Frame, encoded
 from crowdbot.core.live.rosbridge.pace import Pace
 from crowdbot.core.live.rosbridge.rosapi import JOY, TWIST, RosapiWorld, rosapi
@@ -162,11 +162,11 @@ class RosbridgeServer:
         """Handle changed subscriptions."""
         self._wanted = frozenset(t for c in self._connections for t in c.feeds)
 
-    def encoded(self, message: LiveMessage, wish: Wishes) -> Frame:
+    def encoded(self, message: LiveMessage, options: SubscriptionOptions) -> Frame:
         """Return a message as a frame, shared by all clients with the same format."""
-        key = id(message), wish.form
+        key = id(message), options.form
         if key not in self._frames:  # the message is kept so that its id is not reused
-            self._frames[key] = message, encoded(message, wish.form, self.ros)
+            self._frames[key] = message, encoded(message, options.form, self.ros)
         return self._frames[key][1]
 
     async def _start(self) -> Server:

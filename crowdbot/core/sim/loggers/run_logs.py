@@ -15,7 +15,7 @@ from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.loggers.watched_run import WatchedRun
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.sim.run_outcome import last_arrival, status_of
-from crowdbot.core.sim.run_setup import RunSetup, agents, aim_of, choosers, ids
+from crowdbot.core.sim.run_setup import RunSetup, agents, choosers, goal_column_of, ids
 from crowdbot.core.types.ending import of_several
 from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive
@@ -78,7 +78,7 @@ def _one_log(
     )  # fmt: skip
     stack.callback(lambda: writer.close(ending.goal_time, ending.ended, status_of(ending)))
     log = RunLog(
-        writer, ids(engine), sideways=_sideways(built), aim=aim_of(engine),
+        writer, ids(engine), sideways=_sideways(built), goal_column=goal_column_of(engine),
         on_sample=watched.watch(built.name, people=True),
         on_drawing=watched.drawings_of(built.name),
     )  # fmt: skip
@@ -111,7 +111,11 @@ def _several_logs(
             on_sample=watched.watch(name, people=False), on_drawing=watched.drawings_of(name),
         )  # fmt: skip
     people = RunLog(
-        root, ids(engine), robot=None, aim=aim_of(engine), on_sample=watched.watch("", people=True)
+        root,
+        ids(engine),
+        robot=None,
+        goal_column=goal_column_of(engine),
+        on_sample=watched.watch("", people=True),
     )
     return RunLogs(people=people, robots=robots)
 

@@ -39,7 +39,7 @@ from numba.np import linalg
 from crowdbot.core.support.compile_cache import lock_file
 from crowdbot.core.support.compiling.compile_cache_file import CheckedCacheFile
 from crowdbot.core.support.compiling.compile_files import PART, CacheFiles, PartLibrary, is_part
-from crowdbot.core.support.gc_throttle import seldom_collected
+from crowdbot.core.support.gc_throttle import throttled_gc
 
 _WHOLE = "whole, with its symbols"
 #: Held while a function is written to the cache.
@@ -154,7 +154,7 @@ class KernelDispatcher(CPUDispatcher):
         Numba's own method does the same, and also times each LLVM call, which takes a twentieth of
         the total.
         """
-        with global_compiler_lock, seldom_collected():
+        with global_compiler_lock, throttled_gc():
             if not self._can_compile:
                 raise RuntimeError("compiling is switched off, by NUMBA_DISABLE_JIT")
             with self._compiling_counter:

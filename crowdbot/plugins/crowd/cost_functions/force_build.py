@@ -1,7 +1,7 @@
 """Forces as costs: C(u) = |u - target|^2 / (2 dt), the target being the force's effect in dt.
 
-``prepare`` of a force-based function writes its target velocity to row 0 with `aim`; the rest is
-shared.
+``prepare`` of a force-based function writes its target velocity to row 0 with `set_target`;
+the rest is shared.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ _TARGET = record_type(_Target)
 
 
 @array_kernel
-def aim(fx: float, fy: float, agent: AgentRecord, work: Pointer) -> int:
+def set_target(fx: float, fy: float, agent: AgentRecord, work: Pointer) -> int:
     """Write the target velocity that a force per mass (m/s^2) leads to in one decision."""
     size = math.hypot(fx, fy)
     if size > _LARGEST:
         fx, fy = fx / size * _LARGEST, fy / size * _LARGEST
     time = agent.time_step / (agent.weight if agent.parity != 0.0 else 1.0)
-    aimed = as_record(work, _TARGET)
-    aimed.vx, aimed.vy = agent.vx + fx * time, agent.vy + fy * time
+    target = as_record(work, _TARGET)
+    target.vx, target.vy = agent.vx + fx * time, agent.vy + fy * time
     return 1
 
 
@@ -58,8 +58,8 @@ def from_target(
     ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
     """Return the cost by the distance from the target velocity."""
-    aimed = as_record(work, _TARGET)
-    return float(0.5 * ((ux - aimed.vx) ** 2 + (uy - aimed.vy) ** 2) / agent.time_step)
+    target = as_record(work, _TARGET)
+    return float(0.5 * ((ux - target.vx) ** 2 + (uy - target.vy) ** 2) / agent.time_step)
 
 
 @declared_kernel(GRADIENT)
@@ -67,14 +67,14 @@ def to_target(
     ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
     """Write the cost's gradient; at the present velocity it is minus the force per mass."""
-    aimed = as_record(work, _TARGET)
-    out[0], out[1] = (ux - aimed.vx) / agent.time_step, (uy - aimed.vy) / agent.time_step
+    target = as_record(work, _TARGET)
+    out[0], out[1] = (ux - target.vx) / agent.time_step, (uy - target.vy) / agent.time_step
     return 1
 
 
 @declared_kernel(OPTIMUM)
 def target(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -> int:
     """Write the velocity of least cost."""
-    aimed = as_record(work, _TARGET)
-    out[0], out[1] = aimed.vx, aimed.vy
+    target = as_record(work, _TARGET)
+    out[0], out[1] = target.vx, target.vy
     return 1

@@ -15,9 +15,9 @@ from crowdbot.plugin import (
     record_values,
 )
 from crowdbot.plugins.crowd.cost_functions.force_build import (
-    aim,
     from_target,
     no_base,
+    set_target,
     target,
     to_target,
 )
@@ -35,7 +35,9 @@ def _prepare(
     work: Pointer,
 ) -> int:
     time = max(agent.relaxation, agent.time_step)
-    return int(aim((agent.pvx - agent.vx) / time, (agent.pvy - agent.vy) / time, agent, work))
+    return int(
+        set_target((agent.pvx - agent.vx) / time, (agent.pvy - agent.vy) / time, agent, work)
+    )
 
 
 def build(spec: GoalReachingForceSpec) -> CompiledCost:

@@ -22,9 +22,9 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_crowds import is_passed, swept_width
 from crowdbot.plugins.crowd.cost_functions.force_build import (
-    aim,
     from_target,
     no_base,
+    set_target,
     target,
     to_target,
 )
@@ -107,7 +107,7 @@ def _prepare(
         if in_range(wall.d2, agent.radius, params):
             ax, ay = _repulsion(wall.nx, wall.ny, vx, vy, agent.radius, params)
             fx, fy = fx + ax, fy + ay
-    return int(aim(fx, fy, agent, work))
+    return int(set_target(fx, fy, agent, work))
 
 
 def build(spec: PowerLawSpec) -> CompiledCost:

@@ -25,9 +25,9 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_crowds import MORE_WALLS, opposite_taken_for_parallel
 from crowdbot.plugins.crowd.cost_functions.force_build import (
-    aim,
     from_target,
     no_base,
+    set_target,
     target,
     to_target,
 )
@@ -190,7 +190,7 @@ def _prepare(
             if _faces(s, agent, walls, params):
                 push = _wall(-walls[s].nx, -walls[s].ny, math.sqrt(walls[s].d2), True, params)
                 fx, fy = fx + push[0], fy + push[1]
-        return int(aim(fx, fy, agent, work))
+        return int(set_target(fx, fy, agent, work))
     # The weaker, the smaller the sum has to be that it can change.
     least = min(abs(fx), abs(fy))
     own, far = as_record(params, _PARAMS), _lost_beyond(least, params)
@@ -198,11 +198,11 @@ def _prepare(
     if given or far <= agent.walls_within:
         done, gx, gy = _add_walls(fx, fy, far, least, agent, walls, wall_count, params, work)
         if done:
-            return int(aim(gx, gy, agent, work))
+            return int(set_target(gx, gy, agent, work))
     if not given:
         return MORE_WALLS
     _, gx, gy = _add_walls(fx, fy, math.inf, 0.0, agent, walls, wall_count, params, work)
-    return int(aim(gx, gy, agent, work))
+    return int(set_target(gx, gy, agent, work))
 
 
 def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:

@@ -52,10 +52,10 @@ class Bully:
     def step(self, obs: Observation) -> Command:
         """Return the adversary's command."""
         points = self._points(obs.readings, obs.t, obs.twist, obs.vy)
-        v, w, _ = self._seek.step(self.aim(obs, points))
+        v, w, _ = self._seek.step(self.with_goal(obs, points))
         return Command(*self.drive(obs, points, v, w))
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return the observation with another goal to head for."""
         del points
         return obs
@@ -85,7 +85,7 @@ class Bully:
 class Shield(Bully):
     """Adversary that follows closely behind the nearest thing ahead, walls excepted."""
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return the observation with the nearest point in a narrow cone as goal, if any."""
         distance, angle = np.hypot(*points.T), np.arctan2(points[:, 1], points[:, 0])
         seen = (np.abs(angle) < 0.4) & (distance < 2.5)
@@ -141,7 +141,7 @@ class Creep(Bully):
 class Reverse(Bully):
     """Adversary that turns its back to the goal and drives backwards."""
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return the observation with the heading reversed."""
         del points
         return replace(obs, pose=obs.pose._replace(yaw=obs.pose.yaw + math.pi))
@@ -155,7 +155,7 @@ class Reverse(Bully):
 class Weave(Bully):
     """Adversary that swings by 0.6 rad to either side, every 4 s."""
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return the observation with a goal beside the real one."""
         del points
         x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
@@ -188,7 +188,7 @@ class Quitter(Bully):
 class GapRush(Bully):
     """Adversary that heads for the longest free of seven directions."""
 
-    def aim(self, obs: Observation, points: Array) -> Observation:
+    def with_goal(self, obs: Observation, points: Array) -> Observation:
         """Return the observation with a goal in that direction."""
         x, y = obs.goal[0] - obs.pose.x, obs.goal[1] - obs.pose.y
         best, turn = -math.inf, 0.0

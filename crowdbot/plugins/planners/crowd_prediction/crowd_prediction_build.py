@@ -38,10 +38,10 @@ class CrowdPrediction(PeopleMpc):
         super().reset(task, limits, sensors, seed)
 
     def predicted(
-        self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
+        self, obs: Observation, scene: PlannerScene, rows: Indices, waypoint: tuple[float, float]
     ) -> Array:
         """Return people's predicted positions (T, N, 2), m, and draw them."""
-        path = np.concatenate([[[scene.pose.x, scene.pose.y]], self.path(scene, aim)])
+        path = np.concatenate([[[scene.pose.x, scene.pose.y]], self.path(scene, waypoint)])
         numbers = scene.tracks[rows, 0].astype(np.int64)
         people = np.ascontiguousarray(scene.people[rows])
         found = self._forecast.predict(

@@ -168,7 +168,7 @@ class Dwa:
         obs.draw("direction", [[0.0, 0.0], [math.cos(direction), math.sin(direction)]])
         obs.log("dwa/direction", direction)
         obs.log("dwa/free_time", free)
-        return self._stuck.told(Command(*self._last), period)
+        return self._stuck.commanded(Command(*self._last), period)
 
     def _choose_direction(
         self, pose: Pose, detour: Detour, points: Array, velocities: Array

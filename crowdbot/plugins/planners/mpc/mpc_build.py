@@ -24,6 +24,7 @@ from crowdbot.plugins.planners.shared.braking_build import (
 )
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.optional_build import library
+from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.shared.starts_build import moved_on, starts
 from crowdbot.plugins.planners.shared.surroundings_build import (
@@ -31,7 +32,6 @@ from crowdbot.plugins.planners.shared.surroundings_build import (
     in_base,
     people_near,
 )
-from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED, _BESIDE = 0.1, 0.12
 #: At most this many people are predicted, the nearest.
@@ -46,7 +46,7 @@ class Mpc:
         self._surroundings = PlannerSurroundings(spec)
         self._problem: Problem | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._way = Way(1.0)
+        self._path_finder = PathFinder(1.0)
         self._plan, self._planned = np.zeros((spec.stages, 2)), 0.0
         self._failed = self._braked = 0
 
@@ -58,7 +58,7 @@ class Mpc:
         spec = self._spec
         self._surroundings.reset(sensors)
         self._robot = covering_discs(spec.robot_radius, task.robot)
-        self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
+        self._path_finder = PathFinder(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._problem = Problem(self._casadi, spec, limits)
         self._plan, self._planned = np.zeros((spec.stages, self._problem.axes)), 0.0
         self._failed = self._braked = 0
@@ -81,11 +81,11 @@ class Mpc:
             self._plan[:] = 0.0
             return Command(0.0, 0.0)
         top = min(self._spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
-        aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
+        waypoint = self._path_finder.waypoint(obs.t, pose, scene.seen, obs.goal)
         people = people_near(scene, limits.v_max, self._spec.horizon, _PEOPLE)
         world = AroundRobot(people, scene.points, self._robot)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
-        command = self._command(world, state, aim, top)
+        command = self._command(world, state, waypoint, top)
         poses = poses_of((pose.x, pose.y, pose.yaw), self._plan, self._problem.dt)
         obs.draw("plan", in_base(pose, poses[:, :2]))
         obs.log("mpc/failed", self._failed)
@@ -93,12 +93,12 @@ class Mpc:
         return command
 
     def _command(
-        self, world: AroundRobot, state: MotionState, aim: tuple[float, float], top: float
+        self, world: AroundRobot, state: MotionState, waypoint: tuple[float, float], top: float
     ) -> Command:
         """Return the beginning of the new plan, slower where the robot could not stop in time."""
         assert self._problem is not None
         limits = self._problem.limits
-        improved = self._improved(world, state, aim, top)
+        improved = self._improved(world, state, waypoint, top)
         if improved is None:
             self._failed += 1
             self._plan[:] = 0.0
@@ -114,12 +114,12 @@ class Mpc:
         return Command(0.0, 0.0)
 
     def _improved(
-        self, world: AroundRobot, state: MotionState, aim: tuple[float, float], top: float
+        self, world: AroundRobot, state: MotionState, waypoint: tuple[float, float], top: float
     ) -> Array | None:
         """Return the plan that costs least after the solver had it; None if it always fails."""
         assert self._problem is not None
-        problem, told = self._problem, self._state_of(state, aim, top)
-        others = starts(state, aim, problem.limits, self._plan.shape, problem.dt, top)
+        problem, told = self._problem, self._state_of(state, waypoint, top)
+        others = starts(state, waypoint, problem.limits, self._plan.shape, problem.dt, top)
         given = [self._given(world, plan, told) for plan in others]
         costs = [problem.cost(p, g) for p, g in zip(others, given, strict=True)]
         best = int(np.argmin(costs))
@@ -130,8 +130,8 @@ class Mpc:
             return None if one is None else one[0]
         return new[0] if new[1] < self._spec.patience * kept[1] else kept[0]
 
-    def _state_of(self, state: MotionState, aim: tuple[float, float], top: float) -> Array:
-        return np.array([*state, *aim, top])
+    def _state_of(self, state: MotionState, waypoint: tuple[float, float], top: float) -> Array:
+        return np.array([*state, *waypoint, top])
 
     def _given(self, world: AroundRobot, plan: Array, told: Array) -> Array:
         """Return the optimiser's parameters: the state, and constraints along the last plan."""

@@ -15,7 +15,7 @@ import numpy as np
 from crowdbot.plugin import Array, RobotLimits
 from crowdbot.plugins.planners.mpc.mpc import MpcSpec
 
-#: Parameters before those of obstacles: x, y, yaw, v, w, vy, aim x and y, largest speed.
+#: Parameters before those of obstacles: x, y, yaw, v, w, vy, waypoint x and y, largest speed.
 STATE = 9
 #: Columns of an obstacle: of people x, y, of half-planes the normal's; place of the robot's disc
 #: in its frame; least distance of people, m, or of the plane from the origin.

@@ -121,11 +121,11 @@ def go_on(more: Array, grow: Array) -> None:
 
 
 @kernel
-def slew(value: Array, aim: float, more: Array, limits: tuple[float, float, float]) -> None:
+def slew(value: Array, target: float, more: Array, limits: tuple[float, float, float]) -> None:
     """Move a velocity to a target plus noise, within limits of value and change."""
     low, high, change = limits
     for i in range(value.shape[0]):
-        wish = min(max(aim + more[i], low), high)
+        wish = min(max(target + more[i], low), high)
         value[i] = min(max(wish, value[i] - change), value[i] + change)
 
 

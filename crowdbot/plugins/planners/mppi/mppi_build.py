@@ -24,10 +24,10 @@ from crowdbot.plugins.planners.shared.braking_build import (
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.driven_path_build import driven
+from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.shared.starts_build import STARTS, starts
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerSurroundings, people_near
-from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED, _BESIDE = 0.1, 0.12
 #: Time for which a command is held before the robot must be able to brake, s; clearance then, m.
@@ -43,7 +43,7 @@ class Mppi:
         self._field = DistanceField()
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._way = Way(1.0)
+        self._path_finder = PathFinder(1.0)
         self._p: Array = np.zeros(samples.PARAMETERS)
         self._samples = self._drawn(2, 0)
         self._next = 0.0
@@ -56,7 +56,7 @@ class Mppi:
         self._limits, self._next = limits, 0.0
         self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(spec.robot_radius, task.robot)
-        self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
+        self._path_finder = PathFinder(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = _parameters(spec, limits)
         self._samples = self._drawn(2, 0)
         around = rollouts.Around(
@@ -85,12 +85,14 @@ class Mppi:
         self._shift(obs.t)
         top = min(spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
         self._p[samples.TOP] = top
-        aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
+        waypoint = self._path_finder.waypoint(obs.t, pose, scene.seen, obs.goal)
         self._field.fill(scene.points, pose.x, pose.y)
         people = people_near(scene, limits.v_max, spec.steps * spec.step_time, samples.MOST_PEOPLE)
-        around = rollouts.Around(people, self._field.values, self._field.corner, self._robot, aim)
+        around = rollouts.Around(
+            people, self._field.values, self._field.corner, self._robot, waypoint
+        )
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
-        self._start(state, aim, top)
+        self._start(state, waypoint, top)
         cost = rollouts.improve(around, self._p, state, self._samples)
         obs.log("mppi/cost", min(cost, 100.0))
         obs.draw("plan", driven(self._samples.plan[::2], 2.0 * spec.step_time))
@@ -101,11 +103,11 @@ class Mppi:
         knots = 1 + max(1, round((spec.steps - 1) * spec.step_time / spec.noise_time))
         return samples.drawn(count, spec.steps, knots, STARTS, seed)
 
-    def _start(self, state: MotionState, aim: tuple[float, float], top: float) -> None:
+    def _start(self, state: MotionState, waypoint: tuple[float, float], top: float) -> None:
         """Write the simple plans that are rolled out beside the noisy ones."""
         assert self._limits is not None
         shape = self._spec.steps, 3 if self._limits.vy_max > 0.0 else 2
-        plans = starts(state, aim, self._limits, shape, self._spec.step_time, top)
+        plans = starts(state, waypoint, self._limits, shape, self._spec.step_time, top)
         self._samples.simple[:, :, : shape[1]] = plans
 
     def _braking(self, world: AroundRobot, state: MotionState) -> Command:

@@ -14,6 +14,7 @@ from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
 from crowdbot.plugins.planners.people_mpc.plan_world_build import UNKNOWN, PlanWorld, TimeToGo
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
+from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.shared.surroundings_build import (
     PlannerScene,
@@ -21,7 +22,6 @@ from crowdbot.plugins.planners.shared.surroundings_build import (
     in_base,
     rows_near,
 )
-from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED = 0.1
 #: At most this many people are predicted, the nearest.
@@ -37,8 +37,8 @@ _BESIDE = 0.12
 class PeopleMpc:
     """The planner `people_mpc`; remembers its last plan.
 
-    `PlannerSurroundings` remembers people and `Way` static obstacles. Subclasses predict people
-    otherwise, by `predicted`.
+    `PlannerSurroundings` remembers people and `PathFinder` static obstacles. Subclasses predict
+    people otherwise, by `predicted`.
     """
 
     #: Name of what it logs.
@@ -50,7 +50,7 @@ class PeopleMpc:
         self._field = DistanceField()
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._way = Way(1.0)
+        self._path_finder = PathFinder(1.0)
         self._p: Array = np.zeros(plans.PARAMETERS)
         self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, 1.0
 
@@ -63,7 +63,7 @@ class PeopleMpc:
         self._limits = limits
         self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(spec.robot_radius, task.robot)
-        self._way = Way(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
+        self._path_finder = PathFinder(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = self.parameters(limits)
         self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, 1.0
         self._firsts((0.0, 0.0, 0.0), 1.0, 0.0)
@@ -94,8 +94,8 @@ class PeopleMpc:
         if self._surroundings.away is not None:
             self._last = (self._surroundings.away.v, 0.0, 0.0)
             return self._surroundings.away
-        aim = self._way.aim(obs.t, pose, scene.seen, obs.goal)
-        _, error = bearing(pose, aim)
+        waypoint = self._path_finder.waypoint(obs.t, pose, scene.seen, obs.goal)
+        _, error = bearing(pose, waypoint)
         top = min(
             self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
         )
@@ -105,9 +105,9 @@ class PeopleMpc:
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
         people = np.ascontiguousarray(scene.people[rows])
         world = PlanWorld(
-            people, self.predicted(obs, scene, rows, aim),
-            self._field.values, self._field.corner, self._robot, aim, self.yields(obs, rows),
-            np.empty_like(people), self.to_go(obs, scene, aim),
+            people, self.predicted(obs, scene, rows, waypoint),
+            self._field.values, self._field.corner, self._robot, waypoint, self.yields(obs, rows),
+            np.empty_like(people), self.to_go(obs, scene, waypoint),
         )  # fmt: skip
         at, aside, pace, cost = plans.best_plan(
             world, self._p, state, firsts, self._last, self._aside
@@ -116,13 +116,13 @@ class PeopleMpc:
         if at >= 0:
             v, w, vy = firsts[at].tolist()
             self._last, self._aside = (v, w, vy), plans.ASIDE[aside]
-            obs.draw("plan", in_base(pose, self.path(scene, aim)))
+            obs.draw("plan", in_base(pose, self.path(scene, waypoint)))
         obs.log(f"{self.name}/cost", min(cost, 100.0))
         obs.log(f"{self.name}/pace", self._pace)
         return Command(*self._last)
 
     def predicted(
-        self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
+        self, obs: Observation, scene: PlannerScene, rows: Indices, waypoint: tuple[float, float]
     ) -> Array:
         """Return people's positions (T, N, 2), see `plans.PlanWorld`; here at constant velocity.
 
@@ -130,20 +130,22 @@ class PeopleMpc:
             obs: for its time and signals.
             scene: the surroundings.
             rows: (N,) the people of the scene who count.
-            aim: point that the robot drives to, m.
+            waypoint: point that the robot drives to, m.
         """
-        del obs, scene, rows, aim
+        del obs, scene, rows, waypoint
         return KEPT
 
-    def to_go(self, obs: Observation, scene: PlannerScene, aim: tuple[float, float]) -> TimeToGo:
+    def to_go(
+        self, obs: Observation, scene: PlannerScene, waypoint: tuple[float, float]
+    ) -> TimeToGo:
         """Return the time to the goal from places ahead; here: it is not known.
 
         Args:
             obs: for its time and the truth.
             scene: the surroundings.
-            aim: point that the robot drives to, m.
+            waypoint: point that the robot drives to, m.
         """
-        del obs, scene, aim
+        del obs, scene, waypoint
         return UNKNOWN
 
     def parameters(self, limits: RobotLimits) -> Array:
@@ -172,10 +174,10 @@ class PeopleMpc:
         del obs, rows
         return IGNORE
 
-    def path(self, scene: PlannerScene, aim: tuple[float, float]) -> Array:
+    def path(self, scene: PlannerScene, waypoint: tuple[float, float]) -> Array:
         """Return the positions (T, 2) of the chosen plan after each step, m."""
         state = (scene.pose.x, scene.pose.y, scene.pose.yaw, *scene.twist)
-        return plans.path_of(self._p, state, aim, self._last, self._aside, self._pace)[:, :2]
+        return plans.path_of(self._p, state, waypoint, self._last, self._aside, self._pace)[:, :2]
 
     def _firsts(self, twist: tuple[float, float, float], top: float, error: float) -> Array:
         """Return (C, 3) first velocities v, w, vy that the robot reaches within the window."""

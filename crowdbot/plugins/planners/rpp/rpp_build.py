@@ -25,9 +25,9 @@ from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.rpp.rpp import RppSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.driven_path_build import driven
+from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
 from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, PlannerSurroundings
-from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED, _BESIDE = 0.1, 0.12
 #: Time step of the arc that is tested for collisions, s.
@@ -35,14 +35,14 @@ _STEP = 0.1
 
 
 class Rpp:
-    """Follows the path that `Way` plans around static obstacles."""
+    """Follows the path that `PathFinder` plans around static obstacles."""
 
     def __init__(self, spec: RppSpec) -> None:
         self._spec = spec
         self._surroundings = PlannerSurroundings(spec, leaves=True)
         self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._way = Way(1.0)
+        self._path_finder = PathFinder(1.0)
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -52,7 +52,9 @@ class Rpp:
         self._limits = limits
         self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(self._spec.robot_radius, task.robot)
-        self._way = Way(swept_half_width(self._spec.robot_radius, task.robot) + _BESIDE)
+        self._path_finder = PathFinder(
+            swept_half_width(self._spec.robot_radius, task.robot) + _BESIDE
+        )
         arc_gap(np.ones((1, 3)), self._robot, 0.1, 0.0, 0.1)
 
     def step(self, obs: Observation) -> Command:
@@ -65,8 +67,8 @@ class Rpp:
             return Command(0.0, 0.0)
         if self._surroundings.away is not None:
             return self._surroundings.away
-        aim = self._way.aim(obs.t, scene.pose, scene.seen, obs.goal)
-        far, error = bearing(scene.pose, aim)
+        waypoint = self._path_finder.waypoint(obs.t, scene.pose, scene.seen, obs.goal)
+        far, error = bearing(scene.pose, waypoint)
         obs.draw("aim", [[0.0, 0.0], [far * math.cos(error), far * math.sin(error)]])
         if abs(error) > spec.turn_in_place:
             return self._checked(obs, scene, 0.0, _clamped(spec.turn_gain * error, limits.w_max))

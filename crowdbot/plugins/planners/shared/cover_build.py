@@ -13,18 +13,18 @@ from crowdbot.plugins.planners.shared.robot_outline_build import ROBOT_RADIUS
 _MOST = 5
 
 
-def covering_discs(told: float | None, body: RobotBody | None) -> Array:
+def covering_discs(spec_radius: float | None, body: RobotBody | None) -> Array:
     """Return discs (K, 3) that together cover the robot: x, y of the centre and radius, m.
 
     One disc for a round robot; otherwise discs along the longer side of the box around its outline,
     which exceed the box by a few centimetres.
 
     Args:
-        told: radius from the planner's spec, m, or None.
+        spec_radius: radius from the planner's spec, m, or None.
         body: the robot's outline, or None.
     """
-    if told is not None or body is None:
-        return np.array([[0.0, 0.0, ROBOT_RADIUS if told is None else told]])
+    if spec_radius is not None or body is None:
+        return np.array([[0.0, 0.0, ROBOT_RADIUS if spec_radius is None else spec_radius]])
     if body.footprint is None:
         return np.array([[0.0, 0.0, body.radius]])
     if len(body.footprint) == 2:

@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.plugin import Array, Command, Observation, RobotBody, RobotLimits, SensorInfo, Task
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.shared.follow_velocity_build import follow
+from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
 from crowdbot.plugins.planners.shared.robot_outline_build import disc_radius, swept_half_width
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 from crowdbot.plugins.planners.shared.surroundings_build import (
@@ -18,7 +19,6 @@ from crowdbot.plugins.planners.shared.surroundings_build import (
     PlannerSurroundings,
     in_base,
 )
-from crowdbot.plugins.planners.shared.way_build import Way
 
 _ARRIVED = 0.1
 #: Free space beside the robot on the way past what stands, m.
@@ -36,7 +36,7 @@ class VelocityPlanner(ABC):
     def __init__(self, spec: RungSpec) -> None:
         self._rungs = spec
         self._surroundings = PlannerSurroundings(spec, leaves=True)
-        self._way = Way(1.0)
+        self._path_finder = PathFinder(1.0)
         self.limits: RobotLimits | None = None
         self.body: RobotBody | None = None
         self.radius = disc_radius(spec.robot_radius, None)
@@ -49,7 +49,9 @@ class VelocityPlanner(ABC):
         self.limits, self.body = limits, task.robot
         self.radius = disc_radius(self._rungs.robot_radius, task.robot)
         self._surroundings.reset(sensors, task.robot)
-        self._way = Way(swept_half_width(self._rungs.robot_radius, task.robot) + _BESIDE)
+        self._path_finder = PathFinder(
+            swept_half_width(self._rungs.robot_radius, task.robot) + _BESIDE
+        )
         self.forget()
 
     def step(self, obs: Observation) -> Command:
@@ -61,8 +63,8 @@ class VelocityPlanner(ABC):
             return Command(0.0, 0.0)
         if self._surroundings.away is not None:
             return self._surroundings.away
-        aim = self._way.aim(obs.t, scene.pose, scene.seen, obs.goal)
-        _, error = bearing(scene.pose, aim)
+        waypoint = self._path_finder.waypoint(obs.t, scene.pose, scene.seen, obs.goal)
+        _, error = bearing(scene.pose, waypoint)
         top = min(self._rungs.speed * self.limits.v_max, braking_speed(distance, self.limits.a_max))
         ahead = scene.pose.yaw + error
         wish = np.array([top * math.cos(ahead), top * math.sin(ahead)])

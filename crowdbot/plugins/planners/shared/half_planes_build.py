@@ -73,7 +73,7 @@ def violation(line: Array, x: float, y: float) -> float:
 
 @kernel
 def _on_line(
-    lines: Array, count: int, top: float, wish: tuple[float, float], aim: bool
+    lines: Array, count: int, top: float, wish: tuple[float, float], is_direction: bool
 ) -> tuple[bool, float, float]:
     """Return the best velocity on line ``count`` that the lines before it allow."""
     x, y, dx, dy = lines[count, 0], lines[count, 1], lines[count, 2], lines[count, 3]
@@ -96,7 +96,7 @@ def _on_line(
             low = max(low, t)
         if low > high:
             return False, 0.0, 0.0
-    if aim:
+    if is_direction:
         t = high if wish[0] * dx + wish[1] * dy > 0.0 else low
     else:
         t = min(high, max(low, dx * (wish[0] - x) + dy * (wish[1] - y)))
@@ -105,18 +105,18 @@ def _on_line(
 
 @kernel
 def _within(
-    lines: Array, count: int, top: float, wish: tuple[float, float], aim: bool
+    lines: Array, count: int, top: float, wish: tuple[float, float], is_direction: bool
 ) -> tuple[int, float, float]:
     """Return the first line that cannot be kept (``count``: none), and the best velocity."""
     x, y = wish
     long = math.sqrt(x * x + y * y)
-    if aim:
+    if is_direction:
         x, y = x * top, y * top
     elif long > top:
         x, y = x * top / long, y * top / long
     for i in range(count):
         if violation(lines[i], x, y) > 0.0:
-            found, u, v = _on_line(lines, i, top, wish, aim)
+            found, u, v = _on_line(lines, i, top, wish, is_direction)
             if not found:
                 return i, x, y
             x, y = u, v

@@ -12,41 +12,41 @@ from crowdbot.plugin import Array, RobotBody, kernel
 ROBOT_RADIUS = 0.178
 
 
-def disc_radius(told: float | None, body: RobotBody | None) -> float:
+def disc_radius(spec_radius: float | None, body: RobotBody | None) -> float:
     """Return the radius of the smallest disc around the drive axis that contains the robot, m.
 
     Args:
-        told: radius from the planner's spec, m, or None.
+        spec_radius: radius from the planner's spec, m, or None.
         body: the robot's outline.
     """
-    if told is not None:
-        return told
+    if spec_radius is not None:
+        return spec_radius
     return ROBOT_RADIUS if body is None else body.reach
 
 
-def half_width_and_front(told: float | None, body: RobotBody | None) -> tuple[float, float]:
+def half_width_and_front(spec_radius: float | None, body: RobotBody | None) -> tuple[float, float]:
     """Return the robot's extent to either side and ahead, m; arguments as for `disc_radius`."""
-    if told is not None or body is None:
-        radius = disc_radius(told, body)
+    if spec_radius is not None or body is None:
+        radius = disc_radius(spec_radius, body)
         return radius, radius
     return body.half_width, body.front
 
 
-def swept_half_width(told: float | None, body: RobotBody | None) -> float:
+def swept_half_width(spec_radius: float | None, body: RobotBody | None) -> float:
     """Return half of the width that the robot sweeps, m.
 
     A robot that cannot go sideways turns first.
 
     Arguments as for `disc_radius`.
     """
-    if told is not None or body is None:
-        return disc_radius(told, body)
+    if spec_radius is not None or body is None:
+        return disc_radius(spec_radius, body)
     if body.drive == "holonomic":
         return max(body.front, body.back, body.half_width)
     return body.half_width
 
 
-def core_of(told: float | None, body: RobotBody | None) -> tuple[Array, float]:
+def core_of(spec_radius: float | None, body: RobotBody | None) -> tuple[Array, float]:
     """Return the outline without its rounding, and the rounding radius, m.
 
     Arguments as for `disc_radius`.
@@ -55,8 +55,8 @@ def core_of(told: float | None, body: RobotBody | None) -> tuple[Array, float]:
         (K, 2) in the robot's frame: empty for a disc, the segment of a capsule, or the corners of a
         convex polygon, counter-clockwise; radius, which is 0 for a polygon.
     """
-    if told is not None or body is None or body.footprint is None:
-        return np.zeros((0, 2)), disc_radius(told, body)
+    if spec_radius is not None or body is None or body.footprint is None:
+        return np.zeros((0, 2)), disc_radius(spec_radius, body)
     corners = np.array(body.footprint, dtype=np.float64)
     if len(corners) == 2:
         return corners, body.radius

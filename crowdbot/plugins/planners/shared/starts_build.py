@@ -19,7 +19,7 @@ _GAIN = 2.0
 
 def starts(
     state: MotionState,
-    aim: tuple[float, float],
+    waypoint: tuple[float, float],
     limits: RobotLimits,
     shape: tuple[int, ...],
     dt: float,
@@ -29,7 +29,7 @@ def starts(
 
     Args:
         state: x, y, yaw, v, w, vy of the robot.
-        aim: point to drive to, m.
+        waypoint: point to drive to, m.
         limits: the robot's.
         shape: shape of one plan, (N, 2 or 3).
         dt: length of a stage, s.
@@ -37,14 +37,14 @@ def starts(
     """
     out = np.empty((STARTS, *shape))
     slew = (limits.a_max * dt, limits.alpha_max * dt, limits.w_max)
-    _write(state, aim, slew, dt, top, out)
+    _write(state, waypoint, slew, dt, top, out)
     return out
 
 
 @kernel
 def _write(
     state: MotionState,
-    aim: tuple[float, float],
+    waypoint: tuple[float, float],
     slew: tuple[float, float, float],
     dt: float,
     top: float,
@@ -54,7 +54,7 @@ def _write(
         x, y, yaw, v, w, vy = state
         stages, sideways = out.shape[1], out.shape[2] > 2
         for k in range(stages):
-            off = math.atan2(aim[1] - y, aim[0] - x) - yaw
+            off = math.atan2(waypoint[1] - y, waypoint[0] - x) - yaw
             off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
             turn = off + _ASIDE[n] * (1.0 - k / stages)
             wt = _GAIN * (off if sideways else turn)

@@ -51,7 +51,7 @@ class Stuck:
     """Monitors a robot, and remembers the places where it pushed without moving.
 
     Args:
-        told: radius of the robot from the planner's spec, m, or None.
+        spec_radius: radius of the robot from the planner's spec, m, or None.
         body: of the robot.
         sensors: description of each sensor that the planner gets.
         slips: False if poses are the truth, which slipping wheels do not change.
@@ -63,21 +63,21 @@ class Stuck:
 
     def __init__(
         self,
-        told: float | None = None,
+        spec_radius: float | None = None,
         body: RobotBody | None = None,
         sensors: Mapping[str, SensorInfo] | None = None,
         *,
         slips: bool = True,
     ) -> None:
-        radius = disc_radius(told, body)
-        known = body is not None and told is None
+        radius = disc_radius(spec_radius, body)
+        known = body is not None and spec_radius is None
         self._front, self._back = (body.front, body.back) if known and body else (radius, radius)
         self._half_width = body.half_width if known and body else radius
         self._felt = _Felt(sensors or {})
         self.places, self.count = _NOTHING, 0
         self._centres: list[tuple[float, float]] = []
         self._slips, self._slip = slips, (0.0, 0.0)
-        self._told = 0.0
+        self._commanded = 0.0
         self._back_from: tuple[float, Pose, float] | None = None
         self._start: tuple[Observation, Pose, Array, Mask] | None = None
         self._held: Pose | None = None
@@ -156,9 +156,9 @@ class Stuck:
         self._back_from = (self._back_from[0], held, self._back_from[2])
         return Pose(held.x, held.y, pose.yaw) if self._slips else pose
 
-    def told(self, command: Command, period: float) -> Command:
+    def commanded(self, command: Command, period: float) -> Command:
         """Store a command that holds for a period (s), and return it."""
-        self._told += command.v * period
+        self._commanded += command.v * period
         return command
 
     def _watch(self, obs: Observation, pose: Pose, points: Array) -> Pose:
@@ -169,13 +169,13 @@ class Stuck:
         ahead, aside = _moved(then.pose, obs.pose)
         rolled = math.hypot(ahead, aside)
         pressed = self._felt.pressed_for(obs.t) >= _PRESSED and abs(obs.twist[0]) > 0.0
-        stalls = abs(self._told) >= _TOLD and rolled <= _STALLED
+        stalls = abs(self._commanded) >= _TOLD and rolled <= _STALLED
         if rolled < _ROLLED and not stalls and not pressed:
             if obs.t - then.t > _PATIENCE:
                 self._held = None
                 return self._restart(obs, pose, points)
             return pose
-        way = math.copysign(1.0, ahead if rolled > _STALLED else self._told or 1.0)
+        way = math.copysign(1.0, ahead if rolled > _STALLED else self._commanded or 1.0)
         clear = not self._blocked(points, way, (self._front if way > 0.0 else self._back) + _SEEN)
         stands = stalls or pressed
         if clear and not stands:
@@ -197,7 +197,8 @@ class Stuck:
         stride = max(1, len(points) // _SAMPLE)
         wide = np.zeros(len(points), np.bool_)
         _mark_wide(points, wide)
-        self._start, self._told = (obs, pose, points[::stride].copy(), wide[::stride].copy()), 0.0
+        self._start = obs, pose, points[::stride].copy(), wide[::stride].copy()
+        self._commanded = 0.0
         return pose
 
     def _remember(self, obs: Observation, pose: Pose, held: Pose, way: float) -> Pose:

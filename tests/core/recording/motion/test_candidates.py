@@ -52,7 +52,7 @@ def recorded(path: Path, engine: CrowdEngine, known: list[Choosers]) -> Path:
     """People alone for some seconds."""
     header = RecordingHeader(scenario="test/one", agents=agents(engine))
     writer = RecordingWriter(path, header, record="none", choosers=known)
-    run_crowd(engine, RunLog(writer, ids(engine), aim=engine.aim), 6.0, 16.0)
+    run_crowd(engine, RunLog(writer, ids(engine), goal_column=engine.goal_column), 6.0, 16.0)
     writer.close(None, True, "timeout")
     return path
 

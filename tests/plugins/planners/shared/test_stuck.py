@@ -44,7 +44,7 @@ def _drive(
         obs = _observation(t, odometry, wheels, readings)
         corrected, points = stuck.see(obs, odometry, _scan(true, ahead))
         command = stuck.way_back(obs, corrected, points)
-        stuck.told(Command(told, 0.0), _PERIOD)
+        stuck.commanded(Command(told, 0.0), _PERIOD)
         if command is not None:
             break
     return corrected, command
@@ -180,7 +180,7 @@ def _pushed() -> tuple[Stuck, float, float]:
         corrected, points = stuck.see(obs, odometry, still)
         if stuck.way_back(obs, corrected, points) is not None:
             return stuck, odometry.x, t
-        stuck.told(Command(0.6, 0.0), _PERIOD)
+        stuck.commanded(Command(0.6, 0.0), _PERIOD)
     raise AssertionError("nothing was noticed")
 
 

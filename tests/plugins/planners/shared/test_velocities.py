@@ -16,7 +16,7 @@ from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import CELL, DistanceField, distance_at
 from crowdbot.plugins.planners.shared.follow_velocity_build import follow
 from crowdbot.plugins.planners.shared.half_planes_build import avoid, best_velocity, violation
-from crowdbot.plugins.planners.shared.way_build import Way, is_blocked
+from crowdbot.plugins.planners.shared.path_finder_build import PathFinder, is_blocked
 from crowdbot.plugins.planners.vfh_plus.vfh_plus_build import openings
 
 SPEED = st.floats(-1.5, 1.5)
@@ -109,11 +109,11 @@ def test_discs_cover_the_outline(front: float, back: float, half: float) -> None
 
 def test_a_way_leads_around_a_wall() -> None:
     wall = np.column_stack([np.full(81, 2.0), np.linspace(-1.0, 3.0, 81)])
-    way = Way(0.3)
+    finder = PathFinder(0.3)
     for t in (0.0, 0.5, 1.0):  # seen three times, it stands
-        _, y = way.aim(t, Pose(0.0, 0.0, 0.0), wall, (5.0, 0.0))
+        _, y = finder.waypoint(t, Pose(0.0, 0.0, 0.0), wall, (5.0, 0.0))
     assert y < -0.4  # the shorter side
-    assert way.aim(1.5, Pose(2.5, -1.4, 0.0), wall, (5.0, -1.4)) == (5.0, -1.4)
+    assert finder.waypoint(1.5, Pose(2.5, -1.4, 0.0), wall, (5.0, -1.4)) == (5.0, -1.4)
     assert is_blocked(wall, 0.0, 0.0, 5.0, 0.0, 0.3)
     assert not is_blocked(wall, 0.0, -1.5, 5.0, -1.5, 0.3)
 

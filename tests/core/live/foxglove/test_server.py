@@ -16,10 +16,10 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from crowdbot.core.live.admission import Admission
-from crowdbot.core.live.foxglove.door import FoxgloveDoor
 from crowdbot.core.live.foxglove.parameters import set_parameters
+from crowdbot.core.live.foxglove.server import FoxgloveServer
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.message import OfferedTopic, told
+from crowdbot.core.live.message import OfferedTopic, live_message
 from crowdbot.core.live.services import services
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.recording import messages as ros
@@ -32,23 +32,23 @@ TWIST = {"linear": {"x": 0.25, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0
 
 
 @contextmanager
-def _both(*robots: str) -> Iterator[tuple[FoxgloveDoor, LiveSession, ClientConnection]]:
-    """A door and a client; ``robots``: names of several robots."""
+def _both(*robots: str) -> Iterator[tuple[FoxgloveServer, LiveSession, ClientConnection]]:
+    """A connection and a client; ``robots``: names of several robots."""
     session = LiveSession(robots={name: LiveRobot(name) for name in robots or ("",)})
-    door = FoxgloveDoor(session, "127.0.0.1", 0, services(session))
+    connection = FoxgloveServer(session, "127.0.0.1", 0, services(session))
     try:
-        door.open(
+        connection.open(
             [
                 OfferedTopic("/clock", "rosgraph_msgs/msg/Clock"),
                 OfferedTopic("/map", "rosgraph_msgs/msg/Clock", True),
             ]
         )
-        uri = f"ws://127.0.0.1:{door.port}"
+        uri = f"ws://127.0.0.1:{connection.port}"
         speaks: Any = ["foxglove.sdk.v1"]
         with connect(uri, subprotocols=speaks, compression=None, close_timeout=0.5) as socket:
-            yield door, session, socket
+            yield connection, session, socket
     finally:
-        door.close()
+        connection.close()
 
 
 def _hear(socket: ClientConnection, op: str) -> dict[str, Any]:
@@ -80,10 +80,10 @@ def _subscribe(socket: ClientConnection, number: int, channel: int) -> None:
 
 
 def test_who_looks_gets_cdr() -> None:
-    with _both() as (door, _, socket):
+    with _both() as (connection, _, socket):
         _subscribe(socket, 7, _channels(socket)["/clock"])
-        until(lambda: door.wants("/clock"))
-        door.publish([clock(3)])
+        until(lambda: connection.wants("/clock"))
+        connection.publish([clock(3)])
         frame = _data(socket, 1)
         number, ns = struct.unpack_from("<IQ", frame, 1)
         assert (number, ns) == (7, 3)
@@ -91,29 +91,29 @@ def test_who_looks_gets_cdr() -> None:
 
 
 def test_who_comes_late_gets_the_map() -> None:
-    with _both() as (door, _, socket):
-        still = told("/map", 5, ros.clock(5), latched=True)
-        door.publish([still])
+    with _both() as (connection, _, socket):
+        still = live_message("/map", 5, ros.clock(5), latched=True)
+        connection.publish([still])
         _subscribe(socket, 1, _channels(socket)["/map"])
         assert _data(socket, 1)[13:] == still.data
 
 
 def test_what_a_planner_draws_is_a_marker_of_lines_or_a_text() -> None:
-    with _both() as (door, _, socket):
+    with _both() as (connection, _, socket):
         header = header_of(random_run(2))
-        door.begin(header, {"robot": header})
+        connection.begin(header, {"robot": header})
         known = _channels(socket)
         while "/thoughts_marker" not in known:
             known |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
         _subscribe(socket, 4, known["/thoughts_marker"])
-        until(lambda: door.wants("/thoughts_marker"))
-        door.drawing(2.0, "robot", "tracks", np.array([[1.0], [2.0], [0.5], [0.0]]))
-        door.drawing(2.0, "another", "tracks", np.zeros((4, 1)))
+        until(lambda: connection.wants("/thoughts_marker"))
+        connection.drawing(2.0, "robot", "tracks", np.array([[1.0], [2.0], [0.5], [0.0]]))
+        connection.drawing(2.0, "another", "tracks", np.zeros((4, 1)))
         frame = _data(socket, 1)
         marker = ros.from_cdr(frame[13:], "visualization_msgs/msg/Marker")
         assert (marker.ns, marker.type) == ("tracks", marker.LINE_LIST)
         assert [(p.x, p.y) for p in marker.points] == [(1.0, 2.0), (1.5, 2.0)]
-        door.drawing(2.1, "robot", "why", np.array([[1.0], [2.0]]), ["waits"])
+        connection.drawing(2.1, "robot", "why", np.array([[1.0], [2.0]]), ["waits"])
         said = ros.from_cdr(_data(socket, 1)[13:], "visualization_msgs/msg/Marker")
         assert (said.ns, said.type, said.text) == ("why", said.TEXT_VIEW_FACING, "waits")
 
@@ -166,9 +166,9 @@ def test_services_reset_and_pause() -> None:
         assert session.take_request() == "reset"
 
 
-def _connect(door: FoxgloveDoor, **more: Any) -> ClientConnection:
+def _connect(connection: FoxgloveServer, **more: Any) -> ClientConnection:
     speaks: Any = ["foxglove.sdk.v1"]
-    uri = f"ws://127.0.0.1:{door.port}"
+    uri = f"ws://127.0.0.1:{connection.port}"
     made: ClientConnection = connect(
         uri, subprotocols=speaks, compression=None, close_timeout=0.5, **more
     )
@@ -177,12 +177,12 @@ def _connect(door: FoxgloveDoor, **more: Any) -> ClientConnection:
 
 @pytest.mark.parametrize("headers", [{"origin": "http://evil.test"}, {"host": "evil.test"}])
 def test_foreign_websites_are_refused(headers: dict[str, str]) -> None:
-    with _both() as (door, _, _):
+    with _both() as (connection, _, _):
         host = headers.get("host")
         more: dict[str, Any] = {"origin": headers["origin"]} if host is None else {}
-        uri = f"ws://{host or '127.0.0.1'}:{door.port}"
+        uri = f"ws://{host or '127.0.0.1'}:{connection.port}"
         speaks: Any = ["foxglove.sdk.v1"]
-        raw = socket.create_connection(("127.0.0.1", door.port))
+        raw = socket.create_connection(("127.0.0.1", connection.port))
         with pytest.raises(InvalidStatus, match="403"), raw:
             connect(uri, sock=raw, subprotocols=speaks, **more)
 
@@ -190,21 +190,21 @@ def test_foreign_websites_are_refused(headers: dict[str, str]) -> None:
 def test_websites_of_this_machine_and_named_ones_are_admitted() -> None:
     session = LiveSession()
     admission = Admission(server="foxglove", origins=["https://app.test"])
-    door = FoxgloveDoor(session, "127.0.0.1", 0, {}, admission=admission)
+    connection = FoxgloveServer(session, "127.0.0.1", 0, {}, admission=admission)
     try:
         for origin in ("http://localhost:8080", "https://app.test"):
-            with _connect(door, origin=origin) as viewer:
+            with _connect(connection, origin=origin) as viewer:
                 assert _hear(viewer, "serverInfo")
     finally:
-        door.close()
+        connection.close()
 
 
 def test_the_first_of_two_viewers_drives_until_it_leaves() -> None:
     channel = _advertised(1, "/cmd_vel")
-    with _both() as (door, session, first):
+    with _both() as (connection, session, first):
         first.send(json.dumps({"op": "advertise", "channels": [channel]}))
         until(lambda: session.driven)
-        with _connect(door) as second:
+        with _connect(connection) as second:
             second.send(json.dumps({"op": "advertise", "channels": [channel]}))
             head = struct.pack("<BI", 1, 1)
             second.send(head + json.dumps({"linear": {"x": 0.9}}).encode())
@@ -219,8 +219,8 @@ def test_the_first_of_two_viewers_drives_until_it_leaves() -> None:
 
 
 def test_an_address_that_is_taken_is_told() -> None:
-    with _both() as (door, session, _), pytest.raises(InputError, match="cannot listen"):
-        FoxgloveDoor(session, "127.0.0.1", door.port, {})
+    with _both() as (connection, session, _), pytest.raises(InputError, match="cannot listen"):
+        FoxgloveServer(session, "127.0.0.1", connection.port, {})
 
 
 def test_parameters_say_and_set() -> None:
@@ -266,17 +266,17 @@ def test_a_parameter_that_is_wrong_is_told(name: str, value: Any, message: str) 
 
 def test_a_spectator_sees_people_and_the_true_pose() -> None:
     run = random_run()
-    with _both() as (door, _, socket):
+    with _both() as (connection, _, socket):
         header = header_of(run)
-        door.begin(header, {"robot": header})
+        connection.begin(header, {"robot": header})
         assert run.robot is not None
         assert run.agents is not None
         ids: dict[str, int] = {}
         while "/people_markers" not in ids or "/robot/pose" not in ids:
             ids |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
         _subscribe(socket, 1, ids["/people_markers"])
-        until(lambda: door.wants("/people_markers"))
-        door.sample(0.5, {"robot": run.robot[0].tolist()}, run.agents[0])
+        until(lambda: connection.wants("/people_markers"))
+        connection.sample(0.5, {"robot": run.robot[0].tolist()}, run.agents[0])
         data = _data(socket, 1)[13:]
         message = ros.from_cdr(data, "visualization_msgs/msg/MarkerArray")
         assert len(message.markers) == 1 + int(np.isfinite(run.agents[0, 0]).sum())
@@ -306,16 +306,16 @@ def test_each_of_two_robots_is_driven_on_its_own_topic() -> None:
 
 def test_the_true_pose_of_each_of_two_robots_is_shown() -> None:
     header = header_of(random_run())
-    with _both("a", "b") as (door, _, socket):
-        door.begin(header, {"a": header, "b": header})
+    with _both("a", "b") as (connection, _, socket):
+        connection.begin(header, {"a": header, "b": header})
         topics = {"/a/robot/pose": (1.0, 2.0), "/b/robot/pose": (3.0, 4.0)}
         ids: dict[str, int] = {}
         while not set(topics) <= set(ids):
             ids |= {c["topic"]: c["id"] for c in _hear(socket, "advertise")["channels"]}
         for number, topic in enumerate(topics):
             _subscribe(socket, number, ids[topic])
-        until(lambda: all(door.wants(topic) for topic in topics))
-        door.sample(0.5, {"a": (1.0, 2.0, 0.0), "b": (3.0, 4.0, 0.0)}, None)
+        until(lambda: all(connection.wants(topic) for topic in topics))
+        connection.sample(0.5, {"a": (1.0, 2.0, 0.0), "b": (3.0, 4.0, 0.0)}, None)
         seen = {}
         for _ in topics:
             frame = _data(socket, 1)

@@ -23,7 +23,7 @@ _AT_GOAL = 0.3
 _ROW = 1_000_003
 
 
-class Way:
+class PathFinder:
     """Remembers static obstacles around the robot, and plans paths around them.
 
     Args:
@@ -40,7 +40,7 @@ class Way:
         is_blocked(np.ones((1, 2)), 0.0, 0.0, 1.0, 0.0, 1.0)
         way_out(np.ones((1, 2)), 0.0, 0.0, 9.0, 0.0, 99.0)  # no way at all is soon found
 
-    def aim(
+    def waypoint(
         self, t: float, pose: Pose, seen: Array, goal: tuple[float, float]
     ) -> tuple[float, float]:
         """Return the point to head for: the goal, or one on the shortest path to it, m.

@@ -40,7 +40,7 @@ _COMMAND, _REQUEST, _MOST_TOPICS = 4096, 64 << 10, 16
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
-class FoxgloveDoor:
+class FoxgloveServer:
     """A live connection for Foxglove.
 
     Commands that Foxglove publishes on ``/cmd_vel``, or ``/NAME/cmd_vel``, drive the robot.

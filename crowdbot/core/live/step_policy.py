@@ -10,7 +10,7 @@ Missed = Literal["stop", "hold", "fail"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Manner:
+class StepPolicy:
     """Timing of a live run's steps.
 
     Attributes:

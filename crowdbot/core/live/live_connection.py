@@ -8,7 +8,7 @@ from typing import Protocol
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
 
 
-class Door(Protocol):
+class LiveConnection(Protocol):
     """One live connection; all methods are called by the simulation's thread.
 
     Failures of a connection never stop the simulation.

@@ -18,10 +18,10 @@ import zenoh
 from rosbags.typesys import Stores, get_typestore
 
 from crowdbot.core.live.live_robot import LiveRobot
-from crowdbot.core.live.message import OfferedTopic, told
+from crowdbot.core.live.message import OfferedTopic, live_message
 from crowdbot.core.live.ros2_keys import Ros2Topic, attachment, gid_of, hash_in, in_distro
 from crowdbot.core.live.session import LiveSession
-from crowdbot.core.live.zenoh_door import Network, ZenohDoor
+from crowdbot.core.live.zenoh_connection import Network, ZenohConnection
 from crowdbot.core.recording import messages as ros
 from crowdbot.core.recording import scenery
 from crowdbot.core.types.motion import Command
@@ -42,21 +42,21 @@ def _endpoint() -> str:
 
 
 @contextmanager
-def _both(endpoint: str = "", **more: Any) -> Iterator[tuple[ZenohDoor, LiveSession, Any]]:
-    """A door that is the router, and a plain session of zenoh that connects to it."""
+def _both(endpoint: str = "", **more: Any) -> Iterator[tuple[ZenohConnection, LiveSession, Any]]:
+    """A connection that is the router, and a plain session of zenoh that connects to it."""
     robots = {name: LiveRobot() for name in more.pop("robots", ("",))}
     session, endpoint = LiveSession(robots=robots), endpoint or _endpoint()
     network = Network(endpoint=endpoint, router=True)
-    door = ZenohDoor(session, network, **{"external_clock": False, **more})
+    connection = ZenohConnection(session, network, **{"external_clock": False, **more})
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
     config.insert_json5("scouting/multicast/enabled", "false")
     config.insert_json5("connect/endpoints", f'["{endpoint}"]')
     try:
         with zenoh.open(config) as other:
-            yield door, session, other
+            yield connection, session, other
     finally:
-        door.close()
+        connection.close()
 
 
 def test_hashes_are_those_that_are_published() -> None:
@@ -92,28 +92,28 @@ def test_an_attachment_has_33_bytes() -> None:
 
 
 def test_a_listener_gets_messages_with_their_attachment() -> None:
-    with _both() as (door, _, other):
-        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
-        assert not door.wants("/clock")
+    with _both() as (connection, _, other):
+        connection.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
+        assert not connection.wants("/clock")
         heard: list[Any] = []
         key = f"0/clock/rosgraph_msgs::msg::dds_::Clock_/{hash_in(CLOCK, 'jazzy')}"
         subscriber = other.declare_subscriber(key, heard.append)
-        until(lambda: door.wants("/clock"))
-        door.publish([clock(3_000_000_007)])
+        until(lambda: connection.wants("/clock"))
+        connection.publish([clock(3_000_000_007)])
         until(lambda: len(heard) == 1)
         message = JAZZY.deserialize_cdr(heard[0].payload.to_bytes(), "rosgraph_msgs/msg/Clock")
         assert (message.clock.sec, message.clock.nanosec) == (3, 7)
         assert len(heard[0].attachment.to_bytes()) == 33
         subscriber.undeclare()
-        until(lambda: not door.wants("/clock"))
+        until(lambda: not connection.wants("/clock"))
 
 
 def test_who_comes_late_gets_the_map() -> None:
     from zenoh import ext
 
-    with _both() as (door, _, other):
-        door.open([OfferedTopic("/map", "rosgraph_msgs/msg/Clock", latched=True)])
-        door.publish([told("/map", 5, ros.clock(5), latched=True)])
+    with _both() as (connection, _, other):
+        connection.open([OfferedTopic("/map", "rosgraph_msgs/msg/Clock", latched=True)])
+        connection.publish([live_message("/map", 5, ros.clock(5), latched=True)])
         heard: list[Any] = []
         key = (
             f"0/map/rosgraph_msgs::msg::dds_::Clock_/{hash_in('rosgraph_msgs/msg/Clock', 'jazzy')}"
@@ -123,8 +123,8 @@ def test_who_comes_late_gets_the_map() -> None:
 
 
 def test_ros2_topic_list_sees_us() -> None:
-    with _both() as (door, _, other):
-        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
+    with _both() as (connection, _, other):
+        connection.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
 
         def tokens() -> list[str]:
             return [str(r.ok.key_expr) for r in other.liveliness().get("@ros2_lv/**") if r.ok]
@@ -139,8 +139,8 @@ def test_ros2_topic_list_sees_us() -> None:
 @pytest.mark.parametrize("stamped", [False, True])
 def test_lockstep_over_zenoh(stamped: bool) -> None:
     kind = "geometry_msgs/msg/TwistStamped" if stamped else "geometry_msgs/msg/Twist"
-    with _both() as (door, session, other):
-        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
+    with _both() as (connection, session, other):
+        connection.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
         types = JAZZY.types
         vector, time = types["geometry_msgs/msg/Vector3"], types["builtin_interfaces/msg/Time"]
         command = Ros2Topic("/cmd_vel", kind, hash_in(kind, "jazzy"))
@@ -162,10 +162,10 @@ def test_lockstep_over_zenoh(stamped: bool) -> None:
             "/clock", "rosgraph_msgs/msg/Clock", hash_in("rosgraph_msgs/msg/Clock", "jazzy")
         )
         subscriber = other.declare_subscriber(key.key(0), on_clock)
-        until(lambda: door.wants("/clock"))
+        until(lambda: connection.wants("/clock"))
         for k in range(1, 200):
             session.ask(k * 10**9)
-            door.publish([clock(k * 10**9)])
+            connection.publish([clock(k * 10**9)])
             assert session.answer(30.0, lambda: None) == Command(0.001 * k, 0.25)
         subscriber.undeclare()
         token.undeclare()
@@ -255,9 +255,9 @@ def test_garbage_is_not_a_command() -> None:
 
 
 def test_the_clock_may_come_from_outside() -> None:
-    with _both(external_clock=True) as (door, session, other):
-        door.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
-        assert not door.wants("/clock")
+    with _both(external_clock=True) as (connection, session, other):
+        connection.open([OfferedTopic("/clock", "rosgraph_msgs/msg/Clock")])
+        assert not connection.wants("/clock")
         kind = "rosgraph_msgs/msg/Clock"
         other.put(Ros2Topic("/clock", kind, hash_in(kind, "jazzy")).key(0), clock(2 * 10**9).data)
         session.wait_for_clock(2.0)
@@ -265,9 +265,11 @@ def test_the_clock_may_come_from_outside() -> None:
 
 def test_an_endpoint_without_a_router_is_told() -> None:
     with pytest.raises(InputError, match="cannot find a router"):
-        ZenohDoor(LiveSession(), Network(endpoint=_endpoint()), external_clock=False)
+        ZenohConnection(LiveSession(), Network(endpoint=_endpoint()), external_clock=False)
     with pytest.raises(InputError, match="cannot be a router"):
-        ZenohDoor(LiveSession(), Network(endpoint="nonsense", router=True), external_clock=False)
+        ZenohConnection(
+            LiveSession(), Network(endpoint="nonsense", router=True), external_clock=False
+        )
 
 
 def test_what_is_latched_reaches_another_implementation() -> None:
@@ -290,9 +292,11 @@ def test_what_is_latched_reaches_another_implementation() -> None:
     types = {topic: message.__msgtype__ for topic, message in said.items()}
     endpoint = _endpoint()
     host, _, port = endpoint.removeprefix("tcp/").partition(":")
-    with _both(endpoint) as (door, _, _):
-        door.open([OfferedTopic(t, kind, latched=True) for t, kind in types.items()])
-        door.publish([told(t, 1, message, latched=True) for t, message in said.items()])
+    with _both(endpoint) as (connection, _, _):
+        connection.open([OfferedTopic(t, kind, latched=True) for t, kind in types.items()])
+        connection.publish(
+            [live_message(t, 1, message, latched=True) for t, message in said.items()]
+        )
         request = json.dumps({"topics": types, "definitions": _definitions(types.values())})
         argv = [python, str(Path(__file__).with_name("zenoh_sdk_listener.py")), host, port]
         done = subprocess.run(

@@ -76,7 +76,7 @@ class _Publisher:
         self.token.undeclare()
 
 
-class ZenohDoor:
+class ZenohConnection:
     """A live connection with the protocol of ROS 2 nodes with rmw_zenoh."""
 
     def __init__(

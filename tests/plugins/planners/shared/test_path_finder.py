@@ -6,35 +6,35 @@ import numpy as np
 
 from crowdbot.plugin import Pose
 from crowdbot.plugins.planners.shared.local_map_build import thinned
-from crowdbot.plugins.planners.shared.way_build import Way, _still_there
+from crowdbot.plugins.planners.shared.path_finder_build import PathFinder, _still_there
 
 START, GOAL = Pose(0.0, 0.0, 0.0), (5.0, 0.0)
 WALL = np.column_stack([np.full(41, 2.0), np.linspace(-2.0, 2.0, 41)])
 
 
 def test_a_wall_is_passed_once_it_was_seen_three_times() -> None:
-    way = Way(0.3)
-    aims = [way.aim(0.5 * n, START, WALL, GOAL) for n in range(4)]
+    finder = PathFinder(0.3)
+    aims = [finder.waypoint(0.5 * n, START, WALL, GOAL) for n in range(4)]
     assert aims[0] == aims[1] == GOAL
     assert aims[2] != GOAL
     assert abs(aims[2][1]) > 0.5  # along the wall
 
 
 def test_points_that_move_on_do_not_turn_it_round() -> None:
-    way = Way(0.3)
+    finder = PathFinder(0.3)
     for n in range(20):
         walkers = WALL - (0.4 * (n % 5), 0.0)  # 0.8 m/s towards it, and new ones behind them
-        assert way.aim(0.5 * n, START, walkers, GOAL) == GOAL
+        assert finder.waypoint(0.5 * n, START, walkers, GOAL) == GOAL
 
 
 def test_what_stands_is_remembered_while_it_is_hidden() -> None:
-    way = Way(0.3)
+    finder = PathFinder(0.3)
     for n in range(3):
-        way.aim(0.5 * n, START, WALL, GOAL)
+        finder.waypoint(0.5 * n, START, WALL, GOAL)
     near = np.column_stack([np.full(41, 1.0), np.linspace(-2.0, 2.0, 41)])  # people before it
-    assert way.aim(1.5, START, near, GOAL) != GOAL
+    assert finder.waypoint(1.5, START, near, GOAL) != GOAL
     free = np.zeros((0, 2))
-    assert way.aim(2.0, START, free, GOAL) == GOAL
+    assert finder.waypoint(2.0, START, free, GOAL) == GOAL
 
 
 def test_what_is_still_there_is_what_a_search_through_all_cells_finds() -> None:
