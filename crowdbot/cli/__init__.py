@@ -90,6 +90,8 @@ def _run(argv: Sequence[str] | None) -> int:
         if left_by(done):
             raise
         sys.stdout.flush()
+        if isinstance(done.code, str):  # a library's, such as Drake's
+            raise RuntimeError(done.code) from done
         return done.code if isinstance(done.code, int) else int(done.code is not None)
     return 0
 

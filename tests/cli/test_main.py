@@ -86,6 +86,19 @@ def test_exit_codes(
     assert "Traceback" not in shown
 
 
+def test_the_reason_of_a_librarys_exit_is_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(words: list[str]) -> None:
+        raise SystemExit(f"Failure at joint.h:435, {len(words)} words")
+
+    monkeypatch.delenv("CROWDBOT_DEBUG", raising=False)
+    monkeypatch.setattr("crowdbot.cli._dispatch", fail)
+    monkeypatch.setattr("crowdbot.cli.left_by", lambda _: "")
+    assert cli.main(["plugins"]) == 4
+    assert "internal error RuntimeError: Failure at joint.h:435" in capsys.readouterr().err
+
+
 def test_debug_shows_the_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(**_: object) -> None:
         raise ZeroDivisionError

@@ -146,6 +146,16 @@ def _check_base(model: RobotModel, described: Description) -> None:
 
 def _check_wheels(model: RobotModel, drive: DifferentialDrive, described: Description) -> None:
     sides = []
+    heights = [
+        float(described.pose(described.joint(name).child, model.base)[2, 3])
+        for name in (drive.left_joint, drive.right_joint)
+    ]
+    if abs(heights[0] - heights[1]) > _FLOOR:
+        raise PluginError(
+            f"the axles of '{drive.left_joint}' and '{drive.right_joint}' are "
+            f"{1e3 * abs(heights[0] - heights[1]):.3g} mm apart in height; the driven wheels have "
+            "one radius and one axle"
+        )
     for name, side in ((drive.left_joint, 1.0), (drive.right_joint, -1.0)):
         joint = described.joint(name)
         if not joint.free:

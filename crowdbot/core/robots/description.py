@@ -166,6 +166,15 @@ class Description:
         left, right = (
             self.pose(self.joint(name).child, base)[:3, 3] for name in (left_joint, right_joint)
         )
+        if left[1] - right[1] < abs(left[0] - right[0]):
+            behind = abs(left[1] - right[1]) < abs(left[0] - right[0])
+            raise PluginError(
+                f"'{left_joint}' and '{right_joint}' lie along the x axis of '{base}', not beside "
+                f"it; robots drive along that axis"
+                if behind
+                else f"'{left_joint}' is on the right of '{base}', '{right_joint}' on its left: "
+                "exchange them"
+            )
         return DifferentialDrive(
             left_joint=left_joint,
             right_joint=right_joint,
@@ -294,6 +303,9 @@ def _only_model(top: Xml.Element) -> Xml.Element | None:
 def _checked(described: Description) -> Description:
     if not described.links:
         raise PluginError("the robot's description has no link")
+    if not name_of(described.model):
+        tag = described.model.tag
+        raise PluginError(f'the robot\'s description has no name: write <{tag} name="…">')
     for part in ("link", "joint"):
         names = Counter(name_of(element) for element in described.model.findall(part))
         if twice := [name for name, count in names.items() if count > 1]:
@@ -306,6 +318,13 @@ def _checked(described: Description) -> Description:
             )
         described.link(joint.parent)
         described.link(joint.child)
+    for element in described.model.findall("joint"):
+        limit = element.find("limit")
+        if limit is not None and limit.get("velocity", "").strip().startswith("-"):
+            raise PluginError(
+                f"joint '{name_of(element)}' has the velocity limit {limit.get('velocity')}; "
+                "leave it out if there is none"
+            )
     for name, link in described.links.items():
         for shape in collisions(link):
             kind = re.split("[:}]", shape.tag)[-1]  # without the prefix of Drake's own shapes

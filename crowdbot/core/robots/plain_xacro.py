@@ -1,7 +1,8 @@
 """Expand xacro's properties and arguments without running xacro.
 
 Makers publish files that need xacro only for a name or a number: ``xacro:property``, ``xacro:arg``,
-``${NAME}`` and ``$(arg NAME)``. Macros, conditions, includes and sums are left to xacro.
+``${NAME}``, ``$(arg NAME)`` and ``$(optenv NAME DEFAULT)``, which is its default here, whatever the
+environment says. Macros, conditions, includes and sums are left to xacro.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from collections.abc import Mapping
 from xml.etree import ElementTree as Xml
 
 _USE = re.compile(r"\$\{\s*(\w+)\s*\}|\$\(\s*arg\s+(\w+)\s*\)")
+_VARIABLE = re.compile(r"\$\(\s*optenv\s+(\w+)\s*([^()]*)\)")
 #: Properties may name others, to this depth.
 _DEPTH = 8
 
@@ -35,7 +37,9 @@ def write_out(top: Xml.Element) -> tuple[str, ...]:
         if given is None or len(element):
             return ()
         values[element.get("name", "")] = given
-    pairs = [(e, key, _filled(value, values)) for e in top.iter() for key, value in e.items()]
+    texts = [(e, key, value) for e in top.iter() for key, value in e.items()]
+    variables = [found[1] for _, _, value in texts for found in _VARIABLE.finditer(value)]
+    pairs = [(e, key, _filled(value, values)) for e, key, value in texts]
     if any("${" in text or "$(" in text for e, _, text in pairs if e not in told):
         return ()
     for element in told:
@@ -45,7 +49,7 @@ def write_out(top: Xml.Element) -> tuple[str, ...]:
         return ()
     for element, key, text in pairs:
         element.set(key, text)
-    return tuple(values)
+    return (*values, *dict.fromkeys(variables))
 
 
 def _tag(element: Xml.Element) -> str:
@@ -57,6 +61,7 @@ def _tag(element: Xml.Element) -> str:
 
 
 def _filled(text: str, values: Mapping[str, str]) -> str:
+    text = _VARIABLE.sub(lambda use: use[2].strip(), text)
     for _ in range(_DEPTH):
         found = _USE.sub(lambda use: values.get(use[1] or use[2], use[0]), text)
         if found == text:

@@ -93,6 +93,7 @@ def read_published(
     except InputError as error:
         raise PluginError(str(error)) from error
     work = _Work(deepcopy(robot), base, dict(wheels), dict(positions or {}))
+    work.robot.set("name", name_of(robot) or "robot")
     work.notes += described.notes
     work.check()
     work.keep_one_tree()
@@ -117,6 +118,10 @@ class _Work:
     ) -> None:  # fmt: skip
         self.robot, self.base, self.wheels, self.positions = robot, base, wheels, positions
         self.notes: list[str] = []
+        for limit in robot.iterfind("joint/limit"):  # negative ones stand for none
+            for name in ("effort", "velocity"):
+                if limit.get(name, "").strip().startswith("-"):
+                    del limit.attrib[name]
 
     @property
     def links(self) -> dict[str, Xml.Element]:
@@ -222,9 +227,9 @@ class _Work:
 
     def _drive(self, name: str, effort: float) -> None:
         joint = self.joints[name]
-        kind, limit = joint.get("type", ""), joint.find("limit")
-        if kind != "continuous":
-            self.notes.append(f"joint that is {kind} is made to turn, as a driven wheel: {name}")
+        limit = joint.find("limit")
+        note = drives.point_left(self.robot, self.base, joint)
+        self.notes += [note] if note else []
         joint.set("type", "continuous")
         if limit is None:
             limit = Xml.SubElement(joint, "limit", velocity="1e9")
@@ -295,6 +300,11 @@ class _Work:
         self.note(implausible, "inertia is larger than a body of its size and mass has",
                   "{} inertias are larger than bodies of their size and mass have")  # fmt: skip
         self.note(weightless, "link has a shape and no mass", "{} links have shapes and no mass")
+        if not Description("", "urdf", self.robot).mass > 0.0:
+            raise PluginError(
+                "no link of the robot's description has a mass: write <inertial> with <mass> and "
+                f"<inertia>, at least in '{self.base}'"
+            )
 
     def drop_the_rest(self) -> None:
         """Remove parts for other programs: transmissions, Gazebo's elements, visual meshes."""

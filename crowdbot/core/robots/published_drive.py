@@ -14,6 +14,8 @@ from crowdbot.core.types.arrays import Array
 
 #: A base that is nearer to the axle is not moved, m.
 _SAME = 1e-3
+#: Cosine of the largest angle between directions that are taken for opposite.
+_OPPOSITE = -0.999
 _PARTS = ("inertial", "visual", "collision")
 
 
@@ -78,6 +80,30 @@ def onto_axle(robot: Xml.Element, base: str, driven: Sequence[str]) -> str:
         f"'{base}' is moved {1e3 * abs(ahead):.3g} mm {'ahead' if ahead > 0.0 else 'back'}, onto "
         "the axle of the driven wheels; sensors are mounted from there"
     )
+
+
+def point_left(robot: Xml.Element, base: str, joint: Xml.Element) -> str:
+    """Let a driven wheel turn about the left of the base; return a note.
+
+    A joint that does not turn in the file, and an axis that points to the right, get that axis.
+    """
+    name = name_of(joint)
+    described = Description("", "urdf", robot)
+    turn = described.pose(child_of(joint), base)[:3, :3]
+    kind = joint.get("type", "")
+    turns = kind in ("continuous", "revolute")
+    if turns and (turn @ described.joint(name).axis)[1] > _OPPOSITE:
+        return "" if kind == "continuous" else _made(kind, name)
+    axis = joint.find("axis")
+    axis = Xml.SubElement(joint, "axis") if axis is None else axis
+    axis.set("xyz", " ".join(f"{x + 0.0:.12g}" for x in np.round(turn.T @ (0.0, 1.0, 0.0), 12)))
+    if not turns:
+        return _made(kind, name)
+    return f"wheel's axis points to the right and is reversed, so that it drives ahead: {name}"
+
+
+def _made(kind: str, name: str) -> str:
+    return f"joint that is {kind} is made to turn, as a driven wheel: {name}"
 
 
 def _shift(element: Xml.Element, by: Array) -> None:

@@ -1,7 +1,8 @@
-"""Convert the frames of an SDFormat model so that each link's frame is that of its joint.
+"""Convert the frames of an SDFormat model so that each moving link's frame is that of its joint.
 
 In SDFormat the pose of a joint is relative to its child, and poses may be relative to links, joints
-and frames. URDF, checks and models need one frame for a link and its joint.
+and frames. URDF, checks and models need one frame for a link and its joint. Links on fixed joints
+keep their frames, on which sensors are mounted.
 """
 
 from __future__ import annotations
@@ -125,6 +126,7 @@ class _Frames:
         hung = {
             self.link_of((j.findtext("child") or "").strip()): name_of(j)
             for j in self._source.findall("joint")
+            if j.get("type") != "fixed"
         }
         places = {}
         for link in made.findall("link"):

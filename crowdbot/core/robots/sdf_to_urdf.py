@@ -24,7 +24,7 @@ def from_sdf(described: Description, rates: Mapping[str, float]) -> Xml.Element:
     Raises:
         InputError: the description has a shape that URDF cannot express.
     """
-    document = Xml.Element("robot")
+    document = Xml.Element("robot", name=name_of(described.model) or "robot")
     for name, link in described.links.items():
         _link(Xml.SubElement(document, "link", name=name), link)
     for joint in described.model.findall("joint"):
@@ -98,6 +98,9 @@ def _joint(
         for k in ("lower", "upper", "effort", "velocity")
         if (v := source.findtext(f"axis/limit/{k}")) is not None
     }
+    for limit in ("effort", "velocity"):  # negative means unlimited in SDFormat
+        if limits.get(limit, "").startswith("-"):
+            del limits[limit]
     if limits:
         whole = {"effort": f"{_UNLIMITED:g}", "velocity": f"{fastest:.12g}", **limits}
         Xml.SubElement(joint, "limit", whole)

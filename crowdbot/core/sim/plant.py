@@ -26,6 +26,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from crowdbot.core.robots import Description, read_description
 from crowdbot.core.robots.simplify import simplified
+from crowdbot.core.sim.drake_failures import drake_failures
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Pose
@@ -102,7 +103,8 @@ def add_plant(
     # With sampled ports the crowd would see the plant after its update: action != reaction.
     plant.SetUseSampledOutputPorts(False)
     try:
-        plant.Finalize()
+        with drake_failures():
+            plant.Finalize()
     except RuntimeError as error:
         raise PluginError(f"the robot cannot be simulated: {error}") from error
     rise = float(described.pose(robot.base, described.root)[2, 3])
@@ -124,7 +126,8 @@ def _parse(
 ) -> ModelInstanceIndex:
     try:
         text, pieces = simplified(described, driven)
-        (model,) = Parser(plant).AddModelsFromString(text, described.format)
+        with drake_failures():
+            (model,) = Parser(plant).AddModelsFromString(text, described.format)
         for piece in pieces:
             body = plant.GetBodyByName(piece.link, model)
             hull = Convex(points=piece.corners.T, label=piece.name)

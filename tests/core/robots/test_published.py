@@ -94,8 +94,10 @@ def test_a_chair_with_fixed_wheels_is_made_to_drive() -> None:
     wheel = described.link("wheel_left").find("inertial/inertia")
     assert wheel is not None
     assert float(wheel.get("iyy", "")) == pytest.approx(0.5 * 1.5 * 0.2**2)
-    swapped = described.differential_drive("to_wheel_left", "to_wheel_right", base="tf_qolo")
-    assert swapped.track < 0.0  # which a robot's check refuses
+    with pytest.raises(
+        PluginError, match=r"'to_wheel_left' is on the right of 'tf_qolo', .*xchange"
+    ):
+        described.differential_drive("to_wheel_left", "to_wheel_right", base="tf_qolo")
 
 
 def _stl(path: Path, corners: np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> None:

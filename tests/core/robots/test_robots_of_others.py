@@ -176,6 +176,17 @@ def test_sdformat_is_made_drivable_too() -> None:
     assert isinstance(model.drive, DifferentialDrive)
     assert model.drive.track == pytest.approx(0.3)
     assert any("ball joint" in note for note in model.notes)
+    assert drive(model, WHEELS, Command(0.2, 0.5), 1.0)[-1].yaw > 0.2  # Drake reads it
+
+
+def test_a_link_on_a_fixed_joint_keeps_its_frame() -> None:
+    mast = (
+        f'<link name="mast"><pose>0 0 0.5 0 0 0</pose>{_inertial(0.1, 1e-4)}</link>'
+        '<joint name="on" type="fixed"><pose>0 0 -0.3 0 0 0</pose><parent>base_link</parent>'
+        "<child>mast</child></joint>"
+    )
+    found = read_description(_cart(wheel=_AT_AXLE, joint=_TURNED.format(x="0 0 0"), more=mast))
+    assert found.pose("mast", "base_link")[:3, 3] == pytest.approx([0.0, 0.0, 0.5])
 
 
 # --------------------------------------------------------------------------------- URDF
@@ -207,6 +218,61 @@ def _published(text: str, shell: str = SHELL + CASTER) -> Description:
     names = [name for name in (*TWO, *FOUR) if f'"{name}"' in text]
     wheels = dict.fromkeys(names, PublishedWheel(0.06, 8.0))
     return read_published(text, wheels=wheels, shell=shell)
+
+
+@pytest.mark.parametrize("axis", ['<axis xyz="0 -1 0"/>', '<axis xyz="0 0 0"/>', ""])
+def test_wheels_that_would_drive_back_or_not_at_all(axis: str) -> None:
+    text = _base(0.0, TWO).replace('<axis xyz="0 1 0"/>', axis)
+    if "-1" not in axis:
+        text = text.replace("continuous", "fixed")
+    found = _published(text)
+    model = check_model(_model(found, found.text))
+    said = "reversed, so that it drives ahead" if "-1" in axis else "fixed is made to turn"
+    assert sum(said in note for note in model.notes) == 2
+    assert drive(model, WHEELS, Command(0.3, 0.0), 1.0)[-1].x > 0.1
+
+
+def test_wheels_along_the_robot_or_exchanged_or_at_two_heights_are_told() -> None:
+    along = _published(_base(0.0, {"left": (0.2, 0.0), "right": (-0.2, -0.01)}))
+    with pytest.raises(PluginError, match="lie along the x axis of 'base_link'"):
+        _model(along, along.text)
+    two = _base(0.0, TWO)
+    with pytest.raises(PluginError, match=r"'right' is on the right .* 'left' on its left: exch"):
+        _model(_published(two), two, left="right", right="left")
+    uneven = _published(two.replace("-0.18 -0.04", "-0.18 -0.05"))
+    with pytest.raises(PluginError, match="'left' and 'right' are 10 mm apart in height"):
+        check_model(_model(uneven, uneven.text))
+
+
+def test_negative_limits_stand_for_none() -> None:
+    text = (
+        _base(0.0, TWO)
+        .replace('velocity="30"', 'velocity="-1"')
+        .replace('effort="8"', 'effort="-1"')
+    )
+    with pytest.raises(PluginError, match="'left' has the velocity limit -1; leave it out"):
+        read_description(text)
+    found = _published(text)
+    assert drive(_model(found, found.text), WHEELS, Command(0.3, 0.0), 1.0)[-1].x > 0.1
+    sdf = CARTS["links at the axle"].replace(
+        "<effort>5</effort>", "<effort>-1</effort><velocity>-1</velocity>"
+    )
+    wheels = dict.fromkeys(("left", "right"), PublishedWheel(0.05, 5.0))
+    made = read_published(sdf, wheels=wheels, shell=SHELL)
+    assert drive(_model(made, made.text), WHEELS, Command(0.2, 0.0), 1.0)[-1].x > 0.05
+
+
+def test_descriptions_without_a_mass_or_a_name() -> None:
+    bare = _base(0.0, TWO)
+    while "<inertial>" in bare:
+        before, rest = bare.split("<inertial>", 1)
+        bare = before + rest.split("</inertial>", 1)[1]
+    with pytest.raises(PluginError, match="no link of the robot's description has a mass: write"):
+        _published(bare)
+    nameless = _base(0.0, TWO).replace(' name="base">', ">", 1)
+    with pytest.raises(PluginError, match="has no name: write <robot name="):
+        read_description(nameless)
+    assert _published(nameless).model.get("name") == "robot"
 
 
 @pytest.mark.parametrize("x", [0.0013, 0.04, -0.02])
@@ -287,6 +353,20 @@ def test_damping_that_holds_a_robot_is_told() -> None:
 def test_macros_are_told_with_what_expands_them(text: str) -> None:
     with pytest.raises(PluginError, match=r"xacro ROBOT\.urdf\.xacro > ROBOT\.urdf"):
         read_description(text)
+
+
+def test_optional_variables_of_the_environment_are_their_defaults(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("IMU_AT", "9 9 9")
+    text = (
+        _base(0.0, TWO)
+        .replace("0 0 0.1", "$(optenv IMU_AT 0 0 0.1)")
+        .replace('damping="0.0"', 'damping="$(optenv DRAG)0"')
+    )
+    found = read_description(text)
+    assert found.pose("base_link", "base_footprint")[2, 3] == pytest.approx(0.1)
+    assert found.notes == ("2 of xacro's properties written out: IMU_AT, DRAG",)
 
 
 @pytest.mark.parametrize(
