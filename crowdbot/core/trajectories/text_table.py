@@ -32,6 +32,8 @@ _RATE = re.compile(
 )
 #: Columns of trajectories of PeTrack and JuPedSim, where no comment names them.
 _TRAJECTORY = ("id", "frame", "x", "y", "z")
+#: What JuPedSim appends: half-axes, angle and colour of the ellipse that is drawn.
+_ELLIPSE = ("a", "b", "angle", "color")
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +122,7 @@ def split(path: Path, text: str) -> TextTable:
         header = _header_of_comments(comments, len(rows[0]))
     assumed = not header and _of_petrack(comments, len(rows[0]))
     if assumed:
-        header = list(_TRAJECTORY[: len(rows[0])])
+        header = list((*_TRAJECTORY, *_ELLIPSE)[: len(rows[0])])
     told = " ".join(comments)
     rate = _frame_rate(path, comments)
     return TextTable(header, rows, numbers, rate, length_unit(told) or 1.0, assumed)
@@ -169,7 +171,7 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
 def _of_petrack(comments: Sequence[str], width: int) -> bool:
     """Return True for a table of PeTrack or JuPedSim, whose columns no comment needs to name."""
     known = any(_RATE.search(c) or "petrack" in c.lower() for c in comments)
-    return known and 4 <= width <= 5
+    return known and width in (4, 5, len(_TRAJECTORY) + len(_ELLIPSE))
 
 
 #: Names of the two coordinates in comments; those of TUM's benchmark come second.
@@ -235,4 +237,6 @@ def _rows(path: Path, text: str, mark: str) -> tuple[list[list[str]], list[int]]
         lines.append(line)
     if not rows:
         raise InputError(f"{path}:1: the file is empty")
+    if width > 2 and all(len(row) == width and not row[-1].strip() for row in rows):
+        rows = [row[:-1] for row in rows]  # each row ends with a separator
     return rows, lines

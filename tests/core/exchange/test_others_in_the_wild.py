@@ -76,13 +76,23 @@ def test_pedsim_clusters_leave_pockets_and_what_is_outside(tmp_path: Path) -> No
     """A cluster over a hollow pillar that sticks out of the house: each person has a way."""
     file = tmp_path / "a.xml"
     file.write_text(f"""<scenario>{_WALLS}<waypoint id="in" x="25" y="10" r="2"/>
-<agent x="5" y="10" n="9" dx="9" dy="6" type="0"><addwaypoint id="in"/></agent></scenario>""")
+<agent x="5" y="10" n="9" dx="18" dy="12" type="0"><addwaypoint id="in"/></agent></scenario>""")
     found = imported(file)
     scenario = document_of(found)["scenario"]
     area = scenario["crowd"]["spawns"]["people"]["area"]
     assert area["centre"][0] - 0.5 * area["size"][0] > 0.3
     assert scenario["environment"]["blocks"]["pocket"]["corners"]
     assert scenario["crowd"]["routing"] == {"kind": "mesh"}
+
+
+def test_pedsim_clusters_are_as_wide_as_they_say(tmp_path: Path) -> None:
+    file = tmp_path / "a.xml"
+    file.write_text("""<scenario><waypoint id="in" x="60" y="0" r="2"/>
+<agent x="5" y="1" n="2" dx="18" dy="12" type="0"><addwaypoint id="in"/></agent></scenario>""")
+    scenario = document_of(imported(file))["scenario"]
+    assert scenario["crowd"]["spawns"]["people"]["area"] == {"centre": [5, 1], "size": [18, 12]}
+    floor = scenario["environment"]["area"]
+    assert floor["x"][1] > 62.0  # the goal is on it
 
 
 def test_pedsim_robots_that_start_in_their_way_point_drive_a_few_metres(tmp_path: Path) -> None:

@@ -400,3 +400,34 @@ def test_a_heading_that_was_not_filled_in_is_told(
     (tmp_path / "r.csv").write_text("t,x,y,yaw\n" + "".join(rows))
     with pytest.warns(RecordingWarning, match=rf"is 0 rad in all samples, {off}\S* rad off"):
         READ.from_csv(tmp_path / "r.csv", **BODY)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "# written by a program\n#framerate: 25\n#unit: m\n",
+        "#framerate: 25\n#X,Y,Z: the agents coordinates (in metres)\n"
+        "#ID\tFR\tX\tY\tZ\tA\tB\tANGLE\tCOLOR\t\n",
+    ],
+)
+@pytest.mark.parametrize("end", ["\n", "\t\n"])
+def test_jupedsims_ellipses_and_rows_that_end_with_a_tab(
+    tmp_path: Path, head: str, end: str
+) -> None:
+    rows = [
+        f"{who}\t{frame}\t{0.05 * frame + who}\t{who}\t0\t0.15\t0.15\t-118.4\t0{end}"
+        for frame in range(9)
+        for who in (31, 32)
+    ]
+    path = tmp_path / "a.txt"
+    path.write_text(head + "".join(rows))
+    for read in (
+        lambda: READ.from_csv(agents=path),
+        lambda: READ.from_eth_ucy(path),
+    ):
+        with pytest.warns(RecordingWarning, match="(?i)columns a, b, angle, color are not used"):
+            run = read()
+        assert run.agents is not None
+        assert run.agents.id.tolist() == [31, 32]
+        assert run.t == pytest.approx(np.arange(9) / 25.0)
+        assert run.agents.x[:, 0] == pytest.approx(31 + 0.05 * np.arange(9))

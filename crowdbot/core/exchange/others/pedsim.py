@@ -30,7 +30,7 @@ SCENARIO = RowTable(
 AGENT = RowTable(
     "agent",
     (
-        Row("@x, @y, @dx, @dy", "crowd.spawns.area", "the middle, and half the width and depth"),
+        Row("@x, @y, @dx, @dy", "crowd.spawns.area", "the middle, and the width and depth"),
         Row("@n", "crowd.spawns.count"),
         Row("@type=0, 1", "crowd.spawns.speed", "adults 1.34 m/s, children 1 m/s"),
         Row("@type=2", "robots", "a TurtleBot2; its way points are its start and goal"),
@@ -153,7 +153,7 @@ def _spawn(
     halves = []
     for name in ("@dx", "@dy"):
         part = item.find(name)
-        halves.append(max(part.number(0.0, 1e5) if part else 0.0, 1.2 * _RADIUS))
+        halves.append(max(0.5 * part.number(0.0, 1e5) if part else 0.0, 1.2 * _RADIUS))
     if people == 0:
         report.left_out(item, "no people: n is 0")
         return
