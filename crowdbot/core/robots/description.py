@@ -318,14 +318,10 @@ def _checked(described: Description) -> Description:
             )
         described.link(joint.parent)
         described.link(joint.child)
-    for element in described.model.findall("joint"):
-        limit = element.find("limit")
-        if limit is not None and limit.get("velocity", "").strip().startswith("-"):
-            raise PluginError(
-                f"joint '{name_of(element)}' has the velocity limit {limit.get('velocity')}; "
-                "leave it out if there is none"
-            )
+    _check_limits(described)
     for name, link in described.links.items():
+        if len(link.findall("inertial")) > 1:
+            raise PluginError(f"link '{name}' has several <inertial>; add them up to one")
         for shape in collisions(link):
             kind = re.split("[:}]", shape.tag)[-1]  # without the prefix of Drake's own shapes
             if kind in _SOLID or is_piece(shape):
@@ -335,6 +331,16 @@ def _checked(described: Description) -> Description:
                 f"link '{name}' collides as a {kind}; use box, cylinder, sphere or capsule{way}"
             )
     return described
+
+
+def _check_limits(described: Description) -> None:
+    for element in described.model.findall("joint"):
+        limit = element.find("limit")
+        if limit is not None and limit.get("velocity", "").strip().startswith("-"):
+            raise PluginError(
+                f"joint '{name_of(element)}' has the velocity limit {limit.get('velocity')}; "
+                "leave it out if there is none"
+            )
 
 
 def _unknown(what: str, name: str, known: Mapping[str, object]) -> str:

@@ -98,6 +98,7 @@ def read_published(
     work.check()
     work.keep_one_tree()
     hold_at(work.robot, work.positions)
+    work.centre_wheels()
     work.drive_with_two()
     work.hold_joints()
     work.replace_meshes(lambda name: _find(name, folder, packages or {}), meshes)
@@ -164,6 +165,13 @@ class _Work:
                 self.robot.remove(joint)
         self.note(loose, "link that does not hang together with the base is left out",
                   "{} links that do not hang together with the base are left out")  # fmt: skip
+
+    def centre_wheels(self) -> None:
+        """Put the frames of driven wheels where the wheels stand, which is what the track is."""
+        for name, wheel in self.wheels.items():
+            if wheel.effort is not None:
+                note = drives.centre_wheel(self.robot, self.base, self.joints[name])
+                self.notes += [note] if note else []
 
     def drive_with_two(self) -> None:
         """Let one wheel of each side stand for all driven ones, and bring the base above them."""
@@ -280,6 +288,13 @@ class _Work:
     def weigh(self) -> None:
         """Replace impossible inertias."""
         impossible, implausible = list[str](), list[str]()
+        several = list[str]()
+        for name, link in self.links.items():
+            for more in link.findall("inertial")[1:]:
+                link.remove(more)
+                several.append(name)
+        self.note(several, "link has a further <inertial>, which is left out",
+                  "{} further <inertial> of links are left out")  # fmt: skip
         turned = {child_of(self.joints[n]): w for n, w in self.wheels.items()}
         for name, link in self.links.items():
             inertial = link.find("inertial")

@@ -17,6 +17,7 @@ _SAME = 1e-3
 #: Cosine of the largest angle between directions that are taken for opposite.
 _OPPOSITE = -0.999
 _PARTS = ("inertial", "visual", "collision")
+_ROUND = ("sphere", "cylinder")
 
 
 def places_of(robot: Xml.Element, base: str, joints: Sequence[str]) -> dict[str, Array]:
@@ -80,6 +81,32 @@ def onto_axle(robot: Xml.Element, base: str, driven: Sequence[str]) -> str:
         f"'{base}' is moved {1e3 * abs(ahead):.3g} mm {'ahead' if ahead > 0.0 else 'back'}, onto "
         "the axle of the driven wheels; sensors are mounted from there"
     )
+
+
+def centre_wheel(robot: Xml.Element, base: str, joint: Xml.Element) -> str:
+    """Move a wheel's frame along its axis to the middle of its round shapes; return a note."""
+    name, wheel = name_of(joint), child_of(joint)
+    link = next(e for e in robot.findall("link") if name_of(e) == wheel)
+    shapes = [
+        shape
+        for shape in link.findall("collision")
+        if any(shape.find(f"geometry/{kind}") is not None for kind in _ROUND)
+    ]
+    if not shapes:
+        return ""
+    described = Description("", "urdf", robot)
+    along = described.pose(wheel, base)[:3, :3].T @ (0.0, 1.0, 0.0)
+    by = float(np.mean([matrix(pose_of(c))[:3, 3] @ along for c in shapes]))
+    if abs(by) <= _SAME:
+        return ""
+    for part in (p for kind in _PARTS for p in link.findall(kind)):
+        _shift(part, -by * along)
+    for other in robot.findall("joint"):
+        if parent_of(other) == wheel:
+            _shift(other, -by * along)
+    _shift(joint, matrix(pose_of(joint))[:3, :3] @ (by * along))
+    side = "left" if by > 0.0 else "right"
+    return f"the middle of the wheel is {1e3 * abs(by):.3g} mm to the {side} of its joint: {name}"
 
 
 def point_left(robot: Xml.Element, base: str, joint: Xml.Element) -> str:

@@ -107,6 +107,7 @@ def sorted_plan(
     for shape, properties in found:
         _sort_in(in_metres(shape, spec, name), properties, spec, plan, name)
     _check_cover(plan.walkable, name)
+    _check_swallowed(found, plan.walkable, spec, name)
     return plan
 
 
@@ -270,6 +271,25 @@ def _check_cover(walkable: Iterable[Any], name: str) -> None:
         _LOG.warning(
             "%s: polygons of the floor lie upon each other, %.3g m² of it, and are joined; if "
             "they are storeys, keep one of them", name, twice,
+        )  # fmt: skip
+
+
+def _check_swallowed(
+    found: Iterable[_Found], walkable: list[Any], spec: FloorPlanFields, name: str
+) -> None:
+    """Warn of polygons that say nothing about themselves and lie on the floor of another one."""
+    if spec.polygons != "walkable" or len(walkable) < 2:
+        return
+    said = [properties for _, properties in found if kind_of(properties) in _FLOOR]
+    floors = [valid_shape(p) for p in walkable]
+    inner, outer = shapely.STRtree(floors).query(floors, predicate="within")
+    areas = shapely.area(floors)
+    swallowed = {int(i) for i, o in zip(inner, outer, strict=True) if areas[i] < areas[o]}
+    if swallowed and not said:
+        _LOG.warning(
+            "%s: %d of its polygons lie within others and change nothing, since all are floor: "
+            "obstacles have the property \"kind\": \"obstacle\", and rooms need no polygon around "
+            "them", name, len(swallowed),
         )  # fmt: skip
 
 

@@ -65,6 +65,19 @@ def test_vadere_sources_spawn_at_the_mean_rate_of_their_distribution(
     assert arrivals.items() <= list(streams.values())[1]["arrivals"].items()
 
 
+@pytest.mark.parametrize("newer", [False, True])
+def test_vadere_sources_of_cars_let_no_people_in(tmp_path: Path, newer: bool) -> None:
+    deck = json.loads((FILES / "vadere.scenario").read_text())
+    sources = deck["scenario"]["topography"]["sources"]
+    for source in sources[1:]:
+        (source.setdefault("spawner", {}) if newer else source)["dynamicElementType"] = "CAR"
+    file = tmp_path / "a.scenario"
+    file.write_text(json.dumps(deck))
+    found = imported(file)
+    assert len(document_of(found)["scenario"]["crowd"]["streams"]) == 1
+    assert any(entry.note == "there are no cars" for entry in found.report.entries)
+
+
 _WALLS = "".join(
     f'<obstacle x1="{a}" y1="{b}" x2="{c}" y2="{d}"/>'
     for a, b, c, d in [(0, 0, 30, 0), (30, 0, 30, 20), (30, 20, 0, 20), (0, 20, 0, 0),

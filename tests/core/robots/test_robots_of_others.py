@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.robots.check import check_model
+from crowdbot.core.robots.xml import matrix
 from crowdbot.errors import PluginError
 from crowdbot.plugin import (
     Command,
@@ -244,6 +245,30 @@ def test_wheels_along_the_robot_or_exchanged_or_at_two_heights_are_told() -> Non
         check_model(_model(uneven, uneven.text))
 
 
+@pytest.mark.parametrize("rpy", ["0 0 0", "-1.570796327 0 0", "1.570796327 0 0.3"])
+def test_a_wheel_beside_its_joint_stands_where_its_shape_is(rpy: str) -> None:
+    text = _base(0.0, TWO)
+    for side in (1.0, -1.0):  # a wheel's own frame is turned; its shape lies outside of the joint
+        turn = matrix([0.0, 0.0, 0.0, *(float(x) for x in rpy.split())])[:3, :3]
+        x, y, z = turn.T @ (0.0, 0.02 * side, 0.0)
+        ax, ay, az = turn.T @ (0.0, 1.0, 0.0)
+        old = f'{0.18 * side} -0.04"/><axis xyz="0 1 0"/>'
+        text = text.replace(old, f'{0.18 * side} -0.04" rpy="{rpy}"/><axis xyz="{ax} {ay} {az}"/>')
+        name = "left" if side > 0 else "right"
+        shape = (
+            f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="0.06"/></geometry>'
+        )
+        text = text.replace(
+            f'<link name="{name}_wheel">', f'<link name="{name}_wheel">{shape}</collision>'
+        )
+    found = _published(text)
+    model = check_model(_model(found, found.text))
+    assert isinstance(model.drive, DifferentialDrive)
+    assert model.drive.track == pytest.approx(0.4)
+    assert "the middle of the wheel is 20 mm to the left of its joint: left" in found.notes
+    assert drive(model, WHEELS, Command(0.0, 0.5), 1.0)[-1].yaw == pytest.approx(0.4, abs=0.1)
+
+
 def test_negative_limits_stand_for_none() -> None:
     text = (
         _base(0.0, TWO)
@@ -260,6 +285,16 @@ def test_negative_limits_stand_for_none() -> None:
     wheels = dict.fromkeys(("left", "right"), PublishedWheel(0.05, 5.0))
     made = read_published(sdf, wheels=wheels, shell=SHELL)
     assert drive(_model(made, made.text), WHEELS, Command(0.2, 0.0), 1.0)[-1].x > 0.05
+
+
+def test_a_link_with_two_inertias_is_told() -> None:
+    text = _base(0.0, TWO).replace("</inertial></link>", '</inertial><inertial><mass value="0.5"/>'
+        '<inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>', 1)  # fmt: skip
+    with pytest.raises(PluginError, match="'base_link' has several <inertial>; add them up"):
+        read_description(text)
+    found = _published(text)
+    assert found.mass == pytest.approx(12.0)
+    assert "link has a further <inertial>, which is left out: base_link" in found.notes
 
 
 def test_descriptions_without_a_mass_or_a_name() -> None:

@@ -421,12 +421,9 @@ def test_jupedsims_ellipses_and_rows_that_end_with_a_tab(
     ]
     path = tmp_path / "a.txt"
     path.write_text(head + "".join(rows))
-    for read in (
-        lambda: READ.from_csv(agents=path),
-        lambda: READ.from_eth_ucy(path),
-    ):
+    for as_table in (True, False):
         with pytest.warns(RecordingWarning, match="(?i)columns a, b, angle, color are not used"):
-            run = read()
+            run = READ.from_csv(agents=path) if as_table else READ.from_eth_ucy(path)
         assert run.agents is not None
         assert run.agents.id.tolist() == [31, 32]
         assert run.t == pytest.approx(np.arange(9) / 25.0)

@@ -417,6 +417,18 @@ def test_solids_by_another_name_are_told(
     assert "taken for floor" not in caplog.text
 
 
+def test_polygons_on_the_floor_of_others_are_told(tmp_path: Path, caplog: Log) -> None:
+    block = "POLYGON ((2 1, 4 1, 4 2, 2 2, 2 1))"
+    path = _geojson(tmp_path, (HALL, {"group": "boundary"}), (block, {"group": "objects"}))
+    assert not _solid(_plan(file=path)).area
+    assert "1 of its polygons lie within others and change nothing" in caplog.text
+    caplog.clear()
+    _plan(file=path, polygons="obstacles")
+    _plan(file=_geojson(tmp_path, (HALL, {}), (block, {"kind": "obstacle"})))
+    _plan(file=_geojson(tmp_path, (HALL, {}), (block, {"kind": "walkable"})))
+    assert "change nothing" not in caplog.text
+
+
 def test_a_walkable_line_is_no_wall(tmp_path: Path, caplog: Log) -> None:
     path = _geojson(tmp_path, (HALL, {}), ("LINESTRING (4 1, 4 4)", {"kind": "walkable"}))
     assert not _plan(file=path).solids

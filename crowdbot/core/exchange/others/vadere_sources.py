@@ -31,6 +31,11 @@ def add_source(item: Item, into: Topography) -> None:
         SpecError: E402, a value cannot be.
     """
     report, scene = into.report, into.scene
+    for holder in (item, item.find("spawner") or item):
+        kind = holder.find("dynamicElementType")
+        if kind is not None and kind.value is not None and kind.text() != "PEDESTRIAN":
+            report.left_out(item, "there are no cars")
+            return
     area = read_area(item.need("shape"), report)
     spawner = item.find("spawner") or item
     fields = report.take(spawner, SOURCE)
