@@ -26,6 +26,16 @@ _SOLID_WORDS = re.compile(
 )
 
 
+_DOOR_WORDS = re.compile(r"(doors?|openings?|entrances?|exits?)(way|ways)?", re.IGNORECASE)
+
+
+def is_door(properties: dict[str, Any]) -> bool:
+    """Return True if a property of another name than ``kind`` says that a feature is an opening."""
+    return any(
+        _DOOR_WORDS.fullmatch(str(properties.get(name, "")).strip()) for name in _OTHER_KINDS
+    )
+
+
 def in_small_letters(properties: dict[str, Any]) -> dict[str, Any]:
     """Return properties with lower-case names; shape files write them in capitals."""
     lower = {str(name).lower(): value for name, value in properties.items()}

@@ -18,6 +18,7 @@ from crowdbot.plugin.for_environments import parse_foreign_json, valid_shape
 from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_properties_build import (
     in_small_letters,
+    is_door,
     kind_of,
     label_of,
     levels_of,
@@ -37,6 +38,7 @@ _SOLID, _FLOOR, _NEITHER = ("obstacle", "wall"), ("walkable",), ("zone", "portal
 _KINDS = (*_FLOOR, *_SOLID, *_NEITHER)
 _WITH_SIDES = ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "GeometryCollection")
 _POINTS = ("Point", "MultiPoint")
+_LINES = ("LineString", "MultiLineString")
 #: Geometries at heights that differ by more lie on different storeys, m.
 _STOREY = 2.0
 #: Part of the floor that may be covered twice without a warning.
@@ -150,6 +152,8 @@ def _features(content: Any, name: str, aside: Counter[str]) -> Iterator[_Found]:
         if geometry is None:
             aside["without geometry"] += 1
             return
+        if (of_imdf := content.get("feature_type")) is not None:
+            properties = {"feature_type": of_imdf, **properties}
         for shape, _ in _features(geometry, name, aside):
             yield shape, in_small_letters(properties)
     elif kind in (*_WITH_SIDES, *_POINTS):
@@ -209,8 +213,10 @@ def _is_of_place(shape: Any, properties: dict[str, Any], name: str, aside: Count
         return False
     if shape.geom_type in _POINTS:
         aside["that are points"] += 1
-    elif kind in _FLOOR and shape.geom_type in ("LineString", "MultiLineString"):
+    elif kind in _FLOOR and shape.geom_type in _LINES:
         aside[f"of kind '{kind}' that are lines"] += 1
+    elif not kind and shape.geom_type in _LINES and is_door(properties):
+        aside["that are lines of doors or openings"] += 1
     elif shape.is_empty:
         aside["with an empty geometry"] += 1
     elif shape.length == 0.0:

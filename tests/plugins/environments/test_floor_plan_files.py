@@ -429,6 +429,18 @@ def test_polygons_on_the_floor_of_others_are_told(tmp_path: Path, caplog: Log) -
     assert "change nothing" not in caplog.text
 
 
+@pytest.mark.parametrize("where", ["feature", "type", "indoor"])
+def test_doors_that_are_lines_are_no_walls(tmp_path: Path, caplog: Log, where: str) -> None:
+    door = {} if where == "feature" else {where: "Door"}
+    path = _geojson(tmp_path, (HALL, {}), ("LINESTRING (4 1, 4 4)", door))
+    if where == "feature":  # as in IMDF
+        content = json.loads(Path(path).read_text())
+        content["features"][1]["feature_type"] = "opening"
+        Path(path).write_text(json.dumps(content))
+    assert not _plan(file=path).solids
+    assert "left out: 1 feature(s) that are lines of doors or openings" in caplog.text
+
+
 def test_a_walkable_line_is_no_wall(tmp_path: Path, caplog: Log) -> None:
     path = _geojson(tmp_path, (HALL, {}), ("LINESTRING (4 1, 4 4)", {"kind": "walkable"}))
     assert not _plan(file=path).solids
