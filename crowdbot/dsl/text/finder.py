@@ -37,7 +37,9 @@ class Finder:
         """
         prefix, colon, rest = text.rpartition(":")
         if PurePosixPath(rest).is_absolute() or PureWindowsPath(text).drive or "\0" in text:
-            return Diagnostic("E203", f"'{text}' is not a relative path", mark)
+            name = PureWindowsPath(text.replace("\0", "")).name
+            hint = f"copy it beside {self.top.name} and write '{name}'" if name else ""
+            return Diagnostic("E203", f"'{text}' is not a relative path", mark, hint)
         if colon and prefix not in self.roots:
             hint = did_you_mean(nearest(prefix, self.roots)).removeprefix("; ")
             hint = hint or f"is the package providing '{prefix}' installed?"

@@ -189,3 +189,11 @@ def test_a_file_that_is_no_record_is_named(study: Path) -> None:
     (study / "data" / "people.csv").write_text("t,id,x,y\n0,7,10\n")
     with pytest.raises(InputError, match=r"people.csv:2: '0,7,10' is not t,id,x,y"):
         realise(only(study / "x.yaml"))
+
+
+@pytest.mark.parametrize("path", ["/home/me/maps/people.csv", "'C:\\maps\\people.csv'"])
+def test_absolute_paths_are_told_where_to_copy_the_file(study: Path, path: str) -> None:
+    text = DOCUMENT + f"  crowd: {{policy: {{kind: replay, file: {path}}}}}\n"
+    (study / "x.yaml").write_text(text)
+    with pytest.raises(SpecError, match=r"copy it beside x\.yaml and write 'people\.csv'"):
+        only(study / "x.yaml")
