@@ -83,12 +83,27 @@ def _by_format(opened: Sequence[OpenedScene]) -> dict[str, list[OpenedScene]]:
     return found
 
 
+#: A tag of files other than scenes; what they are, and what a scenario reads them with.
+_ELSEWHERE = (
+    ("robot", "a scenario reads a robot's URDF", "robots.robot.model: {{kind: urdf, file: {}}}"),
+    ("sdf", "a scenario reads a robot's SDFormat", "robots.robot.model: {{kind: urdf, file: {}}}; "
+     "worlds of Gazebo are not read, maps made of them are"),
+    ("occupied_thresh", "a scenario reads a map of ROS",
+     "environment: {{kind: floor_plan, file: {}}}"),
+    ("features", "a scenario reads GeoJSON", "environment: {{kind: floor_plan, file: {}}}"),
+)  # fmt: skip
+
+
 def _format_of(file: OpenedScene) -> SceneFormat:
     for form in FORMATS.values():
         if form.fits(file):
             return form
     shown = ", ".join(sorted(file.tags)[:5]) or "plain text"
     message = f"a file of no known format (it has: {shown[:100]})"
-    hint = f"known are {', '.join(form.title for form in FORMATS.values())}"
+    hint = next(
+        (f"{what} with {way.format(file.path.name)}" for tag, what, way in _ELSEWHERE
+         if tag in file.tags),
+        f"known are {', '.join(form.title for form in FORMATS.values())}",
+    )  # fmt: skip
     mark = file.roots[0].mark if file.roots else file.top
     raise SpecError([Diagnostic("E403", message, mark, hint)])

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from shapely import Point, from_wkt  # type: ignore[import-untyped,unused-ignore]
 
+from crowdbot.errors import SpecError
 from tests.core.exchange.importing import FILES, document_of, imported, notes
 
 _ROOM = "POLYGON ((0 0, 20 0, 20 10, 0 10, 0 0))"
@@ -114,3 +115,24 @@ def test_pedsim_robots_that_start_in_their_way_point_drive_a_few_metres(tmp_path
 <agent x="26" y="10" n="1" dx="0" dy="0" type="2"><addwaypoint id="in"/></agent></scenario>""")
     zone = document_of(imported(file))["scenario"]["environment"]["zones"]["robot_goal"]
     assert zone == {"x": [20.5, 21.5], "y": [9.5, 10.5]}  # behind it, since a wall is ahead
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "way"),
+    [
+        ("a.urdf", '<robot name="r"><link name="l"/></robot>', "{kind: urdf, file: a.urdf}"),
+        ("a.world", '<sdf version="1.6"><world name="w"/></sdf>', "worlds of Gazebo are not read"),
+        ("map.yaml", "image: m.pgm\nresolution: 0.05\noccupied_thresh: 0.65\n",
+         "{kind: floor_plan, file: map.yaml}"),
+        ("a.geojson", '{"type": "FeatureCollection", "features": []}', "{kind: floor_plan,"),
+        ("a.json", '{"robots": [], "obstacles": {}}', "known are the original's trials"),
+    ],
+)  # fmt: skip
+def test_files_that_are_no_scenes_are_told_where_they_are_read(
+    tmp_path: Path, name: str, text: str, way: str
+) -> None:
+    file = tmp_path / name
+    file.write_text(text)
+    with pytest.raises(SpecError, match="E403") as caught:
+        imported(file)
+    assert way in str(caught.value)
