@@ -1,4 +1,4 @@
-"""Rehearsal: the first of several plans that touches no one beside the people foreseen."""
+"""Rehearsal: the first of several plans that has no trouble with the people foreseen."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from crowdbot.plugin import Array, Pose, Truth
-from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal
+from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal, Trial
 from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP
 
 ROBOT = np.array([[0.0, 0.0, 0.2]])
@@ -18,6 +18,10 @@ HERE = (0.0, 0.0, 0.0)
 def straight(speed: float, heading: float = 0.0, steps: int = 10) -> Array:
     way = speed * STEP * np.arange(1, steps + 1)
     return np.column_stack([way * np.cos(heading), way * np.sin(heading), np.full(steps, heading)])
+
+
+def trials(paths: list[Array], *, stops: bool = False) -> list[Trial]:
+    return [Trial(number, path, stops) for number, path in enumerate(paths)]
 
 
 class People:
@@ -50,7 +54,7 @@ class People:
 def test_the_first_clear_plan_is_taken() -> None:
     ahead = People([[1.0, 0.0, 0.0, 0.0]])
     plans = [straight(0.65), straight(0.65, 0.1), straight(0.65, 1.2), straight(0.0)]
-    assert Rehearsal(1.5, ROBOT).first_clear(ahead.truth(), enumerate(plans), HERE) == 2
+    assert Rehearsal(1.5, ROBOT).first_clear(ahead.truth(), trials(plans), HERE) == 2
 
 
 def test_what_people_do_for_a_plan_decides() -> None:
@@ -58,7 +62,7 @@ def test_what_people_do_for_a_plan_decides() -> None:
     crossing = [[0.7, 0.9, 0.0, -0.9]]
     plans = [straight(0.65), straight(0.0)]
     found = [
-        Rehearsal(1.5, ROBOT).first_clear(People(crossing, shy=shy).truth(), enumerate(plans), HERE)
+        Rehearsal(1.5, ROBOT).first_clear(People(crossing, shy=shy).truth(), trials(plans), HERE)
         for shy in (False, True)
     ]
     assert found == [1, 0]
@@ -67,18 +71,38 @@ def test_what_people_do_for_a_plan_decides() -> None:
 def test_a_robot_that_stands_touches_no_one() -> None:
     comes = People([[0.8, 0.0, -1.0, 0.0]])
     plans = [straight(0.65), straight(0.0)]
-    assert Rehearsal(1.5, ROBOT).first_clear(comes.truth(), enumerate(plans), HERE) == 1
+    assert Rehearsal(1.5, ROBOT).first_clear(comes.truth(), trials(plans), HERE) == 1
+
+
+def test_where_a_plan_may_end_in_a_stop_no_one_walks_into_it_either() -> None:
+    """A robot that has just cut in is at fault even if it stands."""
+    comes = People([[1.5, 0.0, -1.0, 0.0]])
+    beginning = trials([straight(0.0)], stops=True)
+    both = [*beginning, Trial(1, straight(0.65, 1.4), stops=False)]
+    assert Rehearsal(1.5, ROBOT).first_clear(comes.truth(), both, HERE) == 1
+
+
+def test_a_plan_that_drives_someone_aside_is_not_taken() -> None:
+    """A person ahead hurries away from the robot, who is never touched."""
+    flees = People([[0.5, 0.0, 0.0, 0.0]])
+    times = STEP * np.arange(1, 11)
+    gain = np.zeros((10, 1, 2))
+    gain[:, 0, 0] = 0.5 * times**2
+    foresee = flees._foresee
+    flees._foresee = lambda *given: foresee(*given) + gain  # type: ignore[method-assign]
+    plans = trials([straight(0.65), straight(0.3)])
+    assert Rehearsal(1.5, ROBOT).first_clear(flees.truth(), plans, HERE) == 1
 
 
 def test_of_plans_that_all_touch_the_last_to_do_so() -> None:
     around = People([[np.cos(a), np.sin(a), 0.0, 0.0] for a in np.linspace(0.0, 6.0, 20)])
     plans = [straight(0.65), straight(0.5), straight(0.6)]
-    assert Rehearsal(1.5, ROBOT).first_clear(around.truth(), enumerate(plans), HERE) == 1
+    assert Rehearsal(1.5, ROBOT).first_clear(around.truth(), trials(plans), HERE) == 1
 
 
 def test_the_crowd_is_not_asked_where_no_one_is_near() -> None:
     far = People([[9.0, 0.0, -0.5, 0.0]])
-    assert Rehearsal(1.5, ROBOT).first_clear(far.truth(), enumerate([straight(0.65)]), HERE) == 0
+    assert Rehearsal(1.5, ROBOT).first_clear(far.truth(), trials([straight(0.65)]), HERE) == 0
     assert far.asked == 0
 
 
@@ -92,16 +116,16 @@ def test_every_disc_of_the_robot_counts(yaw: float) -> None:
     stays = straight(0.0)
     stays[:, 2] = yaw + 2.0
     plans = [turning, stays]
-    assert Rehearsal(1.5, long).first_clear(beside.truth(), enumerate(plans), (0.0, 0.0, yaw)) == 1
+    assert Rehearsal(1.5, long).first_clear(beside.truth(), trials(plans), (0.0, 0.0, yaw)) == 1
 
 
 def test_further_plans_are_not_made_before_they_are_needed() -> None:
     made = []
 
-    def plans() -> Iterator[tuple[int, Array]]:
+    def plans() -> Iterator[Trial]:
         for number in range(3):
             made.append(number)
-            yield number, straight(0.65)
+            yield Trial(number, straight(0.65), stops=False)
 
     assert (
         Rehearsal(1.5, ROBOT).first_clear(People([[9.0, 3.0, 0.0, 0.0]]).truth(), plans(), HERE)
@@ -113,4 +137,4 @@ def test_further_plans_are_not_made_before_they_are_needed() -> None:
 def test_an_empty_crowd() -> None:
     empty = People(np.zeros((0, 4)).tolist())
     empty.rows = np.zeros((0, 4))
-    assert Rehearsal(1.5, ROBOT).first_clear(empty.truth(), enumerate([straight(0.65)]), HERE) == 0
+    assert Rehearsal(1.5, ROBOT).first_clear(empty.truth(), trials([straight(0.65)]), HERE) == 0

@@ -12,7 +12,6 @@ from crowdbot.plugin import (
     NonNegativeDuration,
     NonNegativeLength,
     PlannerRole,
-    PositiveDuration,
     PositiveLength,
 )
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction import CrowdPredictionSpec
@@ -23,7 +22,8 @@ class OracleSpec(CrowdPredictionSpec):
     """Plans as `people_mpc`, knowing people's positions, sizes and when they notice the robot.
 
     People are predicted by the crowd engine as if the robot was not there. In each plan those who
-    notice it then give way. With ``foresight`` the crowd itself walks on instead.
+    notice it then give way. The best plan is tried beside the crowd of the run before it is driven;
+    where that cannot be asked, the robot keeps the clearances of ``people_mpc``.
     """
 
     role: ClassVar[PlannerRole] = "ceiling"
@@ -36,58 +36,18 @@ class OracleSpec(CrowdPredictionSpec):
     )
     speeds: Annotated[int, Ge(2), Le(16)] = Field(default=6, description="First speeds.")
     yaw_rates: Annotated[int, Ge(3), Le(32)] = Field(default=15, description="First yaw rates.")
+    margin: NonNegativeLength = Field(
+        default=0.03, description="Clearance below which a plan counts as a hit, m."
+    )
     comfort: PositiveLength = Field(
-        default=0.3, description="Clearance above which more is no better, m."
-    )
-    foresight: bool = Field(
-        default=False,
-        exclude_if=lambda value: not value,  # hashes are as without it
-        description="Let the crowd of the run walk on to see where people will be, and choose by "
-        "the shortest time to the goal among them.",
-    )
-    look_again: PositiveDuration = Field(
-        default=0.5,
-        exclude_if=lambda value: value == 0.5,
-        description="Time after which people are foreseen again, s.",
-    )
-    far_horizon: PositiveDuration = Field(
-        default=8.0,
-        le=20.0,
-        exclude_if=lambda value: value == 8.0,
-        description="How far people are foreseen, s.",
-    )
-    far_margin: NonNegativeLength = Field(
-        default=0.05,
-        exclude_if=lambda value: value == 0.05,
-        description="Clearance that is kept in the shortest time to the goal, m.",
-    )
-    through: Weight = Field(
-        default=0.1,
-        exclude_if=lambda value: value == 0.1,
-        description="What a second in place of a person who sees the robot costs there, s.",
-    )
-    into: Weight = Field(
-        default=10.0,
-        exclude_if=lambda value: value == 10.0,
-        description="The same for a person who sees it late or never, s.",
+        default=0.15, description="Clearance above which more is no better, m."
     )
     rehearse: NonNegativeDuration = Field(
-        default=0.0,
-        exclude_if=lambda value: value == 0.0,
+        default=2.4,
         description="A plan is first tried beside the crowd of the run for this time, and another "
-        "one driven if it touches someone, s; 0: never.",
+        "one driven if it touches someone or drives someone aside, s; 0: never.",
     )
-    hurry: Weight = hurry_field(1.0)
-    hurry_within: PositiveDuration = Field(
-        default=10.0,
-        exclude_if=lambda value: value == 10.0,
-        description="Only this first part of a plan counts for `hurry`, s.",
-    )
-    hurry_room: NonNegativeLength = Field(
-        default=0.0,
-        exclude_if=lambda value: value == 0.0,
-        description="A person passed closer than this counts as reached, m.",
-    )
+    hurry: Weight = hurry_field(0.0)
 
 
 ORACLE = Component(

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
 from crowdbot.plugin import Array, Truth
+from crowdbot.plugins.planners.oracle.forced_build import Forced
 from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP
 
 #: A smaller gap counts as a touch, m.
@@ -18,8 +20,23 @@ _STANDS = 0.05 * STEP
 _FAR = 0.8
 
 
+class Trial(NamedTuple):
+    """A path that is tried for a plan.
+
+    Attributes:
+        number: of the plan.
+        path: (S, 3) poses after each step, m, rad.
+        stops: True if the path ends in a stop instead of going on as planned; then no one may
+            touch the robot where it stands either.
+    """
+
+    number: int
+    path: Array
+    stops: bool
+
+
 class Rehearsal:
-    """Finds the first of several plans that touches no one.
+    """Finds the first of several plans that touches no one and drives no one aside.
 
     Attributes:
         steps: of a path that are tried.
@@ -31,30 +48,37 @@ class Rehearsal:
 
     def __init__(self, time: float, robot: Array) -> None:
         self.steps, self._robot = math.ceil(time / STEP), robot
+        self._forced = Forced(robot)
 
-    def first_clear(
-        self, truth: Truth, paths: Iterable[tuple[int, Array]], pose: tuple[float, ...]
-    ) -> int:
-        """Return the number of a path; if all touch someone, of the one that does so last.
+    def see(self, t: float, truth: Truth) -> None:
+        """Note how people moved since the last step."""
+        self._forced.see(t, truth)
+
+    def first_clear(self, truth: Truth, trials: Iterable[Trial], pose: tuple[float, ...]) -> int:
+        """Return the number of the first path without trouble.
+
+        If there is none: of the one that touches someone last, then drives someone aside last.
 
         Args:
             truth: of a crowd that can be foreseen.
-            paths: number and poses (S, 3) after each step, the wanted one first. They are read
-                only as far as needed.
+            trials: the wanted plan first. They are read only as far as needed.
             pose: now.
         """
         assert truth.foresee is not None
-        latest, best = -1.0, 0
-        for at, (number, path) in enumerate(paths):
+        latest, best = (-1.0, -1.0), 0
+        for at, (number, path, stops) in enumerate(trials):
             poses = np.vstack([[pose], path[: self.steps]])
             if at == 0 and self._is_far(truth, poses):
                 return number
             people = truth.foresee(len(poses) - 1, STEP, poses)
-            touch = self._touched(poses, people, truth.people_radius)
-            if touch == math.inf:
+            trouble = (
+                self._touched(poses, people, truth.people_radius, stands=stops),
+                self._forced.when(truth, people, poses),
+            )
+            if min(trouble) == math.inf:
                 return number
-            if touch > latest:
-                latest, best = touch, number
+            if trouble > latest:
+                latest, best = trouble, number
         return best
 
     def _is_far(self, truth: Truth, poses: Array) -> bool:
@@ -74,9 +98,17 @@ class Rehearsal:
             found = np.minimum(found, np.hypot(dx, dy) - own - radius)
         return found
 
-    def _touched(self, poses: Array, people: Array, radius: Array) -> float:
-        """Return the time of the first touch while the robot moves, s; infinite without one."""
+    def _touched(self, poses: Array, people: Array, radius: Array, *, stands: bool) -> float:
+        """Return the time of the first touch, s; infinite without one.
+
+        Args:
+            poses: (T + 1, 3) of the robot now and after each step.
+            people: (T, N, 2), m.
+            radius: (N,), m.
+            stands: True if touches of a robot that stands count, too.
+        """
         moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) > _STANDS
+        moves |= stands
         hits = np.flatnonzero((self._gaps(poses, people, radius).min(axis=1) < _TOUCH) & moves)
         return math.inf if len(hits) == 0 else STEP * float(hits[0] + 1)
 

@@ -11,7 +11,7 @@ from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_as
 from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.people_mpc import plans_build as plans
 from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
-from crowdbot.plugins.planners.people_mpc.plan_world_build import UNKNOWN, PlanWorld, TimeToGo
+from crowdbot.plugins.planners.people_mpc.plan_world_build import PlanWorld
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
@@ -76,7 +76,6 @@ class PeopleMpc:
             (9.0, 0.0),
             IGNORE,
             np.ones((1, 5)),
-            UNKNOWN,
         )
         state = (0.0,) * 6
         plans.best_plan(world, self._p, state, np.zeros((1, 3)), self._last, 0.0)
@@ -107,7 +106,7 @@ class PeopleMpc:
         world = PlanWorld(
             people, self.predicted(obs, scene, rows, waypoint),
             self._field.values, self._field.corner, self._robot, waypoint, self.yields(obs, rows),
-            np.empty_like(people), self.to_go(obs, scene, waypoint),
+            np.empty_like(people),
         )  # fmt: skip
         at, aside, pace, cost = plans.best_plan(
             world, self._p, state, firsts, self._last, self._aside
@@ -134,19 +133,6 @@ class PeopleMpc:
         """
         del obs, scene, rows, waypoint
         return KEPT
-
-    def to_go(
-        self, obs: Observation, scene: PlannerScene, waypoint: tuple[float, float]
-    ) -> TimeToGo:
-        """Return the time to the goal from places ahead; here: it is not known.
-
-        Args:
-            obs: for its time and the truth.
-            scene: the surroundings.
-            waypoint: point that the robot drives to, m.
-        """
-        del obs, scene, waypoint
-        return UNKNOWN
 
     def parameters(self, limits: RobotLimits) -> Array:
         """Return the parameters of plans."""

@@ -15,7 +15,6 @@ from crowdbot.plugins.planners.people_mpc.plan_world_build import (
     at_first,
     extent_of,
     gaps,
-    way_left,
 )
 from crowdbot.plugins.planners.shared.points_build import wrapped
 
@@ -141,7 +140,8 @@ def roll(
     person, wall = gaps(world, x, y, yaw, 0.0)
     need = min(p[MARGIN], min(person, wall) - _SLACK)
     close, t, total, beside, hurried = 0.0, 0.0, 0.0, 0.0, 0.0
-    start, scale = way_left(world, x, y, 0.0, p[V_MAX]), 2.0 / (p[V_MAX] * p[HORIZON])
+    gx, gy = world.goal[0] - x, world.goal[1] - y
+    start, scale = math.sqrt(gx * gx + gy * gy), 2.0 / (p[V_MAX] * p[HORIZON])
     while t < p[HORIZON] - 0.5 * STEP:
         t += STEP
         gx, gy = world.goal[0] - x, world.goal[1] - y
@@ -172,7 +172,8 @@ def roll(
             if soon < p[HURRY_ROOM]:
                 hurried += STEP / p[HORIZON] * (1.0 - 0.6 * t / p[HORIZON])
         gap = min(person, wall)
-        away = way_left(world, x, y, t, p[V_MAX])
+        gx, gy = world.goal[0] - x, world.goal[1] - y
+        away = math.sqrt(gx * gx + gy * gy)
         if gap < need:
             speed = math.sqrt(v * v + vy * vy)
             mean = (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON]
@@ -211,7 +212,7 @@ def best_plan(
     """
     best, at, at_aside, at_pace = math.inf, -1, 0, 0
     gx, gy = world.goal[0] - state[0], world.goal[1] - state[1]
-    away = way_left(world, state[0], state[1], 0.0, p[V_MAX])
+    away = math.sqrt(gx * gx + gy * gy)
     going = math.sqrt(state[3] ** 2 + state[5] ** 2)
     outlined = world.robot.shape[0] > 1
     turned = abs(wrapped(math.atan2(gy, gx) - state[2]))
