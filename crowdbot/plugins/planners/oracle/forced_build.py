@@ -7,11 +7,10 @@ import math
 import numpy as np
 
 from crowdbot.plugin import Array, Truth
-from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP
 
 #: Work per mass that a plan may bring a person to, J/kg; above `_DRIVEN` the person counts as
 #: driven aside in `safe_efficiency`, and no longer matters.
-_MOST, _DRIVEN = 0.18, 0.25
+_MOST, _DRIVEN = 0.15, 0.25
 #: Only people whom the robot would reach within this time, s, and who are this near, m.
 _HEADWAY, _REACH = 0.5, 2.0
 #: People closer than this to each other touch, and do not evade by themselves, m.
@@ -50,23 +49,24 @@ class Forced:
         """Return the work per mass against a person so far, J/kg."""
         return self._so_far.get(number, 0.0)
 
-    def when(self, truth: Truth, people: Array, poses: Array) -> float:
+    def when(self, truth: Truth, people: Array, poses: Array, step: float) -> float:
         """Return the time at which a path drives someone aside, s; infinite if it does not.
 
         Args:
             truth: now.
             people: (T, N, 2) after each step, beside the path, m.
             poses: (T + 1, 3) of the robot now and after each step.
+            step: s.
         """
         places = np.concatenate([truth.people[np.newaxis], people])
-        ways = np.diff(places, axis=0) / STEP
+        ways = np.diff(places, axis=0) / step
         velocities = np.concatenate([truth.people_velocity[np.newaxis], ways])
-        done = self._work(places, velocities, truth.people_radius, poses, STEP)
+        done = self._work(places, velocities, truth.people_radius, poses, step)
         so_far = np.array([self.work_on(n) for n in truth.people_id.tolist()])
         total = np.cumsum(done, axis=0)
         over = (so_far + total > _MOST) & (so_far < _DRIVEN) & (total > 0.0)
         steps = np.flatnonzero(over.any(axis=1))
-        return math.inf if len(steps) == 0 else STEP * float(steps[0] + 1)
+        return math.inf if len(steps) == 0 else step * float(steps[0] + 1)
 
     def _work(
         self, places: Array, velocities: Array, radius: Array, poses: Array, dt: float

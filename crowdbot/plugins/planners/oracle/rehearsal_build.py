@@ -14,8 +14,10 @@ from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP
 
 #: A smaller gap counts as a touch, m.
 _TOUCH = 0.02
-#: A robot that moves less in a step stands: who touches it then is not touched by it, m.
-_STANDS = 0.05 * STEP
+#: Time between two looks at the crowd, as in recordings: coarser ones see too little work, s.
+_LOOK = 0.0625
+#: A robot that moves less between looks stands: who touches it then is not touched by it, m.
+_STANDS = 0.05 * _LOOK
 #: Where no one is nearer to a path than this, as if there was no robot, nothing is tried, m.
 _FAR = 0.8
 
@@ -67,13 +69,13 @@ class Rehearsal:
         assert truth.foresee is not None
         latest, best = (-1.0, -1.0), 0
         for at, (number, path, stops) in enumerate(trials):
-            poses = np.vstack([[pose], path[: self.steps]])
+            poses = _looks(np.vstack([[pose], path[: self.steps]]))
             if at == 0 and self._is_far(truth, poses):
                 return number
-            people = truth.foresee(len(poses) - 1, STEP, poses)
+            people = truth.foresee(len(poses) - 1, _LOOK, poses)
             trouble = (
                 self._touched(poses, people, truth.people_radius, stands=stops),
-                self._forced.when(truth, people, poses),
+                self._forced.when(truth, people, poses, _LOOK),
             )
             if min(trouble) == math.inf:
                 return number
@@ -83,7 +85,7 @@ class Rehearsal:
 
     def _is_far(self, truth: Truth, poses: Array) -> bool:
         """Return True if no one comes near at the present velocities."""
-        t = STEP * np.arange(1, len(poses))[:, np.newaxis, np.newaxis]
+        t = _LOOK * np.arange(1, len(poses))[:, np.newaxis, np.newaxis]
         people = truth.people + t * truth.people_velocity
         gaps = self._gaps(poses, people, truth.people_radius)
         return bool(np.min(gaps, initial=math.inf) > _FAR)
@@ -110,7 +112,14 @@ class Rehearsal:
         moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) > _STANDS
         moves |= stands
         hits = np.flatnonzero((self._gaps(poses, people, radius).min(axis=1) < _TOUCH) & moves)
-        return math.inf if len(hits) == 0 else STEP * float(hits[0] + 1)
+        return math.inf if len(hits) == 0 else _LOOK * float(hits[0] + 1)
 
 
-__all__ = ["Rehearsal"]
+def _looks(poses: Array) -> Array:
+    """Return the poses at each look from those after each step; both begin now."""
+    steps = STEP * np.arange(len(poses))
+    times = _LOOK * np.arange(int(steps[-1] / _LOOK) + 1)
+    return np.column_stack([np.interp(times, steps, column) for column in poses.T])
+
+
+__all__ = ["Rehearsal", "Trial"]
