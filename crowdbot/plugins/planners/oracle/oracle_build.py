@@ -91,18 +91,18 @@ class Oracle(CrowdPrediction):
         yield (0.0, 0.0, 0.0), self._aside, 0.0
 
     def _paths(
-        self, tried: Sequence[Plan], state: State, aim: tuple[float, float]
+        self, tried: Sequence[Plan], state: State, waypoint: tuple[float, float]
     ) -> Iterator[Trial]:
         """Yield each plan that stays clear of walls as it is, and with a stop after its beginning.
 
         The first one has been checked, and the last one is a stop.
         """
         for number, (first, aside, pace) in enumerate(tried):
-            path = plans.path_of(self._p, state, aim, first, aside, pace)
+            path = plans.path_of(self._p, state, waypoint, first, aside, pace)
             if number in (0, len(tried) - 1) or self._off_walls(path):
                 yield Trial(number, path, stops=False)
                 if pace > 0.0:
-                    path = plans.path_of(self._p, state, aim, first, aside, 0.0)
+                    path = plans.path_of(self._p, state, waypoint, first, aside, 0.0)
                     yield Trial(number, path, stops=True)
 
     def _off_walls(self, path: Array) -> bool:
@@ -114,15 +114,15 @@ class Oracle(CrowdPrediction):
         )
 
     def predicted(
-        self, obs: Observation, scene: PlannerScene, rows: Indices, aim: tuple[float, float]
+        self, obs: Observation, scene: PlannerScene, rows: Indices, waypoint: tuple[float, float]
     ) -> Array:
         """Return where people will be, (T, N, 2); draw it."""
         assert obs.truth is not None
         if self._rehearses(obs.truth):
             pose = scene.pose
             self._rehearsal.see(obs.t, obs.truth)
-            self._planned = (pose.x, pose.y, pose.yaw, *scene.twist), aim
-        return super().predicted(obs, scene, rows, aim)
+            self._planned = (pose.x, pose.y, pose.yaw, *scene.twist), waypoint
+        return super().predicted(obs, scene, rows, waypoint)
 
     def yields(self, obs: Observation, rows: Indices) -> Array:
         """Return from which time to contact people give way, (N,) s; never if it is not known."""
