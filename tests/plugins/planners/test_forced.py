@@ -1,4 +1,4 @@
-"""Forced: the oracle's account of whom it drives aside, beside that of the primary score."""
+"""Forced: the oracle keeps the same account of people driven aside as the primary score."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whom the robot has nearly driven aside, and whom a path would: the score's own account."""
+"""Work of a robot against people who evade it, so far and on a path: as the primary score has it."""
 
 from __future__ import annotations
 
