@@ -57,3 +57,27 @@ def test_the_audit_runs_people_mpc_beside_the_adversaries(
     assert cli.main([*argv, "--dry-run", "--json", "--out", str(tmp_path)]) == 0
     adversaries, careful = 15, ("dwa", "people_mpc", "stop_and_go")
     assert json.loads(capsys.readouterr().out)["runs"] == adversaries + len(careful)
+
+
+def test_a_further_careful_planner_is_run_once_beside_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    argv = ["audit", "challenge-2026", "--adversaries", "--only", "counter-d040-never-n01"]
+    named = ["--careful", "rds", "--careful", "people_mpc", "--careful", "dwa"]
+    assert cli.main([*argv, *named, "--dry-run", "--json", "--out", str(tmp_path)]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"] == 15 + 4
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--careful", "rds"], "add --adversaries"),
+        (["--adversaries", "--careful", "bully"], "--careful bully: this planner is an adversary"),
+    ],
+)
+def test_a_careful_planner_that_cannot_be_one(
+    options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    argv = ["audit", "challenge-2026", *options, "--dry-run", "--out", str(tmp_path)]
+    assert cli.main(argv) == 1
+    assert said in capsys.readouterr().err

@@ -26,6 +26,7 @@ SHORT, TABLE = str(DATA / "short_way.yaml"), str(DATA / "recordings" / "format_3
 #: Command and parameter -> command line, ``{}`` is the file; the ending of its name.
 TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("audit", "suite"): (".yaml", "audit", "{}"),
+    ("audit", "careful"): (".yaml", "audit", SHORT, "--adversaries", "--careful", "{}"),
     ("bundle", "root"): ("", "bundle", "{}"),
     ("bundle", "suite"): (".yaml", "bundle", "RUNS", "--suite", "{}", "--planner", "dwa"),
     ("bundle", "source"): (".yaml", "bundle", "RUNS", "--check", "--source", "{}"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -21,6 +22,7 @@ from crowdbot.cli.shared.options import (
     SuiteArgument,
     installed,
 )
+from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
@@ -54,6 +56,13 @@ def audit(
             "--adversaries", help="Check that no adversary is ahead of a careful planner."
         ),
     ] = False,
+    careful: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME|FILE|file.py:Class",
+            help="With --adversaries: a further planner that none may be ahead of; repeatable.",
+        ),
+    ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="The audit as JSON on stdout.")] = False,
@@ -62,16 +71,19 @@ def audit(
 
     Example: crowdbot audit challenge-2020 --scenarios 18 --jobs 2
 
-    Example: crowdbot audit challenge-2026 --adversaries --only 'counter-*'
+    Example: crowdbot audit challenge-2026 --adversaries --careful rds --only 'counter-*'
     """
     from crowdbot.core.campaign.plan import make_plan
     from crowdbot.core.campaign.request import CampaignRequest
     from crowdbot.core.runs.run_options import RunOptions
 
     registry = installed(plugin, no_plugins)
+    if careful and not adversaries:
+        raise InputError("--careful names planners to compare adversaries with: add --adversaries")
+    named = _careful(registry, careful or ())
     request = CampaignRequest(
         suites=[suite],
-        planners=(*_seeing_floors(registry), *_CAREFUL) if adversaries else (),
+        planners=tuple(named.values()) if adversaries else (),
         roles=("baseline", "adversary") if adversaries else ("floor", "baseline", "ceiling"),
         seeds=read_seeds(seeds),
         only=only or (),
@@ -87,7 +99,7 @@ def audit(
         return
     state = run_plan(plan, worker_count(jobs), None)
     if adversaries:
-        _tell_adversaries(plan, registry, state.exit_code, as_json=as_json)
+        _tell_adversaries(plan, registry, named, state.exit_code, as_json=as_json)
         return
     found, path = _judged(plan, registry)
     say(json.dumps(found.model_dump(), indent=1) if as_json else _text(found, path))
@@ -109,17 +121,36 @@ def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
     return found, path
 
 
-def _tell_adversaries(plan: Plan, registry: Registry, exit_code: int, *, as_json: bool) -> None:
+def _tell_adversaries(
+    plan: Plan, registry: Registry, careful: Collection[str], exit_code: int, *, as_json: bool
+) -> None:
     """Print what each adversary gains; exit code 1 if one is ahead of a careful planner."""
     from crowdbot.cli.output.adversary_lines import adversary_lines, adversary_text
     from crowdbot.core.results.results import Results
     from crowdbot.core.scoring.score_scale import score_scales
 
     results = replace(_of(Results.open(plan.out), plan), scales=score_scales(registry))
-    lines = adversary_lines(results, (*_seeing_floors(registry), *_CAREFUL))
+    lines = adversary_lines(results, careful)
     say(json.dumps(lines, indent=1) if as_json else adversary_text(lines))
     if exit_code or any(line["standing"] == "ahead" for line in lines):
         raise typer.Exit(exit_code or 1)
+
+
+def _careful(registry: Registry, more: Sequence[str]) -> dict[str, str]:
+    """Return label -> planner of those besides the baselines that no adversary may be ahead of.
+
+    Raises:
+        InputError: one is an adversary.
+    """
+    from crowdbot.core.planning.resolve import resolve_planner
+
+    found = dict[str, str]()
+    for planner in (*_seeing_floors(registry), *_CAREFUL, *more):
+        choice = resolve_planner(planner, registry)
+        if choice.role == "adversary":
+            raise InputError(f"--careful {planner}: this planner is an adversary")
+        found.setdefault(choice.label, planner)
+    return found
 
 
 def _seeing_floors(registry: Registry) -> list[str]:
