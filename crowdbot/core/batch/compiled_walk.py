@@ -26,19 +26,16 @@ from crowdbot.core.crowd.contact.robot_contact import DISC as ROUND
 from crowdbot.core.crowd.desired_acceleration import relaxation_time_of
 from crowdbot.core.crowd.engine import LATER, CrowdEngine
 from crowdbot.core.crowd.steering.lanes import keep_all
+from crowdbot.core.crowd.steering.parts import GAP, LANES, SPACE, part_numbers
 from crowdbot.core.crowd.steering.personal_space import push_all
-from crowdbot.core.crowd.steering.sorted_discs import REACH, face
+from crowdbot.core.crowd.steering.sorted_discs import sort_people
 from crowdbot.core.crowd.steering.time_gap import limit_all
-from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs, write_discs
+from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs
 from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows, as_rows, rows_of
-from crowdbot.core.support.stable_order import write_stable_order
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.arrays import Array, Indices, Mask
-
-#: Rows of the parameters of steering parts: whether there is one, then its own.
-_GAP, _SPACE, _LANES = range(3)
 
 
 def walks_compiled(engine: CrowdEngine) -> bool:
@@ -70,12 +67,12 @@ class CompiledWalk:
             [max(relaxation_time_of(g.policy), dt) for g in engine.groups], np.float64
         )
         self._members = np.stack([g.members for g in engine.groups])
-        self._parts = _numbers(world.steering.spec)
+        self._parts = part_numbers(world.steering.spec)
         a, room = engine.agents, most_discs(people, 1, periodic=False)
         self._traits = np.array([a.avoided_radius, a.preferred_speed, a.max_acceleration])
         self._discs: tuple[Any, Any] = (rows_of(room, DISC), rows_of(room, DISC))
         self._scratch = (
-            np.zeros((3, room), np.int64), np.zeros(room), np.zeros(people, np.bool_),
+            np.zeros((3, room), np.int64), np.zeros(people, np.bool_),
             np.zeros((people, 2)), np.zeros((people, 2)), np.zeros((1, 4)),
         )  # fmt: skip
 
@@ -100,26 +97,11 @@ class CompiledWalk:
         return found[0], found[1], found[2]
 
 
-def _numbers(spec: Any) -> Array:
-    """Return the parameters of the steering parts (3, 5)."""
-    out = np.zeros((3, 5))
-    if spec.time_gap is not None:
-        p = spec.time_gap
-        out[_GAP] = 1.0, p.time, p.oncoming_time, p.room, p.half_width
-    if spec.personal_space is not None:
-        p = spec.personal_space
-        out[_SPACE] = 1.0, p.strength, p.reach, p.anticipation, p.behind
-    if spec.lanes is not None:
-        p = spec.lanes
-        out[_LANES] = 1.0, p.strength, p.reach, p.half_width, p.follow
-    return out
-
-
 @kernel
 def walk(
     crowd: Indices, groups: Indices, of_groups: tuple[Array, Mask],
     parts: Array, traits: Array, discs: Rows[DiscRecord], ordered: Rows[DiscRecord],
-    scratch: tuple[Indices, Array, Mask, Array, Array, Array],
+    scratch: tuple[Indices, Mask, Array, Array, Array],
     blank: Array, robot: Array, robots: Array,
     position: Array, velocity: Array, goal: Array, present: Mask,
     times: tuple[float, float], found: Array,
@@ -129,10 +111,10 @@ def walk(
     Args:
         crowd, groups: as of `crowdbot.core.batch.decide.decide`.
         of_groups: relaxation times (G,), s, and members (G, N).
-        parts: (3, 5) parameters of time gap, personal space and lanes.
+        parts: from `part_numbers`; time gap, personal space and lanes are used.
         traits: (3, N) avoided radius, preferred speed, largest acceleration.
-        discs, ordered, scratch: room for all discs; their order and x; who decides, headings,
-            wishes; and a row of zeros.
+        discs, ordered, scratch: room for all discs; their order; who decides, headings, wishes;
+            and a row of zeros.
         blank: a state without people.
         robot: (1, 8), changed in place; its rows at each decision are ``robots`` (K, 4).
         position to present: as of `CompiledWalk.walk`; left as they are.
@@ -189,28 +171,18 @@ def walk(
 def _steer(
     people: s.People, position: Array, velocity: Array, goal: Array, present: Mask, members: Mask,
     robots: Array, relaxation: float, parts: Array, traits: Array, discs: Rows[DiscRecord],
-    ordered: Rows[DiscRecord], scratch: tuple[Indices, Array, Mask, Array, Array, Array],
+    ordered: Rows[DiscRecord], scratch: tuple[Indices, Mask, Array, Array, Array],
 ) -> None:  # fmt: skip
-    """Change what the members of a group want, as `crowdbot.core.crowd.steering.parts.steer`."""
-    orders, x, decides, heading, wanted, nothing = scratch
-    count = write_discs(
-        position, velocity, goal, traits[0], traits[1], present, robots, nothing[:0, :3],
-        nothing[0], True, REACH, discs,
+    """Change what the members of a group want, as `SteeringParts.steer`."""
+    orders, decides, heading, wanted, nothing = scratch
+    count = sort_people(
+        position, velocity, goal, traits, present, members, robots, nothing[:0, :3], nothing[0],
+        True, discs, ordered, orders, heading, decides,
     )  # fmt: skip
-    order, spare, row = orders[0], orders[1], orders[2]
-    for n in range(count):
-        x[n] = discs[n].x
-    write_stable_order(x[:count], order[:count], spare[:count])
     for i in range(position.shape[0]):
-        row[i], decides[i] = -1, present[i] and members[i]
-        heading[i, 0] = heading[i, 1] = 0.0
         wanted[i, 0], wanted[i, 1] = people[i].ax, people[i].ay
-    for n in range(count):
-        ordered[n] = discs[order[n]]
-        if ordered[n].index >= 0.0:
-            row[int(ordered[n].index)] = n
-    face(position, velocity, goal, heading)
-    near, gap, space, lanes = ordered[:count], parts[_GAP], parts[_SPACE], parts[_LANES]
+    near, row = ordered[:count], orders[2]
+    gap, space, lanes = parts[GAP], parts[SPACE], parts[LANES]
     if gap[0] != 0.0:
         limit_all(
             near, row, heading, decides, velocity, gap[1], gap[2], gap[3], gap[4], relaxation,

@@ -23,7 +23,7 @@ from crowdbot.core.crowd.response.evasion import evade_robots
 from crowdbot.core.crowd.routes import head_for
 from crowdbot.core.crowd.routing.router import Router
 from crowdbot.core.crowd.routing.waypoints import squeeze
-from crowdbot.core.crowd.steering.parts import parts_of, steer
+from crowdbot.core.crowd.steering.parts import parts_of
 from crowdbot.core.crowd.step import tick, ticks_without_robots
 from crowdbot.core.crowd.world import CrowdWorld
 from crowdbot.core.support.immutable import immutable, immutable_fields
@@ -169,7 +169,7 @@ class CrowdEngine:
         """
         grouped = self._cohesion is not None and len(self._members) > 0
         border = self.world.periodic_boundary is not None
-        others = self._steering or grouped or border or self._led
+        others = self._steering is not None or grouped or border or self._led
         return not (self._router is not None or others)
 
     def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
@@ -340,9 +340,8 @@ class CrowdEngine:
             wanted = desired_acceleration(group.policy, view)
             if self._led and np.any(group.members & self._commanded):
                 asked.append((decides, wanted))
-            if self._steering:
-                relaxation = relaxation_time_of(group.policy)
-                wanted = steer(self._steering, view, relaxation, wanted, self.world.steering.key)
+            if self._steering is not None:
+                wanted = self._steering.steer(view, relaxation_time_of(group.policy), wanted)
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
         if self._router is not None:
             squeeze(people, self.agents.max_acceleration)

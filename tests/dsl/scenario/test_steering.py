@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from crowdbot.core.crowd.steering.parameters import Steering
-from crowdbot.core.crowd.steering.parts import PARTS, parts_of
+from crowdbot.core.crowd.steering.parts import PARTS, part_numbers, parts_of
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.identity.canonical import canonical_bytes, content_hash, dump_scenario_yaml
@@ -56,6 +57,10 @@ def test_wrong_words_and_numbers_are_refused() -> None:
 
 def test_every_part_has_a_function_and_parts_that_are_not_named_are_off() -> None:
     assert list(SteeringSpec.model_fields) == list(PARTS)
+    for name, fields in PARTS.items():
+        annotation = SteeringSpec.model_fields[name].annotation
+        (part,) = (a for a in get_args(annotation) if a is not type(None))
+        assert list(part.model_fields) == list(fields)
     crowd = scenario(
         "crowd.steering.time_gap.time=0.8 s", "crowd.steering.wander.deviation=0.1 m/s^2"
     ).crowd
@@ -63,5 +68,6 @@ def test_every_part_has_a_function_and_parts_that_are_not_named_are_off() -> Non
     assert crowd.steering == SteeringSpec(
         time_gap=TimeGapSpec(time=0.8), wander=WanderSpec(deviation=0.1)
     )
-    assert len(parts_of(Steering(crowd.steering))) == 2
-    assert parts_of(Steering()) == []
+    assert part_numbers(crowd.steering)[:, 0].tolist() == [1.0, 0.0, 0.0, 0.0, 1.0]
+    assert parts_of(Steering(crowd.steering)) is not None
+    assert parts_of(Steering()) is None

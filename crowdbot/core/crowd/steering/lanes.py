@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
-from crowdbot.dsl.scenario.steering import LanesSpec
 
 #: A person slower than this along one's heading, or against it, stands, m/s.
 _STANDS = 0.2
-
-
-def keep_lane(part: LanesSpec, now: Moment, wanted: Array) -> None:
-    """Add the accelerations of all people who step aside to ``wanted`` (N, 2), m/s^2, in place."""
-    keep_all(*now.near, part.strength, part.reach, part.half_width, part.follow, wanted)
 
 
 @kernel
@@ -26,7 +19,13 @@ def keep_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
     strength: float, reach: float, half_width: float, follow: float, wanted: Array,
 ) -> None:  # fmt: skip
-    """Add the accelerations of all people who decide and step aside, in place."""
+    """Add the accelerations of all people who decide and step aside, in place.
+
+    Args:
+        discs to decides: as of `sorted_discs.sort_people`.
+        strength to follow: see `LanesSpec`.
+        wanted: (N, 2) accelerations, m/s^2.
+    """
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
@@ -69,4 +68,4 @@ def aside_of(
     return math.tanh(away + follow * towards * comers / all_)
 
 
-__all__ = ["aside_of", "keep_all", "keep_lane"]
+__all__ = ["aside_of", "keep_all"]

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
-from crowdbot.dsl.scenario.steering import PersonalSpaceSpec
 
 #: Largest push by one other, m/s^2.
 HARDEST = 8.0
@@ -18,17 +16,18 @@ HARDEST = 8.0
 _THROUGH = 0.05
 
 
-def push_away(part: PersonalSpaceSpec, now: Moment, wanted: Array) -> None:
-    """Add the pushes of all others to accelerations (N, 2), m/s^2, in place."""
-    push_all(*now.near, part.strength, part.reach, part.anticipation, part.behind, wanted)
-
-
 @kernel
 def push_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
     strength: float, reach: float, anticipation: float, behind: float, wanted: Array,
 ) -> None:  # fmt: skip
-    """Add the pushes of all others on people who decide, in place."""
+    """Add the pushes of all others on people who decide to accelerations (N, 2), in place.
+
+    Args:
+        discs to decides: as of `sorted_discs.sort_people`.
+        strength to behind: see `PersonalSpaceSpec`.
+        wanted: m/s^2.
+    """
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
@@ -78,4 +77,4 @@ def push_by(
     return -push * nx, -push * ny
 
 
-__all__ = ["HARDEST", "push_all", "push_away", "push_by"]
+__all__ = ["HARDEST", "push_all", "push_by"]

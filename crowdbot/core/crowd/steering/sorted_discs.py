@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
 
-import numpy as np
-
-from crowdbot.core.crowd.policy import CrowdView
-from crowdbot.core.crowd.velocity_search.neighbour_discs import (
-    most_discs,
-    write_discs,
-)
-from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
-from crowdbot.core.support.compiling.compile import array_kernel, kernel
+from crowdbot.core.crowd.velocity_search.neighbour_discs import write_discs
+from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
+from crowdbot.core.support.stable_order import write_stable_order
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Centres farther apart do not affect any part, m.
@@ -23,45 +17,45 @@ REACH = 3.0
 _SLOW = 0.3
 
 
-class SortedDiscs(NamedTuple):
-    """All discs at one decision; world frame, SI units.
+@kernel
+def sort_people(
+    position: Array, velocity: Array, goal: Array, traits: Array, present: Mask, members: Mask,
+    robots: Array, pillars: Array, box: Array, diagonal: bool,
+    unsorted: Rows[DiscRecord], discs: Rows[DiscRecord], orders: Indices,
+    heading: Array, decides: Mask,
+) -> int:  # fmt: skip
+    """Write the discs of one decision, sorted by x; return their number.
 
-    Attributes:
-        discs: (D,) people, images across a border, robots and pillars, by x.
-        row: (N,) row of each person in ``discs``, -1 for absent ones.
-        heading: (N, 2) unit vectors between the directions to the goal and of walking.
-        decides: (N,) True for people with steering.
+    Args:
+        position, velocity, goal: (N, 2), m and m/s.
+        traits: (3, N) avoided radius (m), preferred speed (m/s), and largest acceleration.
+        present, members: (N,) who is there, and who has this steering.
+        robots to diagonal: as of `neighbour_discs.write_discs`.
+        unsorted: scratch, of the size of ``discs``.
+        discs: (>= D,) output: people, images across a border, robots and pillars, by x.
+        orders: (3, >= D) scratch; the last row becomes the row of each person in ``discs``, -1
+            for absent ones.
+        heading: (N, 2) output: unit vectors between the directions to the goal and of walking.
+        decides: (N,) output: True for members who are present.
     """
-
-    discs: Rows[DiscRecord]
-    row: Indices
-    heading: Array
-    decides: Mask
-
-
-def sorted_discs(view: CrowdView) -> SortedDiscs:
-    """Return the discs at the decision of a view."""
-    agents, boundary = view.agents, view.periodic_boundary
-    fixed = len(view.robot) + len(view.pillars)
-    room = most_discs(len(view.position), fixed, boundary is not None)
-    discs: Any = np.zeros(room, DISC)
-    box = np.array(boundary if boundary is not None else (0.0, 0.0, 0.0, 0.0))
     count = write_discs(
-        view.position, view.velocity, view.goal, agents.avoided_radius, agents.preferred_speed,
-        view.present, view.robot, view.pillars, box, view.diagonal, REACH, discs,
+        position, velocity, goal, traits[0], traits[1], present, robots, pillars, box, diagonal,
+        REACH, unsorted,
     )  # fmt: skip
-    discs = discs[:count]
-    discs = discs[np.argsort(discs["x"], kind="stable")]
-    row = np.full(len(view.position), -1, np.int64)
-    of = discs["index"].astype(np.int64)
-    row[of[of >= 0]] = np.flatnonzero(of >= 0)
-    heading = np.zeros_like(view.position)
-    face(view.position, view.velocity, view.goal, heading)
-    decides = view.present if view.decides is None else view.present & view.decides
-    return SortedDiscs(discs, row, heading, decides)
+    order, row = orders[0], orders[2]
+    write_stable_order(unsorted[:count]["x"], order, orders[1])
+    for i in range(position.shape[0]):
+        row[i], decides[i] = -1, present[i] and members[i]
+        heading[i, 0] = heading[i, 1] = 0.0
+    for n in range(count):
+        discs[n] = unsorted[order[n]]
+        if discs[n].index >= 0.0:
+            row[int(discs[n].index)] = n
+    face(position, velocity, goal, heading)
+    return count
 
 
-@array_kernel
+@kernel
 def face(position: Array, velocity: Array, goal: Array, heading: Array) -> None:
     """Write headings: half towards the goal and half along the velocity."""
     for i in range(position.shape[0]):

@@ -8,28 +8,14 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.types.arrays import Array, Indices, Mask
-from crowdbot.dsl.scenario.steering import TimeGapSpec
 
 #: A person faster than this against one's heading is oncoming, m/s.
 _ONCOMING = 0.2
-
-
-def limit_speed(part: TimeGapSpec, now: Moment, wanted: Array) -> None:
-    """Reduce accelerations so that speeds after the relaxation time leave the time gap, in place.
-
-    Args:
-        wanted: (N, 2) accelerations, m/s^2.
-    """
-    limit_all(
-        *now.near, now.view.velocity, part.time, part.oncoming_time, part.room, part.half_width,
-        now.relaxation, wanted,
-    )  # fmt: skip
 
 
 @kernel
@@ -38,7 +24,14 @@ def limit_all(
     time: float, oncoming_time: float, room: float, half_width: float, relaxation: float,
     wanted: Array,
 ) -> None:  # fmt: skip
-    """Reduce the speeds of people who decide to what the space ahead allows, in place."""
+    """Reduce accelerations so that speeds after the relaxation time leave the time gap, in place.
+
+    Args:
+        discs to decides: as of `sorted_discs.sort_people`; velocity: (N, 2), m/s.
+        time to half_width: see `TimeGapSpec`.
+        relaxation: time in which people reach the velocity that they have chosen, s.
+        wanted: (N, 2) accelerations, m/s^2.
+    """
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
@@ -86,4 +79,4 @@ def allowed_speed(
     return fastest
 
 
-__all__ = ["allowed_speed", "limit_all", "limit_speed"]
+__all__ = ["allowed_speed", "limit_all"]

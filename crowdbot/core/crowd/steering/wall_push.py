@@ -4,42 +4,36 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
-from crowdbot.core.crowd.steering.moment import Moment
-from crowdbot.core.geometry.segment_grid import cell_of, grid_of
+from crowdbot.core.geometry.segment_grid import cell_of
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
-from crowdbot.dsl.scenario.steering import WallPushSpec
 
 #: Largest push by one wall, m/s^2.
 HARDEST = 8.0
 #: Share of its strength below which the push is ignored.
-_LEAST = 4.6  # e-folds: 1 %
-
-
-def push_off_walls(part: WallPushSpec, now: Moment, wanted: Array) -> None:
-    """Add the pushes of all walls to accelerations (N, 2), m/s^2, in place."""
-    view = now.view
-    radius = view.agents.avoided_radius
-    grid = grid_of(view.walls, float(np.max(radius, initial=0.0)) + _LEAST * part.reach)
-    _push_all(
-        now.near.decides, view.position, radius, view.walls, *grid, part.strength, part.reach,
-        wanted,
-    )  # fmt: skip
+LEAST = 4.6  # e-folds: 1 %
 
 
 @kernel
-def _push_all(
+def push_off_walls(
     decides: Mask, position: Array, radius: Array, walls: Array,
     frame: Array, first: Indices, near: Indices,
     strength: float, reach: float, wanted: Array,
 ) -> None:  # fmt: skip
+    """Add the pushes of all walls on people who decide, in place.
+
+    Args:
+        position: (N, 2), m; radius: (N,), m.
+        walls: (S, 4), m; frame, first, near: their `SegmentGrid`, for the largest radius and
+            `LEAST` times the reach.
+        strength, reach: see `WallPushSpec`.
+        wanted: (N, 2) accelerations, m/s^2.
+    """
     for i in range(wanted.shape[0]):
         if not decides[i]:
             continue
-        x, y, far = position[i, 0], position[i, 1], radius[i] + _LEAST * reach
+        x, y, far = position[i, 0], position[i, 1], radius[i] + LEAST * reach
         cell = cell_of(frame, x, y)
         if cell < 0:
             continue
@@ -60,4 +54,4 @@ def _push_all(
             wanted[i, 1] += push * dy
 
 
-__all__ = ["HARDEST", "push_off_walls"]
+__all__ = ["HARDEST", "LEAST", "push_off_walls"]

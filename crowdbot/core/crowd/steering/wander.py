@@ -10,26 +10,27 @@ import math
 
 import numpy as np
 
-from crowdbot.core.crowd.steering.moment import Moment
 from crowdbot.core.crowd.velocity_search.counter_rng import WANDER, uniform
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array, Indices, Mask
-from crowdbot.dsl.scenario.steering import WanderSpec
 
 #: Lag at which the correlation is 1/e, in knots: of (1 - l/2) cos(pi l/2) + sin(pi l/2)/pi.
 E_FOLD = 0.93929
 
 
-def wander(part: WanderSpec, now: Moment, wanted: Array) -> None:
-    """Add the random acceleration of each person to accelerations (N, 2), m/s^2, in place."""
-    knots, ids = now.view.t * E_FOLD / part.time, now.view.agents.id
-    _wander(now.near.decides, ids, knots, part.deviation, np.uint64(now.key), wanted)
-
-
 @kernel
-def _wander(
+def wander_all(
     decides: Mask, ids: Indices, knots: float, deviation: float, key: np.uint64, wanted: Array
 ) -> None:
+    """Add the random acceleration of people who decide, in place.
+
+    Args:
+        ids: (N,) that the draws depend on.
+        knots: the time in knots.
+        deviation: see `WanderSpec`.
+        key: as of `Steering`.
+        wanted: (N, 2) accelerations, m/s^2.
+    """
     for i in range(wanted.shape[0]):
         if decides[i]:
             x, y = wandering(ids[i], knots, key)
@@ -58,4 +59,4 @@ def _normal(agent: int, knot: int, key: np.uint64) -> tuple[float, float]:
     return size * math.cos(2.0 * math.pi * v), size * math.sin(2.0 * math.pi * v)
 
 
-__all__ = ["E_FOLD", "wander", "wandering"]
+__all__ = ["E_FOLD", "wander_all", "wandering"]

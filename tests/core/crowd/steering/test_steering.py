@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.steering.parameters import Steering
-from crowdbot.core.crowd.steering.parts import parts_of, steer
+from crowdbot.core.crowd.steering.parts import SteeringParts
 from crowdbot.core.crowd.steering.wander import E_FOLD, wandering
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.scenario.steering import (
@@ -81,7 +81,7 @@ def seen(
 
 def steered(steering: Steering, view: CrowdView, wanted: Array | None = None) -> Array:
     given_ = np.zeros_like(view.position) if wanted is None else wanted
-    return steer(parts_of(steering), view, 0.5, given_, steering.key)
+    return SteeringParts(steering).steer(view, 0.5, given_)
 
 
 @pytest.mark.parametrize(("ahead", "allowed"), [(0.9, 0.63), (1.27, 1.0), (0.27, 0.0), (0.1, 0.0)])
