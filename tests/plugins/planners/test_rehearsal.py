@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from crowdbot.plugin import Array, Pose, Truth
-from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal, Trial
+from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal, TriedPath
 from crowdbot.plugins.planners.people_mpc.plan_world_build import STEP
 
 ROBOT = np.array([[0.0, 0.0, 0.2]])
@@ -20,8 +20,8 @@ def straight(speed: float, heading: float = 0.0, steps: int = 10) -> Array:
     return np.column_stack([way * np.cos(heading), way * np.sin(heading), np.full(steps, heading)])
 
 
-def trials(paths: list[Array], *, stops: bool = False) -> list[Trial]:
-    return [Trial(number, path, stops) for number, path in enumerate(paths)]
+def trials(paths: list[Array], *, stops: bool = False) -> list[TriedPath]:
+    return [TriedPath(number, path, stops) for number, path in enumerate(paths)]
 
 
 class People:
@@ -79,7 +79,7 @@ def test_where_a_plan_may_end_in_a_stop_no_one_walks_into_it_either() -> None:
     """A robot that has just cut in is at fault even if it stands."""
     comes = People([[1.5, 0.0, -1.0, 0.0]])
     beginning = trials([straight(0.0)], stops=True)
-    both = [*beginning, Trial(1, straight(0.65, 1.4), stops=False)]
+    both = [*beginning, TriedPath(1, straight(0.65, 1.4), stops=False)]
     assert Rehearsal(1.5, ROBOT).first_clear(comes.truth(), both, HERE) == 1
 
 
@@ -118,10 +118,10 @@ def test_every_disc_of_the_robot_counts(yaw: float) -> None:
 def test_further_plans_are_not_made_before_they_are_needed() -> None:
     made = []
 
-    def plans() -> Iterator[Trial]:
+    def plans() -> Iterator[TriedPath]:
         for number in range(3):
             made.append(number)
-            yield Trial(number, straight(0.65), stops=False)
+            yield TriedPath(number, straight(0.65), stops=False)
 
     assert (
         Rehearsal(1.5, ROBOT).first_clear(People([[9.0, 3.0, 0.0, 0.0]]).truth(), plans(), HERE)

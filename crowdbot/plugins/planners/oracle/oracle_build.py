@@ -18,7 +18,7 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction_build import CrowdPrediction
 from crowdbot.plugins.planners.oracle.oracle import OracleSpec
-from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal, Trial
+from crowdbot.plugins.planners.oracle.rehearsal_build import Rehearsal, TriedPath
 from crowdbot.plugins.planners.oracle.whole_forecast_build import WholeForecast
 from crowdbot.plugins.planners.people_mpc import plans_build as plans
 from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
@@ -92,7 +92,7 @@ class Oracle(CrowdPrediction):
 
     def _paths(
         self, tried: Sequence[Plan], state: State, waypoint: tuple[float, float]
-    ) -> Iterator[Trial]:
+    ) -> Iterator[TriedPath]:
         """Yield each plan that stays clear of walls as it is, and with a stop after its beginning.
 
         The first one has been checked, and the last one is a stop.
@@ -100,10 +100,10 @@ class Oracle(CrowdPrediction):
         for number, (first, aside, pace) in enumerate(tried):
             path = plans.path_of(self._p, state, waypoint, first, aside, pace)
             if number in (0, len(tried) - 1) or self._off_walls(path):
-                yield Trial(number, path, stops=False)
+                yield TriedPath(number, path, stops=False)
                 if pace > 0.0:
                     path = plans.path_of(self._p, state, waypoint, first, aside, 0.0)
-                    yield Trial(number, path, stops=True)
+                    yield TriedPath(number, path, stops=True)
 
     def _off_walls(self, path: Array) -> bool:
         """Return True if a path stays clear of walls and other static obstacles."""

@@ -22,7 +22,7 @@ _STANDS = 0.05 * _LOOK
 _FAR = 0.8
 
 
-class Trial(NamedTuple):
+class TriedPath(NamedTuple):
     """A path that is tried for a plan.
 
     Attributes:
@@ -56,7 +56,9 @@ class Rehearsal:
         """Note how people moved since the last step."""
         self._forced.see(t, truth)
 
-    def first_clear(self, truth: Truth, trials: Iterable[Trial], pose: tuple[float, ...]) -> int:
+    def first_clear(
+        self, truth: Truth, trials: Iterable[TriedPath], pose: tuple[float, ...]
+    ) -> int:
         """Return the number of the first path without trouble.
 
         If there is none: of the one that touches someone last, then drives someone aside last.
@@ -122,4 +124,4 @@ def _looks(poses: Array) -> Array:
     return np.column_stack([np.interp(times, steps, column) for column in poses.T])
 
 
-__all__ = ["Rehearsal", "Trial"]
+__all__ = ["Rehearsal", "TriedPath"]
