@@ -5,6 +5,11 @@ layered one, a depth image, and the search for ways. The building has rooms of 3
 doors along corridors, as many segments as asked for; both floors have the same size and people.
 The sensors' empty hall is of 8 m x 6 m, so that its rays hit walls, too.
 
+With `--crowds` the people of each packaged crowd, with its steering, first walk through the
+building for some seconds on ways that routing finds. Then the same people at the same places, with
+the same velocities and next points of their ways, decide in the building and in the empty hall.
+With `--straight` they are in their rooms instead, just started straight to goals behind walls.
+
     python benchmarks/buildings.py --segments 2000
     python benchmarks/buildings.py --segments 2000 --crowds
 """
@@ -17,6 +22,7 @@ import math
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import yaml
@@ -25,9 +31,11 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld, policy_of
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.routing.parameters import WayFinding
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
 from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.core.sensing.scene import Scene
+from crowdbot.dsl.scenario.steering import SteeringSpec
 from crowdbot.plugin import Pinhole, PolicyFactory
 
 Array = NDArray[np.float64]
@@ -86,14 +94,27 @@ def least(function: Callable[[], object], rounds: int) -> float:
 
 
 def crowd(
-    walls: Array, agents: Agents, routing: WayFinding | None, policy: PolicyFactory | None = None
+    walls: Array,
+    agents: Agents,
+    routing: WayFinding | None,
+    policy: PolicyFactory | None = None,
+    velocity: Array | None = None,
+    **world: Any,
 ) -> dict[str, Callable[[], object]]:
-    """What to measure of a crowd: whole steps with and without a decision."""
-    world = CrowdWorld(walls=walls, routing=routing)
-    engine = CrowdEngine(agents, world, policy or policy_of(POLICY, COSTS))
+    """What to measure of a crowd: whole steps with and without a decision.
+
+    Args:
+        velocity: (N, 2) with which people walk, m/s; None: as after 0.25 s.
+        world: further fields of `CrowdWorld`.
+    """
+    place = CrowdWorld(walls=walls, routing=routing, **world)
+    engine = CrowdEngine(agents, place, policy or policy_of(POLICY, COSTS))
     first = engine.initial_state()
-    for _ in range(32):
-        engine.advance(first)
+    if velocity is None:
+        for _ in range(32):
+            engine.advance(first)
+    else:
+        s.view(first)[1][:, s.VX : s.VY + 1] = velocity
     flat = first.copy()
 
     def step(tick: int) -> Callable[[], object]:
@@ -146,11 +167,41 @@ def measured(
     return found | {name: least(run, rounds) for name, run in rays(*seen).items()}
 
 
-def packaged() -> dict[str, PolicyFactory]:
-    """The policies of the crowds that come along, by name."""
+def packaged() -> dict[str, tuple[PolicyFactory, dict[str, Any]]]:
+    """The policies and steering of the crowds that come along, by name."""
     parts = sorted((Path(__file__).parent.parent / "scenario_specs/parts/crowds").glob("*.yaml"))
     read = {part.stem: yaml.safe_load(part.read_text("utf-8"))["crowd"] for part in parts}
-    return {name: policy_of(crowd["policy"], crowd["costs"]) for name, crowd in read.items()}
+    return {
+        name: (
+            policy_of(crowd["policy"], crowd["costs"]),
+            {
+                "steering": Steering(SteeringSpec.model_validate(crowd.get("steering", {}))),
+                "firm": crowd.get("solids") == "firm",
+            },
+        )
+        for name, crowd in read.items()
+    }
+
+
+def walking(
+    walls: Array, agents: Agents, policy: PolicyFactory, seconds: float, **world: Any
+) -> tuple[Agents, Array]:
+    """The people and their velocities (N, 2) after some seconds on ways around walls.
+
+    Each of them then goes to the next point of its way.
+    """
+    place = CrowdWorld(walls=walls, routing=WayFinding(), **world)
+    engine = CrowdEngine(agents, place, policy)
+    flat = engine.initial_state()
+    for _ in range(round(seconds * 128)):
+        engine.advance(flat)
+    _, rows = s.view(flat)
+    routes = [[(float(x), float(y))] for x, y in rows[:, engine.aim : engine.aim + 2]]
+    found = Agents.of(
+        x=rows[:, s.X], y=rows[:, s.Y], radius=agents.radius, routes=routes,
+        preferred_speed=agents.preferred_speed,
+    )  # fmt: skip
+    return found, rows[:, s.VX : s.VY + 1].copy()
 
 
 def in_turns(runs: list[Callable[[], object]], rounds: int) -> list[float]:
@@ -159,28 +210,41 @@ def in_turns(runs: list[Callable[[], object]], rounds: int) -> list[float]:
     return [min(column) for column in zip(*times, strict=True)]
 
 
-def print_crowds(walls: Array, middles: Array, side: float, count: int, rounds: int) -> None:
+def ten_times(walls: Array, side: float) -> Array:
+    """The building and nine others like it beside it."""
+    shift = (side + 10.0) * np.array([1.0, 0.0, 1.0, 0.0])
+    return np.concatenate([walls + k * shift for k in range(10)])
+
+
+def print_crowds(
+    walls: Array, middles: Array, side: float, count: int, rounds: int, seconds: float
+) -> None:
     """Print what each packaged crowd costs in both places and in a building ten times as large.
 
-    A second of a crowd is 16 decisions and 128 ticks. In the larger building the same number of
-    people are in as many rooms, with as many walls around them.
+    A second of a crowd is 16 decisions and 128 ticks. In the larger building the same people are
+    at the same places.
+
+    Args:
+        seconds: how long people walk before; 0: see `--straight`.
     """
-    larger, rooms, _ = building(10 * len(walls))
-    places = [(hall(side), middles), (walls, middles), (larger, rooms[: len(middles)])]
+    places = [hall(side), walls, ten_times(walls, side)]
     print(
         f"{'us':26}{'decision: empty':>16}{len(walls):>8} walls{'ratio':>7}{'tick: ratio':>13}"
         f"{'second: ratio':>15}{'10 times the walls':>20}"
     )
-    for name, policy in packaged().items():
-        steps = [crowd(at, people(within, count), None, policy) for at, within in places]
+    for name, (policy, world) in packaged().items():
+        agents, velocity = people(middles, count), None
+        if seconds > 0.0:
+            agents, velocity = walking(walls, agents, policy, seconds, **world)
+        steps = [crowd(at, agents, None, policy, velocity, **world) for at in places]
         runs = [each[kind] for each in steps for kind in ("with", "without")]
         found = in_turns(runs, rounds)
         ticks = found[1::2]
         decisions = [whole - tick for whole, tick in zip(found[::2], ticks, strict=True)]
-        seconds = [16 * d + 128 * tick for d, tick in zip(decisions, ticks, strict=True)]
+        seconds_of = [16 * d + 128 * tick for d, tick in zip(decisions, ticks, strict=True)]
         print(
             f"{name:26}{decisions[0]:16.1f}{decisions[1]:14.1f}{decisions[1] / decisions[0]:7.2f}"
-            f"{ticks[1] / ticks[0]:13.2f}{seconds[1] / seconds[0]:15.2f}"
+            f"{ticks[1] / ticks[0]:13.2f}{seconds_of[1] / seconds_of[0]:15.2f}"
             f"{decisions[2] / decisions[1]:20.2f}"
         )
 
@@ -193,10 +257,12 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=30)
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--crowds", action="store_true", help="decisions of all packaged crowds")
+    parser.add_argument("--straight", action="store_true", help="with crowds: people just started")
     given = parser.parse_args()
     walls, middles, side = building(given.segments)
     if given.crowds:
-        print_crowds(walls, middles, side, given.people, given.rounds)
+        seconds = 0.0 if given.straight else 6.0
+        print_crowds(walls, middles, side, given.people, given.rounds, seconds)
         return
     empty = measured(hall(side), middles, room(middles), given.people, given.rounds)
     full = measured(walls, middles, (walls, middles), given.people, given.rounds)

@@ -10,6 +10,7 @@ from crowdbot.core.crowd.velocity_search.collision_rows import (
     HEADER,
     SAFE,
     SEGMENT_ROW,
+    SegmentRow,
 )
 from crowdbot.core.crowd.velocity_search.collision_walls import (
     SORTED_SEGMENTS,
@@ -159,12 +160,22 @@ def _first_disc(ux: float, uy: float, until: float, first: float, work: Pointer)
 
 @array_kernel
 def _first_segment(ux: float, uy: float, until: float, agent: AgentRecord, work: Pointer) -> float:
-    """Return the time until a listed segment is touched, s, or any below ``until``."""
+    """Return the time until a listed segment is touched, s, or any below ``until``.
+
+    The one that came first at the last velocity is tried first: often it is soon enough again.
+    """
     header, segments, first = as_record(work, HEADER), as_rows(work, SEGMENT_ROW), math.inf
+    if header.segments == 0.0:
+        return first
     discs, width = int(header.discs), swept_width(ux, uy, agent.radius)
+    last, known = discs + SORTED_SEGMENTS, int(segments[discs + 1].later)
+    if known > 0:
+        first = _touched(segments[known], ux, uy, width, agent)
+        if first < until:
+            return first
     # The original counts a wall's line as touched, which may be before the wall itself is.
     speed2 = ux * ux + uy * uy if agent.parity == 0.0 else math.inf
-    last = discs + SORTED_SEGMENTS
+    soonest = known
     for j in range(discs + 1, discs + 1 + int(header.segments)):
         segment = segments[j]
         if segment.earliest >= first:
@@ -172,18 +183,30 @@ def _first_segment(ux: float, uy: float, until: float, agent: AgentRecord, work:
                 break
             continue
         ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
-        later = is_behind(ux, uy, first * speed2, width, ax, ay, bx, by)
-        if not (later | is_passed(ux, uy, width, ax, ay, bx, by)):
-            if agent.parity != 0.0:
-                t = crossing_time(ux, uy, agent.radius, ax, ay, bx, by)
-                if t <= 0.0:  # from the centre, this may be 0 just before contact
-                    continue
-            else:
-                t = time_to_segment(ux, uy, agent.radius, ax, ay, bx, by)
-            first = min(first, t)
+        if not is_behind(ux, uy, first * speed2, width, ax, ay, bx, by):
+            t = _touched(segment, ux, uy, width, agent)
+            if t < first:
+                first, soonest = t, j
         if first < until or (j == last and segment.later >= first):
             break
+    segments[discs + 1].later = soonest
     return first
+
+
+@array_kernel
+def _touched(segment: SegmentRow, ux: float, uy: float, width: float, agent: AgentRecord) -> float:
+    """Return the time until a segment is touched, s; ``inf`` if never.
+
+    Args:
+        width: as of `swept_width`.
+    """
+    ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
+    if is_passed(ux, uy, width, ax, ay, bx, by):
+        return math.inf
+    if agent.parity == 0.0:
+        return float(time_to_segment(ux, uy, agent.radius, ax, ay, bx, by))
+    t = crossing_time(ux, uy, agent.radius, ax, ay, bx, by)
+    return float(t) if t > 0.0 else math.inf  # from the centre, this may be 0 just before contact
 
 
 @array_kernel

@@ -43,7 +43,8 @@ class SegmentRow:
     """A wall segment in ``work``, after the discs: both ends.
 
     Attributes:
-        later: in the last sorted row, the least ``earliest`` of the rows after it, s.
+        later: in the last sorted row, the least ``earliest`` of the rows after it, s; in the first
+            row, the row that came first at the last velocity, and 0 before any.
         earliest: as in `DiscRow`.
     """
 

@@ -12,7 +12,7 @@ from crowdbot.core.support.records import Rows, as_record, as_rows
 
 #: Number of segments sorted by the earliest contact; all others come later. Sorting hundreds would
 #: take longer than skipping them.
-SORTED_SEGMENTS = 32
+SORTED_SEGMENTS = 8
 
 
 @array_kernel
@@ -108,6 +108,8 @@ def list_segments(
         segment.ax, segment.ay, segment.bx, segment.by = wall.ax, wall.ay, wall.bx, wall.by
     if count >= SORTED_SEGMENTS:
         segments[discs + SORTED_SEGMENTS].later = later
+    if count > 0:
+        segments[discs + 1].later = 0.0
     header, within = as_record(work, HEADER), agent.walls_within
     farther = 0.0 < within < limit and most * fastest > within - agent.radius
     header.unlisted = limit if farther else 0.0

@@ -12,6 +12,7 @@ import math
 from crowdbot.plugin import (
     BASE,
     EXCESS,
+    LOWER_BOUND,
     PREPARE,
     AgentRecord,
     CompiledCost,
@@ -32,6 +33,7 @@ from crowdbot.plugin.for_crowds import NEAR_WALLS
 from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 
 _SURELY = 1e-6  # share by which a way is shorter in spite of rounding
+_TINY = 1e-300  # (m/s)^2, against a division by zero
 
 
 class _Params(CostParams):
@@ -87,6 +89,34 @@ def _prepare(
     return 1
 
 
+@declared_kernel(LOWER_BOUND)
+def _lower_bound(
+    count: int,
+    ux: Pointer,
+    uy: Pointer,
+    agent: AgentRecord,
+    work: Pointer,
+    params: Pointer,
+    out: Pointer,
+) -> int:
+    """Return a lower bound of the excess at any free way.
+
+    Either the way is free for the preferred speed, which u then falls short of, or it is so short
+    that the course costs more.
+    """
+    own = as_record(params, _PARAMS)
+    preferred, d_max = agent.preferred, own.d_max
+    for c in range(count):
+        speed = math.sqrt(ux[c] * ux[c] + uy[c] * uy[c])
+        along = ux[c] * agent.pvx + uy[c] * agent.pvy
+        ahead = along / max(speed * preferred, _TINY)
+        slower = (preferred - speed) / preferred
+        missing = max(0.0, d_max * ahead - preferred * agent.relaxation)
+        least = _least_course(ahead, d_max) * slower * slower
+        out[c] = (1.0 - _SURELY) * min(least, missing * missing)
+    return 1
+
+
 @declared_kernel(EXCESS)
 def _excess(
     ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
@@ -117,6 +147,7 @@ def build(spec: MoussaidSpec) -> CompiledCost:
         base=_base,
         prepare=_prepare,
         excess=_excess,
+        lower_bound=_lower_bound,
         params=record_values(
             _PARAMS, range=spec.range.value, from_surface=surface, d_max=spec.d_max
         ),

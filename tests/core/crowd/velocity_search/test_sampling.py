@@ -14,6 +14,7 @@ from crowdbot.core.crowd.velocity_search.candidates import CURRENT, MAXIMUM_SPEE
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts
 from crowdbot.plugin import CostFunctionSpec, Range
+from crowdbot.plugins.crowd.cost_functions.moussaid import MoussaidSpec
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
@@ -92,6 +93,24 @@ def test_lower_bounds_change_no_choice(mix: str, sampling: Sampling) -> None:
         assert np.any(with_bounds.functions[:, LOWER_BOUNDS])
         without = WeightedCosts([replace(c, lower_bound=None) for c in costs], view.agents)
         found, expected = (Sampler(sampling, m).choose(view) for m in (with_bounds, without))
+        assert np.array_equal(found, expected)
+
+
+@pytest.mark.parametrize("d_max", [0.4, 2.5, 10.0])
+@pytest.mark.parametrize("relaxation", [0.0, 0.5, 3.0])
+@pytest.mark.parametrize("sampling", [Sampling(), Sampling(random=40)])
+def test_lower_bounds_of_moussaid_change_no_choice(
+    d_max: float, relaxation: float, sampling: Sampling
+) -> None:
+    cost = compiled(MoussaidSpec(d_max=d_max))
+    for count in (6, 80):
+        view = scene(count, count)
+        costs = [cost, replace(cost, lower_bound=None)]
+        bounded, whole = (
+            WeightedCosts([c], view.agents, relaxation_time=relaxation) for c in costs
+        )
+        assert np.any(bounded.functions[:, LOWER_BOUNDS])
+        found, expected = (Sampler(sampling, m).choose(view) for m in (bounded, whole))
         assert np.array_equal(found, expected)
 
 
