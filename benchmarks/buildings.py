@@ -196,7 +196,8 @@ def walking(
     for _ in range(round(seconds * 128)):
         engine.advance(flat)
     _, rows = s.view(flat)
-    routes = [[(float(x), float(y))] for x, y in rows[:, engine.aim : engine.aim + 2]]
+    next_points = rows[:, engine.goal_column : engine.goal_column + 2]
+    routes = [[(float(x), float(y))] for x, y in next_points]
     found = Agents.of(
         x=rows[:, s.X], y=rows[:, s.Y], radius=agents.radius, routes=routes,
         preferred_speed=agents.preferred_speed,
