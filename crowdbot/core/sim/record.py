@@ -20,6 +20,7 @@ from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.start_pose_check import check_starts
 from crowdbot.core.sim.diagram import Blocks, RunRobot, build_diagram
+from crowdbot.core.sim.drake_failures import drake_failures
 from crowdbot.core.sim.loggers.run_logs import run_logs
 from crowdbot.core.sim.person_targets import with_targets
 from crowdbot.core.sim.robot_ending import RobotEnding
@@ -31,6 +32,7 @@ from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.errors import PlannerError, PlannerHungError
 
 
+@drake_failures()
 def record_robots(
     setup: RunSetup,
     builts: Mapping[str, BuiltRun],

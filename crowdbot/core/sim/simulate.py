@@ -46,7 +46,6 @@ from crowdbot.core.runs.run_record import RunIdentity, RunRecord
 from crowdbot.core.scoring.evaluate import metric_specs
 from crowdbot.core.scoring.scores_csv import write_scores_csv
 from crowdbot.core.sim.built_run import BuiltRun
-from crowdbot.core.sim.drake_failures import drake_failures
 from crowdbot.core.sim.gc_freeze import gc_frozen
 from crowdbot.core.sim.preflight import preflight
 from crowdbot.core.sim.record import record_robots
@@ -233,10 +232,7 @@ def _record_run(
     parts = _parts(request, builts)
     with partial(final) as folder:
         setup = _setup(request, prepared, folder, identity)
-        with drake_failures():
-            outcome = (
-                record_robots(setup, builts) if builts else record_crowd(setup, identity.duration)
-            )
+        outcome = record_robots(setup, builts) if builts else record_crowd(setup, identity.duration)
         check_interrupted(outcome, folder)
         files.check_recorded(folder, outcome.written)
         images = _images(request, builts, folder / files.RECORDING)
