@@ -19,6 +19,8 @@ _ARC = 5
 #: A lidar point in the cone explains a range up to this much longer or shorter, and what a camera
 #: sees so near to it, m.
 _SAME = 0.25
+#: So does one this far beside the cone: who walks past its edge was seen a moment earlier, rad.
+_BESIDE = 0.15
 #: Echoes farther away than this are left out: their arc is too wide to say where, m.
 _FARTHEST = 1.5
 #: Heights above the floor of what a depth camera shows as an obstacle, from and to, m.
@@ -78,7 +80,7 @@ def _arc(
     x, y, _, yaw = mount
     dx, dy = lidar[:, 0] - x, lidar[:, 1] - y
     off = (np.arctan2(dy, dx) - yaw + math.pi) % (2.0 * math.pi) - math.pi
-    within = (off >= edges[0]) & (off <= edges[1])
+    within = (off >= edges[0] - _BESIDE) & (off <= edges[1] + _BESIDE)
     if np.any(np.abs(np.hypot(dx[within], dy[within]) - reach) < _SAME):
         return np.empty((0, 2))
     angle = yaw + 0.5 * np.linspace(*edges, _ARC)  # objects seldom stand at the very edge

@@ -42,6 +42,14 @@ def test_an_echo_becomes_an_arc_unless_a_lidar_sees_what_echoes() -> None:
     assert len(near(_seen({}), _NOTHING)) == 0
 
 
+def test_an_echo_from_the_edge_of_the_cone_is_explained_by_a_person_just_beyond_it() -> None:
+    near = NearPoints({"us": _info("ultrasound", angles=np.array([-0.4, 0.4]))})
+    obs = _seen({"us": Reading(0.0, np.array([0.8]))})
+    for angle, explained in ((0.5, True), (-0.5, True), (0.7, False), (-0.7, False)):
+        person = np.array([[0.1 + 0.85 * np.cos(angle), 0.85 * np.sin(angle)]])
+        assert (len(near(obs, person)) == 0) is explained
+
+
 def test_a_camera_shows_what_hangs_at_the_robot_s_height_and_not_the_floor() -> None:
     camera = Pinhole(width=40, height=30, focal=35.0)
     near = NearPoints(
