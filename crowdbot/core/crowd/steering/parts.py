@@ -131,7 +131,7 @@ def steer_people(
             wanted,
         )  # fmt: skip
     if space[0] != 0.0:
-        push_all(near, row, heading, decides, space[1], space[2], space[3], space[4], wanted)
+        push_all(near, heading, decides, space[1], space[2], space[3], space[4], wanted)
     if lanes[0] != 0.0:
         keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], wanted)
     if parts[WALLS, 0] != 0.0:

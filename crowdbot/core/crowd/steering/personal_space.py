@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
+from crowdbot.core.crowd.steering.sorted_discs import REACH
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
-from crowdbot.core.support.compiling.compile import kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows
-from crowdbot.core.types.arrays import Array, Indices, Mask
+from crowdbot.core.types.arrays import Array, Mask
 
 #: Largest push by one other, m/s^2.
 HARDEST = 8.0
@@ -18,63 +18,83 @@ _THROUGH = 0.05
 
 @kernel
 def push_all(
-    discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
+    discs: Rows[DiscRecord], heading: Array, decides: Mask,
     strength: float, reach: float, anticipation: float, behind: float, wanted: Array,
 ) -> None:  # fmt: skip
     """Add the pushes of all others on people who decide to accelerations (N, 2), in place.
 
+    Both of a pair are pushed at once, since the costly part is the same for them. So each one's
+    pushes are added in the order of the discs.
+
     Args:
-        discs to decides: as of `sorted_discs.sort_people`.
+        discs, heading, decides: as of `sorted_discs.sort_people`.
         strength to behind: see `PersonalSpaceSpec`.
         wanted: m/s^2.
     """
-    for i in range(wanted.shape[0]):
-        if not decides[i]:
-            continue
-        a = int(row[i])
-        for b in range(first_within(discs, a, REACH), discs.shape[0]):
-            if discs[b].x - discs[a].x > REACH:
+    farthest = 4.6 * reach  # where the push is 1 % of the strength
+    for a in range(discs.shape[0]):
+        i = _who_decides(discs, a, decides)
+        for b in range(a + 1, discs.shape[0]):
+            dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
+            reaches_a, reaches_b = dx <= REACH, discs[a].x >= discs[b].x - REACH
+            if not (reaches_a or reaches_b):
                 break
-            if b == a or abs(discs[b].y - discs[a].y) > REACH:
+            if abs(dy) > REACH:
                 continue
-            px, py = push_by(
-                discs, a, b, heading[i, 0], heading[i, 1], strength, reach, anticipation, behind
-            )
-            wanted[i, 0] += px
-            wanted[i, 1] += py
+            j = _who_decides(discs, b, decides)
+            if i < 0 and j < 0:
+                continue
+            nx, ny, distance = _towards(discs, a, b, dx, dy, anticipation)
+            gap = distance - discs[a].radius - discs[b].radius
+            other_gap = distance - discs[b].radius - discs[a].radius  # may be rounded otherwise
+            if not gap <= farthest and not other_gap <= farthest:
+                continue
+            push = strength * math.exp(-gap / reach)
+            if i >= 0 and reaches_a and gap <= farthest:
+                size = _felt(push, nx, ny, heading[i], behind)
+                wanted[i, 0] += -size * nx
+                wanted[i, 1] += -size * ny
+            if j >= 0 and reaches_b and other_gap <= farthest:
+                if other_gap != gap:
+                    push = strength * math.exp(-other_gap / reach)
+                size = _felt(push, -nx, -ny, heading[j], behind)
+                wanted[j, 0] += size * nx
+                wanted[j, 1] += size * ny
 
 
-@kernel
-def push_by(
-    discs: Rows[DiscRecord],
-    a: int,
-    b: int,
-    hx: float,
-    hy: float,
-    strength: float,
-    reach: float,
-    anticipation: float,
-    behind: float,
-) -> tuple[float, float]:
-    """Return the push of row b on row a, m/s^2; 0 where it would be below 1 % of ``strength``."""
-    dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
+@inline_kernel
+def _who_decides(discs: Rows[DiscRecord], a: int, decides: Mask) -> int:
+    """Return the person of row a who decides, else -1."""
+    i = int(discs[a].index)
+    return i if i >= 0 and decides[i] else -1
+
+
+@inline_kernel
+def _towards(
+    discs: Rows[DiscRecord], a: int, b: int, dx: float, dy: float, anticipation: float
+) -> tuple[float, float, float]:
+    """Return the unit vector from row a to row b where they will be, and the distance there, m.
+
+    The distance is infinite where there is no direction.
+    """
     qx = dx + (discs[b].vx - discs[a].vx) * anticipation
     qy = dy + (discs[b].vy - discs[a].vy) * anticipation
     distance = math.sqrt(qx * qx + qy * qy)
+    size = distance
     if qx * dx + qy * dy < 0.0:  # they would walk through each other
         qx, qy = dx, dy
-        now = math.sqrt(dx * dx + dy * dy)
-        distance, size = _THROUGH * now, now
-    else:
-        size = distance
-    gap = distance - discs[a].radius - discs[b].radius
-    if size == 0.0 or gap > 4.6 * reach:
-        return 0.0, 0.0
-    nx, ny = qx / size, qy / size
-    ahead = 0.5 * (1.0 + nx * hx + ny * hy)
-    push = strength * math.exp(-gap / reach) * (behind + (1.0 - behind) * ahead)
-    push = min(push, HARDEST)
-    return -push * nx, -push * ny
+        size = math.sqrt(dx * dx + dy * dy)
+        distance = _THROUGH * size
+    if size == 0.0:
+        return 0.0, 0.0, math.inf
+    return qx / size, qy / size, distance
 
 
-__all__ = ["HARDEST", "push_all", "push_by"]
+@inline_kernel
+def _felt(push: float, nx: float, ny: float, heading: Array, behind: float) -> float:
+    """Return the size of a push by the other in direction n, less from behind, m/s^2."""
+    ahead = 0.5 * (1.0 + nx * heading[0] + ny * heading[1])
+    return float(min(push * (behind + (1.0 - behind) * ahead), HARDEST))
+
+
+__all__ = ["HARDEST", "push_all"]
