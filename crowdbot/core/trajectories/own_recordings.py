@@ -197,6 +197,7 @@ def _people_columns(
     if gap is None:
         return made | _on_samples(table, rows, t, ids, column)
     _check_overlap(table, rows["t"], t)
+    _check_steps(table, rows["t"], column, gap)
     places = [n for n in ("x", "y", "vx", "vy") if n in rows]
     tables = {n: np.full((len(t), len(ids)), np.nan) for n in places}
     for i in range(len(ids)):
@@ -216,6 +217,18 @@ def _check_overlap(table: RawTable, people: Array, t: Array) -> None:
         f"robot from {t[0]:.6g} to {t[-1]:.6g} s, at no time both: two clocks? "
         f"clock_offset={t[0] - people.min():.9g} would let both begin together"
     )
+
+
+def _check_steps(table: RawTable, t: Array, column: NDArray[np.int64], gap: float) -> None:
+    """Refuse rows so far apart that no one would be there between them."""
+    order = np.lexsort((t, column))
+    steps = np.diff(t[order])[np.diff(column[order]) == 0]
+    if len(steps) and (step := float(np.median(steps))) > gap:
+        raise InputError(
+            f"{table.name}: the rows of a person are {step:g} s apart (median), and over more than "
+            f"max_gap = {gap:g} s no one is there: times in another unit than the robot's? A unit "
+            "after a name, such as t_ms, says which; else give a larger max_gap"
+        )
 
 
 def _on_samples(

@@ -123,9 +123,19 @@ class RawTable:
             return (stamps - origin) / 1e9, True
         if isinstance(cells, np.ndarray) and cells.dtype.kind == "m":
             return cells.astype("timedelta64[ns]").astype(np.int64) / 1e9, False
+        self._refuse_clocks(column, cells)
         times = np.array([self._number(column, i, cell) for i, cell in enumerate(cells)], float)
         self._all_there(column, np.isfinite(times))
         return times, False
+
+    def _refuse_clocks(self, column: str, cells: Cells) -> None:
+        """Refuse ``10:00:00.5`` and ``1.5.2026 10:00:00``, since ISO 8601 has other stamps."""
+        for row, cell in enumerate(cells[:1]):
+            if isinstance(cell, str) and re.search(r"\d:\d\d", cell):
+                raise InputError(
+                    f"{self.where(row)}: {column}: '{cell.strip()}' is neither seconds nor a stamp "
+                    "of ISO 8601: write 2026-05-01T10:00:00.5, or the seconds since the start"
+                )
 
     def _all_there(self, column: str, there: NDArray[np.bool_]) -> None:
         unknown = np.flatnonzero(~there)

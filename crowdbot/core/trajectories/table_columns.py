@@ -33,11 +33,16 @@ _USUAL: Mapping[str, Sequence[str]] = {
         "pers", "person", "pedestrian", "pedestrianid", "agent", "agentid", "trackid", "human_id",
     ),
 }  # fmt: skip
+#: Our name -> how fields of ROS messages end that mean the same.
+_FIELDS = {
+    "t": re.compile(r"^(?:%|__)time$"),
+    **{axis: re.compile(rf"[./]position[./]{axis}$") for axis in "xy"},
+}
 #: Vadere's columns end in the number of what wrote them: ``startX-PID1``.
 _PROCESSOR = re.compile(r"-PID\d+$")
 _LENGTHS = ("x", "y", "vx", "vy", "radius")
 #: Columns that may be in another unit than ours, by themselves.
-_OTHERS = ("t", "theta")
+_OTHERS = ("t", "theta", "w")
 #: Unit of lengths -> metres.
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 #: Unit of times and angles -> seconds, rad.
@@ -65,13 +70,18 @@ _NO_PERSON = re.compile(
     r"|goal|target|orientation|q|quat(?:ernion)?|dir(?:ection)?|size|offset|gaze|head)s?\d*$",
     re.IGNORECASE,
 )
-#: A unit at the end of a name of times or angles: ``t_ms``, ``yaw_deg``.
+#: A unit at the end of a name: ``t_ms``, ``yaw_deg``, ``pos_x_mm``, ``radius_cm``.
 _ENDING = re.compile(
-    r"^(t|time|timestamp|time_stamp|stamp|theta|yaw|heading)_(s|sec|ms|us|ns|rad|deg)$",
+    r"^((?:t|time|timestamp|time_stamp|stamp|theta|yaw|heading|w|omega|yaw_rate)"
+    r"(?=_(?:s|sec|ms|us|ns|rad|deg)$)"
+    r"|(?:(?:pos_|position_|t)?[xy]|v[xy]|vel_[xy]|radius)(?=_(?:mm|cm|m)$))"
+    r"_(s|sec|ms|us|ns|rad|deg|mm|cm|m)$",
     re.IGNORECASE,
 )
 #: Columns that say nothing about the plane, or number the rows.
 _NEEDLESS = ("z", "tz", "point", "geometry", "", "index", "unnamed: 0")
+#: Least extent of x and z, m, if y seems to be the height.
+_FLAT = 0.5
 #: Prefixes of numbers of people.
 _PERSON = re.compile(r"^(?:p|ped|pedestrian|person|agent|id|human)_?(\d+)$", re.IGNORECASE)
 
@@ -119,8 +129,20 @@ def chosen(
             if theirs in where and header[where.index(theirs)] not in taken:
                 found[ours] = where.index(theirs)
                 break
+        else:
+            found |= _in_messages(ours, lower)
     _refuse_twins(name, header, found.values())
     return found
+
+
+def _in_messages(ours: str, header: Sequence[str]) -> dict[str, int]:
+    """Return the one column that is a field of a message of ROS: ``/odom/pose/pose/position/x``.
+
+    ``rostopic echo -p`` writes ``%time`` and dots, PlotJuggler ``__time`` and slashes.
+    """
+    end = _FIELDS.get(ours)
+    found = [] if end is None else [i for i, name in enumerate(header) if end.search(name)]
+    return {ours: found[0]} if len(found) == 1 else {}
 
 
 def _refuse_twins(name: str, header: Sequence[str], wanted: Iterable[int]) -> None:
@@ -248,8 +270,28 @@ def completed(
     people = _columns_of_people(table, header) if wide else {}
     read = {*used, *(header.index(c) for axes in people.values() for c in axes.values())}
     notes = not_used(table.header[i] for i in range(len(header)) if i not in read)
+    notes += _height_is_y(table, header, cells)
     table = replace(table, notes=[f"{table.name}: {note}" for note in notes])
     return _in_rows(table, people, cells, unit) if people else table
+
+
+def _height_is_y(
+    table: RawTable, header: Sequence[str], cells: Callable[[str], Cells]
+) -> list[str]:
+    """Return a sentence if y never changes and z does: motion capture and Unity have y upwards."""
+    z = next((column for column in header if column.lower() in ("z", "tz")), None)
+    if z is None or not {"x", "y"} <= set(table.columns):
+        return []
+    try:
+        x, y = table.numbers("x"), table.numbers("y")
+        depth = RawTable(table.name, {"z": cells(z)}, table.lines).numbers("z")
+    except InputError:
+        return []  # told where the column is read; nothing reads z
+    spans = [float(np.nanmax(v) - np.nanmin(v)) if np.isfinite(v).any() else 0.0
+             for v in (x, y, depth)]  # fmt: skip
+    if spans[1] > 0.0 or min(spans[0], spans[2]) < _FLAT:
+        return []
+    return [f"y is {y[0]:g} m in all rows, and z is not: is y upwards? Exchange their names"]
 
 
 def _columns_of_people(table: RawTable, header: Sequence[str]) -> dict[str, dict[str, str]]:

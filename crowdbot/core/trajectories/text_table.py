@@ -155,6 +155,9 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
 
     Comments that name people or times come first: others may be sentences about x and y.
     """
+    for comment in comments:
+        if comment.startswith("%time,") and comment.count(",") == width - 1:  # rostopic echo -p
+            return [word.strip() for word in comment.split(",")]
     named = [c for c in comments if set(re.split(r"[^a-z_]+", c.lower())) & set(_STARTS)]
     for comment in [*reversed(named), *reversed(comments)]:
         words = re.split(r"[\s,;]+", re.sub(r"\s*[\[(]", "[", comment.lstrip("#%/ \t")).strip())

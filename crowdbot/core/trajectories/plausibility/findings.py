@@ -12,6 +12,7 @@ import numpy as np
 
 import crowdbot.core.trajectories.plausibility.jumps as jumps
 import crowdbot.core.trajectories.plausibility.times as times
+import crowdbot.core.trajectories.plausibility.units as units
 from crowdbot.core.trajectories.plausibility.times import PERSON_SPEED, USUAL
 from crowdbot.core.types.arrays import Array
 
@@ -46,6 +47,9 @@ def implausible(run: Trajectories) -> list[str]:
     found = list(_times(run.t, tracks))
     for who, x, y, limit in tracks:
         found += _speeds(who, run.t, x, y, limit)
+    if not found:
+        found += [said for who, x, y, _ in tracks for said in units.creeping(run.t, who, x, y)]
+    found += [*units.bodies(run), *units.turning(run)]
     found += _headings(run)
     found += _placeholders(run)
     found += _jumps(run)
@@ -107,20 +111,23 @@ def _jumps(run: Trajectories) -> Iterator[str]:
 
 
 def _placeholders(run: Trajectories) -> Iterator[str]:
-    """Check for people at exactly (0, 0) who then are suddenly elsewhere."""
+    """Check for people at exactly (0, 0) or (-1, -1) who then are suddenly elsewhere."""
     if run.agents is None:
         return
     x, y = run.agents.x, run.agents.y
-    zero = (x == 0.0) & (y == 0.0)
-    steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+    nowhere = jumps.nowhere(x, y)
     with np.errstate(invalid="ignore"):
-        leaps = (zero[1:] != zero[:-1]) & (steps > PERSON_SPEED * np.diff(run.t)[:, None])
+        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+        leaps = (nowhere[1:] != nowhere[:-1]) & (steps > PERSON_SPEED * np.diff(run.t)[:, None])
     whose = np.flatnonzero((leaps & (steps > _LEAP)).any(axis=0))
     if len(whose):
         ids = ", ".join(str(i) for i in run.agents.id[whose[:5]])
+        values = np.unique(x[:, whose][nowhere[:, whose]])
+        at = " or ".join(f"({value:g}, {value:g})" for value in values[:3])
         yield (
-            f"people: in {np.count_nonzero(zero[:, whose])} samples {len(whose)} of them ({ids}) "
-            "stand at exactly (0, 0), and suddenly elsewhere: leave cells without a place empty"
+            f"people: in {np.count_nonzero(nowhere[:, whose])} samples {len(whose)} of them "
+            f"({ids}) stand at exactly {at}, and suddenly elsewhere: leave cells without a place "
+            "empty"
         )
 
 

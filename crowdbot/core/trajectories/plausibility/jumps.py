@@ -29,8 +29,8 @@ def findings(who: str, t: Array, x: Array, y: Array, recorded: Mask | None = Non
     with np.errstate(invalid="ignore"):
         steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
         speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
-    zero = (x == 0.0) & (y == 0.0)
-    known = np.isfinite(speeds) & (zero[1:] == zero[:-1])  # places left out are told by others
+    absent = nowhere(x, y)
+    known = np.isfinite(speeds) & (absent[1:] == absent[:-1])  # places left out are told by others
     if recorded is not None:
         known &= ~recorded
     moving = speeds[known & (steps > 0.0)]
@@ -45,6 +45,16 @@ def findings(who: str, t: Array, x: Array, y: Array, recorded: Mask | None = Non
     seen = f"{who}: {count} jump{'s' if count > 1 else ''}"
     where = f"{'the longest ' if count > 1 else ''}of {steps[k]:.3g} m at t = {t[k[0] + 1]:.6g} s"
     yield f"{seen}, {where}: {_meaning(who)} {_scored(speeds[jumps])}"
+
+
+def nowhere(x: Array, y: Array) -> Mask:
+    """Return places that programs write for none: twice 0, -1 or -9999, 999 or 1e6.
+
+    Args:
+        x, y: places of one shape, m.
+    """
+    found: Mask = (x == y) & ((x == 0.0) | (x == -1.0) | ((np.abs(x) >= 99.0) & (x == np.round(x))))
+    return found
 
 
 def _second(moving: Array) -> float:
