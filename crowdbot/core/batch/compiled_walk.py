@@ -25,11 +25,8 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.contact.robot_contact import DISC as ROUND
 from crowdbot.core.crowd.desired_acceleration import relaxation_time_of
 from crowdbot.core.crowd.engine import LATER, CrowdEngine
-from crowdbot.core.crowd.steering.lanes import keep_all
-from crowdbot.core.crowd.steering.parts import GAP, LANES, SPACE, part_numbers
-from crowdbot.core.crowd.steering.personal_space import push_all
+from crowdbot.core.crowd.steering.parts import part_numbers, steer_among_discs
 from crowdbot.core.crowd.steering.sorted_discs import sort_people
-from crowdbot.core.crowd.steering.time_gap import limit_all
 from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs
 from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
 from crowdbot.core.support.compiling.compile import kernel
@@ -181,17 +178,9 @@ def _steer(
     )  # fmt: skip
     for i in range(position.shape[0]):
         wanted[i, 0], wanted[i, 1] = people[i].ax, people[i].ay
-    near, row = ordered[:count], orders[2]
-    gap, space, lanes = parts[GAP], parts[SPACE], parts[LANES]
-    if gap[0] != 0.0:
-        limit_all(
-            near, row, heading, decides, velocity, gap[1], gap[2], gap[3], gap[4], relaxation,
-            wanted,
-        )  # fmt: skip
-    if space[0] != 0.0:
-        push_all(near, heading, decides, space[1], space[2], space[3], space[4], wanted)
-    if lanes[0] != 0.0:
-        keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], wanted)
+    steer_among_discs(
+        parts, ordered[:count], orders[2], heading, decides, velocity, relaxation, wanted
+    )
     for i in range(position.shape[0]):
         if decides[i]:
             limit, size = traits[2, i], math.hypot(wanted[i, 0], wanted[i, 1])

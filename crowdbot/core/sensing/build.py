@@ -15,7 +15,7 @@ from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.sensing.context import SensorContext
 from crowdbot.core.sensing.reading_errors import ErringSensor
-from crowdbot.core.sensing.sensor import DepthCamera, NoiseGenerator, Sensor, SensorWithMemory
+from crowdbot.core.sensing.sensor import DepthCamera, Sensor, SensorWithMemory
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array
@@ -44,17 +44,6 @@ def build_sensor(
     sensor = registry.build(spec, lambda built: checked_sensor(built, call), context, call=call)
     errors = [spec.errors[name] for name in sorted(spec.errors)]
     return ErringSensor(sensor, errors) if errors else sensor
-
-
-def checked_noise(noise: object) -> NoiseGenerator:
-    """Return what was built as a noise generator, as far as it can be checked before a call.
-
-    Raises:
-        PluginError: it is not one.
-    """
-    if not (callable(getattr(noise, "errors", None)) and hasattr(noise, "random")):
-        raise PluginError(f"build returned a {type(noise).__name__}, which has no errors or random")
-    return cast(NoiseGenerator, noise)
 
 
 def checked_sensor(sensor: object, call: PluginCall) -> Sensor | SensorWithMemory:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.sensing.build import build_sensor, checked_noise
+from crowdbot.core.sensing.build import build_sensor
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.range_model import RangeModel
+from crowdbot.core.sensing.sensor import NoiseGenerator
 from crowdbot.plugins.noise.gaussian import GaussianSpec
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
@@ -23,13 +24,17 @@ BEAMS = 200_000
 AT = 5.0
 
 
+def _noise(built: object) -> NoiseGenerator:
+    return cast(NoiseGenerator, built)
+
+
 def errors(tick: int = 0, **options: Any) -> Array:
     """What is read where everything is 5 m away, minus that."""
     spec = REGISTRY.spec_model("sensor", "ultrasound").model_validate(
         {"kind": "ultrasound", "range_min": 0.0, "range_max": 10.0, **options}
     )
     assert isinstance(spec, UltrasoundSpec)
-    noise = [REGISTRY.build(spec.noise[name], checked_noise) for name in sorted(spec.noise)]
+    noise = [REGISTRY.build(spec.noise[name], _noise) for name in sorted(spec.noise)]
     distance = np.full(BEAMS, AT)
     return RangeModel(spec, noise).measure(distance, sensor_rng(0, "r", "s", tick)) - AT
 

@@ -124,16 +124,9 @@ def steer_people(
         position, velocity, goal, traits, present, members, robots, pillars, box, diagonal,
         unsorted, discs, orders, heading, decides,
     )  # fmt: skip
-    near, row, gap, space, lanes = discs[:count], orders[2], parts[GAP], parts[SPACE], parts[LANES]
-    if gap[0] != 0.0:
-        limit_all(
-            near, row, heading, decides, velocity, gap[1], gap[2], gap[3], gap[4], relaxation,
-            wanted,
-        )  # fmt: skip
-    if space[0] != 0.0:
-        push_all(near, heading, decides, space[1], space[2], space[3], space[4], wanted)
-    if lanes[0] != 0.0:
-        keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], wanted)
+    steer_among_discs(
+        parts, discs[:count], orders[2], heading, decides, velocity, relaxation, wanted
+    )
     if parts[WALLS, 0] != 0.0:
         push_off_walls(
             decides, position, traits[0], walls, frame, first, cells, parts[WALLS, 1],
@@ -150,3 +143,27 @@ def steer_people(
 
 
 __all__ = ["PARTS", "SteeringParts", "part_numbers", "parts_of", "steer_people"]
+
+
+@kernel
+def steer_among_discs(
+    parts: Array, near: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
+    velocity: Array, relaxation: float, wanted: Array,
+) -> None:  # fmt: skip
+    """Change accelerations (N, 2) by time gap, personal space and lanes, in place, m/s^2.
+
+    Args:
+        parts: from `part_numbers`.
+        near, row, heading, decides: sorted discs and what `sort_people` writes.
+        velocity, relaxation, wanted: as of `steer_people`.
+    """
+    gap, space, lanes = parts[GAP], parts[SPACE], parts[LANES]
+    if gap[0] != 0.0:
+        limit_all(
+            near, row, heading, decides, velocity, gap[1], gap[2], gap[3], gap[4], relaxation,
+            wanted,
+        )  # fmt: skip
+    if space[0] != 0.0:
+        push_all(near, heading, decides, space[1], space[2], space[3], space[4], wanted)
+    if lanes[0] != 0.0:
+        keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], wanted)

@@ -25,9 +25,9 @@ from crowdbot.plugins.planners.crowd_prediction.seats_build import (
 #: Preferred speeds of imagined people, m/s, and how many there are of each.
 _SPEEDS, _EACH = np.linspace(0.3, 1.96, 12), 4
 #: Slower people are predicted to stand, m/s.
-_STANDS = 0.2
+STANDS = 0.2
 #: Steps between two decisions.
-_STEPS = 2
+STEPS = 2
 #: Decisions that are predicted, and people at most, the nearest; the rest keep their velocity.
 _DECISIONS, _MOST = 6, 20
 #: Age at which a prediction is compared with the present, s.
@@ -38,7 +38,7 @@ _DOUBT = 0.02
 _NO_ONE = (np.zeros(0, np.int64), np.zeros((0, 2)))
 
 
-class _Checked(NamedTuple):
+class CheckedPrediction(NamedTuple):
     """Predictions for a time, s: numbers of people (N,), and where they would be, (N, 2) m."""
 
     t: float
@@ -61,7 +61,7 @@ class CrowdForecast:
         self._crowd: ImaginedCrowd | None = None
         self._name, self._settle_time, self._memory = crowd, settle_time, memory
         self._wanted = _NO_ONE
-        self._checked = deque[_Checked]()
+        self._checked = deque[CheckedPrediction]()
         self._errors, self._t = (_DOUBT, _DOUBT), -math.inf
 
     @property
@@ -109,14 +109,16 @@ class CrowdForecast:
         crowd = self._roll(people, wanted, path, radius, step, kept) if len(numbers) else kept
         at = round(_CHECKED / step) - 1
         if len(numbers) and at < len(kept):
-            self._checked.append(_Checked(t + step * (at + 1), numbers, kept[at], crowd[at]))
+            self._checked.append(
+                CheckedPrediction(t + step * (at + 1), numbers, kept[at], crowd[at])
+            )
         return np.ascontiguousarray(kept + self.trust * (crowd - kept))
 
     def _check(self, t: float, numbers: Indices, people: Array) -> None:
         """Compare predictions that were for now with now."""
         while self._checked and self._checked[0].t <= t + 1e-9:
             due = self._checked.popleft()
-            count, kept, crowd = mean_errors(numbers, people, due.numbers, due.kept, due.crowd)
+            count, kept, crowd = self._mean_errors(numbers, people, due)
             if count:
                 fresh = 1.0 - math.exp(-max(t - self._t, 0.0) / self._memory)
                 before = self._errors
@@ -124,6 +126,12 @@ class CrowdForecast:
                     before[0] + fresh * (kept - before[0]),
                     before[1] + fresh * (crowd - before[1]),
                 )
+
+    def _mean_errors(
+        self, numbers: Indices, people: Array, due: CheckedPrediction
+    ) -> tuple[int, float, float]:
+        """Return how many of those predicted are still there, and the mean square errors, m^2."""
+        return mean_errors(numbers, people, due.numbers, due.kept, due.crowd)
 
     def _settle(self, t: float, numbers: Indices, people: Array) -> Array:
         """Return the wanted velocities (N, 2), the mean of what each person did lately, m/s."""
@@ -142,9 +150,9 @@ class CrowdForecast:
         Those who stand, and those far away, keep their velocity, as in ``kept``.
         """
         assert self._crowd is not None
-        taken, seats, slips = seated(people, wanted, path[0], _STANDS, _MOST, self._speeds)
-        robots = np.hstack([path[:-1], np.diff(path, axis=0) / step])[::_STEPS][:_DECISIONS]
-        walked = self._crowd.walk(*taken, robots, radius, _STEPS * step)
+        taken, seats, slips = seated(people, wanted, path[0], STANDS, _MOST, self._speeds)
+        robots = np.hstack([path[:-1], np.diff(path, axis=0) / step])[::STEPS][:_DECISIONS]
+        walked = self._crowd.walk(*taken, robots, radius, STEPS * step)
         out = kept.copy()
-        leave_seats(*walked, seats, slips, (step, _STEPS), out)
+        leave_seats(*walked, seats, slips, (step, STEPS), out)
         return out
