@@ -76,8 +76,8 @@ def table(out: Path, *, as_json: bool) -> None:
     for planner in sorted({r.planner for r in found.runs}):
         own = {r.run_id: r.status == "arrived" for r in found.runs if r.planner == planner}
         means = [_mean(found, own, metric) for metric in METRICS[:2]]
-        told = "  ".join(f"{m:.2f}" for m in means)
-        print(f"{planner:20} {sum(own.values()):3} of {len(own):3} arrived  {told}")
+        text = "  ".join(f"{m:.2f}" for m in means)
+        print(f"{planner:20} {sum(own.values()):3} of {len(own):3} arrived  {text}")
     print(adversary_text(lines))
 
 

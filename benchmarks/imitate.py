@@ -54,11 +54,11 @@ class Lessons:
         """
         mine = np.arange(self._env.num_envs) % 2 == 1
         for _ in range(steps):
-            said = self._teachers.actions().astype(np.float32)
+            values = self._teachers.actions().astype(np.float32)
             self._said[0].append(self._seen.copy())
-            self._said[1].append(said)
+            self._said[1].append(values)
             done, _ = self._model.predict(self._seen, deterministic=True)
-            noisy = said + 0.1 * self._random.standard_normal(said.shape)
+            noisy = values + 0.1 * self._random.standard_normal(values.shape)
             driven = np.where((mine & taught)[:, np.newaxis], done, noisy)
             self._env.step_async(np.clip(driven, -1.0, 1.0).astype(np.float32))
             self._seen, _, over, infos = self._env.step_wait()
@@ -69,15 +69,15 @@ class Lessons:
 
     def learn(self, passes: int, rate: float) -> float:
         """Learn all that was said, some times over; return the error that is left."""
-        seen, said = (torch.from_numpy(np.concatenate(rows)) for rows in self._said)
-        scale, huber = said.std(dim=0), torch.nn.functional.smooth_l1_loss
+        seen, values = (torch.from_numpy(np.concatenate(rows)) for rows in self._said)
+        scale, huber = values.std(dim=0), torch.nn.functional.smooth_l1_loss
         for group in self._adam.param_groups:
             group["lr"] = rate
         for _ in range(passes):
             errors: list[float] = []
             for rows in torch.randperm(len(seen)).split(1024):
                 hidden = self._policy.mlp_extractor.forward_actor(seen[rows])
-                error = (self._policy.action_net(hidden) - said[rows]) / scale
+                error = (self._policy.action_net(hidden) - values[rows]) / scale
                 loss: Any = huber(error, torch.zeros_like(error), beta=0.5)
                 self._adam.zero_grad()
                 loss.backward()
@@ -99,8 +99,8 @@ def teach(given: argparse.Namespace) -> None:
         ended = lessons.ended or [(0.0, False, False, 0.0)]
         spent, steps = time.process_time() - begun, (k + 1) * given.steps * given.worlds
         rows.append((spent, steps, LEVEL, len(ended), *np.mean(np.array(ended, float), axis=0)))
-        told = (f"{n} {v:.5g}" for n, v in zip(COLUMNS, rows[-1], strict=True))
-        print(f"{k} error {error:.4f}  ", *told, flush=True)
+        values = (f"{n} {v:.5g}" for n, v in zip(COLUMNS, rows[-1], strict=True))
+        print(f"{k} error {error:.4f}  ", *values, flush=True)
         lessons.ended.clear()
         if k % 4 == 3 or last:
             save_onnx(model, env, given.out)

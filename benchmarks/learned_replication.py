@@ -273,10 +273,10 @@ def main() -> None:
     for end in ("arrived", "hit", "late"):
         rates[end] = interval(sum(e[0] == end for e in ends), len(ends))
     times = [e[1] for e in ends if e[0] == "arrived"]
-    said = {"weights": given.weights.name, "people": given.people, "visible": given.visible,
+    values = {"weights": given.weights.name, "people": given.people, "visible": given.visible,
             "truth": given.truth, "radius": given.radius, "cases": len(ends), **rates,
             "time": round(float(np.mean(times)), 2) if times else None}  # fmt: skip
-    print(json.dumps(said))
+    print(json.dumps(values))
 
 
 def interval(hits: int, count: int) -> list[float]:

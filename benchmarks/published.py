@@ -213,9 +213,9 @@ def what_is_hard(given: argparse.Namespace) -> bool:
                 pairs = zip(levels.values(), table[:, :, k].mean(axis=0), strict=True)
                 shown = ", ".join(f"{value:g}: {mean:.2f}" for value, mean in pairs)
                 print(f"people {people:7} success by {factor:8} {planner:13} {shown}")
-            said = resampled(table, partial(rank_correlation, np.array([*levels.values()])))
-            claim = f"people {people}: rho of {factor} and success {said}"
-            held &= verdict(claim, min(sign * said.low, sign * said.high) > 0.0)
+            estimate = resampled(table, partial(rank_correlation, np.array([*levels.values()])))
+            claim = f"people {people}: rho of {factor} and success {estimate}"
+            held &= verdict(claim, min(sign * estimate.low, sign * estimate.high) > 0.0)
     return held
 
 
@@ -254,8 +254,8 @@ def rds_and_orca(found: Mapping[tuple[str, str], list[dict[str, float]]]) -> boo
         )
     effects = np.nanmean(column(found, levels, ("rds", "orca"), "effect"), axis=1)
     for k, planner in enumerate(("rds", "orca")):
-        said = resampled(effects[:, k], lambda rows: float(np.nanmean(rows)))
-        held &= verdict(f"E_v of {planner}: {said}", abs(said.value - 1.0) < 0.03)
+        estimate = resampled(effects[:, k], lambda rows: float(np.nanmean(rows)))
+        held &= verdict(f"E_v of {planner}: {estimate}", abs(estimate.value - 1.0) < 0.03)
     return held
 
 
@@ -294,8 +294,8 @@ def legible(given: argparse.Namespace) -> bool:
     print(file=sys.stderr)
     table = np.array(rows)
     for k, planner in enumerate(planners):
-        said = resampled(table[:, k], lambda column: float(np.nanmean(column)))
-        print(f"acceleration of people beside {planner}: {said} m/s^2")
+        estimate = resampled(table[:, k], lambda column: float(np.nanmean(column)))
+        print(f"acceleration of people beside {planner}: {estimate} m/s^2")
     less = resampled(table[:, 1] - table[:, 0], lambda column: float(np.nanmean(column)))
     return verdict(f"less beside social_momentum than beside orca by {less} m/s^2", less.low > 0.0)
 

@@ -83,15 +83,15 @@ def _command(folder: Path, runs: int, jobs: int, seconds: float) -> list[str]:
 def _watch(campaign: subprocess.Popen[bytes], out: Path, runs: int) -> dict[int, list[Look]]:
     """What each process of the campaign looked like, until it ended."""
     seen: dict[int, list[Look]] = defaultdict(list)
-    said = 0
+    values = 0
     while campaign.poll() is None:
         done = _complete(out)
         for pid in _tree(campaign.pid):
             look = _look(pid, done)
             if look is not None:
                 seen[pid].append(look)
-        if done >= said + max(1, runs // 10):
-            said = done
+        if done >= values + max(1, runs // 10):
+            values = done
             print(f"{done} runs", file=sys.stderr, flush=True)
         time.sleep(_LOOK)
     return seen

@@ -142,8 +142,8 @@ def show(found: dict[str, dict[str, Numbers]]) -> None:
 
 def pairs(planners: Sequence[str]) -> list[tuple[str, str]]:
     """Careful ones with blind ones; if either kind is missing, all pairs."""
-    told = [(a, b) for a in CAREFUL for b in BLIND if {a, b} <= set(planners)]
-    return told or list(combinations(sorted(planners), 2))
+    entries = [(a, b) for a in CAREFUL for b in BLIND if {a, b} <= set(planners)]
+    return entries or list(combinations(sorted(planners), 2))
 
 
 def compare(

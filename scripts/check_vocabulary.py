@@ -81,6 +81,8 @@ RULES = (
          "throttled_gc, throttle_gc, usual_gc", CODE),
     Rule(r"\b(?:_add_mind|laid_over|quick_exit|aim_of)\b",
          "_add_sensors_and_planner, path_overlay, skip_final_gc, goal_column_of", CODE),
+    Rule(r"\b_?(?:told|said)(?: [:|+]?= |: (?:str|bool|Any|Mapping|dict|list)\b)",
+         "message, text, answer, description, or what it holds", CODE),
     Rule(rf"\b(?:is|are|was|were)\s+no\b(?!\s+(?:{_COMPARED})\b)(?!-)", "is not a, is not an",
          unless=r"\b[Tt]here\s+"),
     Rule(r"\b(?:is|are)\s+none\b(?!\s+of)", "is not one, has none", unless=r"\b[Tt]here\s+"),

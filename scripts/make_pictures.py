@@ -134,10 +134,10 @@ def with_figures(readme: str, shown: str) -> str:
             raise SystemExit(f"{metric} is not shown by the run, or not in the README")
         readme = pattern.sub(_constant(line[0].rstrip()), readme, count=1)
     ending = re.compile(rf"^{ID} · dwa · seed 0: .*?\n?.*?real\s+time\)$", re.MULTILINE | re.DOTALL)
-    told = ending.search(shown)
-    if told is None or not ending.search(readme):
+    values = ending.search(shown)
+    if values is None or not ending.search(readme):
         raise SystemExit("how the run ended is not shown by the run, or not in the README")
-    return ending.sub(_constant(told[0]), readme, count=1)
+    return ending.sub(_constant(values[0]), readme, count=1)
 
 
 def on_an_idle_core(shown: str, run: Path) -> str:
@@ -154,8 +154,8 @@ def on_an_idle_core(shown: str, run: Path) -> str:
     line = ending.search(shown)
     if line is None:
         raise SystemExit("how the run ended is not shown by the run")
-    said = f"{' '.join(line[1].split())} ({factor:.1f} times real time)"
-    return ending.sub(_constant(textwrap.fill(said, 80)), shown, count=1)
+    text = f"{' '.join(line[1].split())} ({factor:.1f} times real time)"
+    return ending.sub(_constant(textwrap.fill(text, 80)), shown, count=1)
 
 
 def _constant(text: str) -> Callable[[re.Match[str]], str]:

@@ -22,12 +22,12 @@ def main() -> None:
     version = next(line for line in text.splitlines() if line.startswith("# Version:"))
     found = (_LINE.match(line) for line in text.splitlines())
     pairs = sorted((int(m[1], 16), m[2].strip()) for m in found if m)
-    told = [
+    entries = [
         "# Characters that look alike, by UTS 39: code point, and those that it looks like.",
         f"# From Unicode's confusables.txt, {version[2:].lower()}, (c) Unicode, Inc.,",
         "# https://www.unicode.org/license.txt; written by scripts/write_confusables.py.",
     ]
-    lines = [*told, *(f"{source:04X} {target}" for source, target in pairs)]
+    lines = [*entries, *(f"{source:04X} {target}" for source, target in pairs)]
     TABLE.write_text("\n".join(lines) + "\n", encoding="ascii")
     print(f"{TABLE}: {len(pairs)} characters")
 

@@ -53,10 +53,10 @@ def with_parameters(page: str, metric: str) -> str:
 def _rows(lines: list[str], fields: dict[str, FieldInfo]) -> Iterator[str]:
     """Yield the rows; what says more than the field's default or description stays."""
     for line in lines:
-        name, given, said = (cell.strip() for cell in line.strip("|").split("|", 2))
+        name, given, values = (cell.strip() for cell in line.strip("|").split("|", 2))
         field = fields[name.strip("`")]
         unit = ", ".join(units_of(field.annotation, field.metadata)).replace("^2", "²")
         meaning = re.sub(r", \S+$", "", (field.description or "").rstrip("."))
-        meaning = said if said.startswith(meaning) or not meaning else meaning
+        meaning = values if values.startswith(meaning) or not meaning else meaning
         value = f"{default_of(field)} {unit}".strip()
         yield f"| {name} | {given if given.startswith(value) else value} | {meaning} |\n"

@@ -38,8 +38,8 @@ def _tables(found: ReferenceScores) -> Iterator[str]:
     suites = dict.fromkeys(run.suite for run in found.results.runs)
     for suite, held in zip(suites, found.held, strict=True):
         runs = [run for run in found.results.runs if run.suite == suite]
-        said = held.partition(";")[0].partition(": ")[2]
-        yield f"`{suite}`: {said}.\n"
+        values = held.partition(";")[0].partition(": ")[2]
+        yield f"`{suite}`: {values}.\n"
         names = ("arrived", *(name for name, *_ in _SCORES))
         yield f"| planner | role | needs | {' | '.join(names)} |"
         yield "|---" * (3 + len(names)) + "|"

@@ -47,9 +47,9 @@ def test_every_name_resolves(name: str) -> None:
 def test_the_page_has_a_line_on_each_name() -> None:
     page = (ROOT / "docs" / "developers" / "author_surface.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (`.*?) \| (.*) \|$", page, re.MULTILINE)
-    told = {name: text for names, text in rows for name in re.findall(r"`(\w+)`", names)}
-    assert told.keys() == {n for module in (plugin, *ROOMS) for n in module.__all__}
-    assert [n for n, text in told.items() if not text.strip()] == []
+    values = {name: text for names, text in rows for name in re.findall(r"`(\w+)`", names)}
+    assert values.keys() == {n for module in (plugin, *ROOMS) for n in module.__all__}
+    assert [n for n, text in values.items() if not text.strip()] == []
 
 
 def _sources() -> Iterator[tuple[str, str]]:

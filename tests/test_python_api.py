@@ -158,17 +158,17 @@ def test_class_object_and_function_drive_alike(tmp_path: Path) -> None:
         assert obs.t >= 0.0
         return 0.1, 0.0
 
-    creep, told = Creep(), list[Any]()
+    creep, values = Creep(), list[Any]()
     options: dict[str, Any] = {"references": False, "replay": False, "metrics": "success"}
     by_class = crowdbot.simulate(short(), planner=Creep, out=tmp_path, **options)
     by_object = crowdbot.simulate(
-        short(), planner=creep, out=tmp_path, progress=told.append, **options
+        short(), planner=creep, out=tmp_path, progress=values.append, **options
     )
     by_function = crowdbot.simulate(short(), planner=ahead, out=tmp_path, **options)
     hashes = {r.record.hashes.trajectory for r in (by_class, by_object, by_function)}
     assert len(hashes) == 1
     assert creep.seen[:2] == [0.0, 0.0625]
-    assert told[-1].t == 1.0
+    assert values[-1].t == 1.0
     again = crowdbot.simulate(short(), planner=creep, out=tmp_path, **options)
     assert not again.reused
     assert crowdbot.simulate(short(), planner=Creep, out=tmp_path, **options).directory

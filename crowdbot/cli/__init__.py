@@ -44,9 +44,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         _say(_text(error))
         return error.exit_code
     except (KeyboardInterrupt, SystemExit) as error:
-        if said := left_by(error):
-            _say(said)
-        return PluginError.exit_code if said else 130
+        if message := left_by(error):
+            _say(message)
+        return PluginError.exit_code if message else 130
     except BrokenPipeError:
         _drop_output()
         return 0
@@ -56,8 +56,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         _say(system_error(error))
         return 1
     except MemoryError as error:
-        asked = f" ({error})" if str(error) else ""
-        _say(f"error: there is not enough memory{asked}; 'free -h' and 'ulimit -v' show the limits")
+        details = f" ({error})" if str(error) else ""
+        _say(
+            f"error: there is not enough memory{details}; 'free -h' and 'ulimit -v' show the limits"
+        )
         return 1
     except Exception as error:
         if os.environ.get("CROWDBOT_DEBUG"):

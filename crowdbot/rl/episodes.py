@@ -16,7 +16,7 @@ _AGAIN = "rl.again"
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """One episode of a world.
+    """Scenario and seeds of one episode.
 
     Attributes:
         scenario: id.

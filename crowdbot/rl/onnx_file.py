@@ -78,6 +78,6 @@ def _tensor(name: str, values: Array) -> bytes:
 
 
 def _value(name: str, size: int) -> bytes:
-    """A tensor of floats (worlds, size)."""
+    """Return a tensor of floats (worlds, size)."""
     shape = _part(1, _text(2, "worlds")) + _part(1, _number(1, size))
     return _text(1, name) + _part(2, _part(1, _number(1, _FLOAT) + _part(2, shape)))

@@ -51,12 +51,12 @@ def _check_reach(world: BatchWorld, tasks: Sequence[Task]) -> None:
     """
     walls = world.blueprint.parts.walls
     for before, task in zip(world.blueprint.tasks, tasks, strict=True):
-        for what, a, b in (
+        for name, a, b in (
             ("start", before.start[:2], task.start[:2]),
             ("goal", before.goal, task.goal),
         ):
             if _crosses(np.array(a), np.array(b), walls):
-                raise InputError(f"the {what} would lie behind a wall")
+                raise InputError(f"the {name} would lie behind a wall")
 
 
 def _crosses(a: Array, b: Array, walls: Array) -> bool:

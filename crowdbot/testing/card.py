@@ -104,12 +104,12 @@ def _without(metric: MetricComponent[Any]) -> Iterator[str]:
 
 
 def _assert_names(
-    what: str, found: list[str], known: tuple[str, ...], may_lack: tuple[str, ...]
+    subject: str, found: list[str], known: tuple[str, ...], may_lack: tuple[str, ...]
 ) -> None:
     """Check that the known names are there, in their order, except those that may be lacking."""
     expected = [n for n in known if n in found or n not in may_lack]
     in_order = [n for n in found if n != OPTIONAL] == [n for n in expected if n != OPTIONAL]
-    assert in_order, f"{what} are {', '.join(found)}; expected are {', '.join(expected)}"
+    assert in_order, f"{subject} are {', '.join(found)}; expected are {', '.join(expected)}"
 
 
 def _assert_variants(metric: MetricComponent[Any], table: Mapping[str, list[str]]) -> None:
@@ -126,10 +126,10 @@ def _assert_parameters(component: Component[Any], table: Mapping[str, list[str]]
     for name, (default, *_) in table.items():
         value = fields[name].get_default()
         number = float(value) if isinstance(value, int | float) else None
-        said = re.match(r"[-+0-9.e]+", default)
+        stated = re.match(r"[-+0-9.e]+", default)
         if number is not None and not isinstance(value, bool):
-            assert said, f"parameter {name}: '{default}' is not a number"
-            close = abs(float(said[0]) - number) <= 1e-4 * abs(number)
+            assert stated, f"parameter {name}: '{default}' is not a number"
+            close = abs(float(stated[0]) - number) <= 1e-4 * abs(number)
             assert close, f"parameter {name}: default is {number:g}, the card says {default}"
         else:
             assert str(value).lower() in default.lower(), f"parameter {name}: default is {value}"

@@ -66,11 +66,11 @@ def assert_moves(model: RobotModel, mode: str, command: Command) -> None:
     )
     expected = [x * _MEASURE for x in command]
     slack = [_SHARE * max(abs(x), 0.1) for x in expected]
-    told = f"{mode}: told {tuple(command)} (m/s, rad/s, m/s to the left) for {_MEASURE:g} s, it "
+    prefix = f"{mode}: told {tuple(command)} (m/s, rad/s, m/s to the left) for {_MEASURE:g} s, it "
     for got, want, most in zip(moved, expected, slack, strict=True):
-        text = f"{told}moved {np.round(moved, 4).tolist()} (m, rad, m)"
+        text = f"{prefix}moved {np.round(moved, 4).tolist()} (m, rad, m)"
         assert abs(got - want) <= most, text
-    assert end.tilt < math.radians(5.0), f"{told}tilted by {math.degrees(end.tilt):.1f} degrees"
+    assert end.tilt < math.radians(5.0), f"{prefix}tilted by {math.degrees(end.tilt):.1f} degrees"
 
 
 def drive(model: RobotModel, mode: str, command: Command, seconds: float) -> list[RobotState]:

@@ -193,10 +193,10 @@ def check_input_is_not_changed(component: Component[Any], registry: Registry | N
         view = random_view(0)
         velocities = _candidates(view)
         params = cost.params.copy() if isinstance(cost, CompiledCost) else np.zeros(0)
-        before, asked = arrays_of(view), velocities.copy()
+        before, candidates = arrays_of(view), velocities.copy()
         _total(cost, view, velocities)
         assert arrays_of(view) == before, "changed the crowd"
-        assert np.array_equal(velocities, asked), "changed the candidates"
+        assert np.array_equal(velocities, candidates), "changed the candidates"
         if isinstance(cost, CompiledCost):
             assert np.array_equal(cost.params, params), "changed its parameters"
 

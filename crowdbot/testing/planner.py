@@ -129,6 +129,6 @@ def _drive(name: str, driven: Driven) -> list[Any]:
         raise AssertionError(f"{name}: {error}") from error
 
 
-def _assert_same(one: list[Any], two: list[Any], what: str) -> None:
+def _assert_same(one: list[Any], two: list[Any], subject: str) -> None:
     for k, (a, b) in enumerate(zip(one, two, strict=True)):
-        assert a == b, f"{what}: step {k} gave {tuple(b)} instead of {tuple(a)}"
+        assert a == b, f"{subject}: step {k} gave {tuple(b)} instead of {tuple(a)}"

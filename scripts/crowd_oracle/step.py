@@ -129,7 +129,7 @@ class _Obedient:
 
 def _engine(case: Case, stiffness: Array) -> tuple[CrowdEngine, _Told]:
     """Return our engine in a case's world, deciding at every tick, and its given accelerations."""
-    told = _Told(np.zeros((len(stiffness), 2)))
+    values = _Told(np.zeros((len(stiffness), 2)))
     kinds, policy = np.unique(stiffness, return_inverse=True)
     agents = replace(case.agents, policy=policy.astype(np.int64),
                      at_goal=np.full(len(stiffness), STOP))  # fmt: skip
@@ -137,5 +137,5 @@ def _engine(case: Case, stiffness: Array) -> tuple[CrowdEngine, _Told]:
         walls=case.walls, periodic_boundary=case.periodic_boundary, parity=True,
         decision_rate=TICKS_PER_SECOND,
     )  # fmt: skip
-    obedient: list[Any] = [_Obedient(told, float(k)) for k in kinds]
-    return CrowdEngine(agents, world, obedient), told
+    obedient: list[Any] = [_Obedient(values, float(k)) for k in kinds]
+    return CrowdEngine(agents, world, obedient), values

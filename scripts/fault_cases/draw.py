@@ -85,8 +85,8 @@ def files() -> dict[Path, str]:
 def page() -> str:
     """Return the text of docs/reference/fault.md."""
     lines = ["| | rule | fault |", "|---|---|---|"]
-    for name, (told, fault) in RULES.items():
-        lines.append(f"| {name.replace('_', ' ')} | {told} | {_yes(fault)} |")
+    for name, (expected, fault) in RULES.items():
+        lines.append(f"| {name.replace('_', ' ')} | {expected} | {_yes(fault)} |")
     cases = ["| the robot … | | fault | rule |", "|---|---|---|---|"]
     for case in CASES:
         picture = f"![{case.told}](../images/fault/{case.name}.svg)"

@@ -63,8 +63,8 @@ class Figure:
         self._key(colour, label)
         above = np.where(np.isfinite(high) & np.isfinite(low), np.maximum(high, low), low)
         points = [*zip(x, above, strict=True), *zip(x[::-1], low[::-1], strict=True)]
-        told = " ".join(self._at(a, b) for a, b in points if math.isfinite(b))
-        self._shapes.append(f'<polygon points="{told}" fill="{colour}" stroke="none"/>')
+        text = " ".join(self._at(a, b) for a, b in points if math.isfinite(b))
+        self._shapes.append(f'<polygon points="{text}" fill="{colour}" stroke="none"/>')
         return self
 
     def spans(self, x: Array, on: NDArray[np.bool_], label: str = "") -> Figure:

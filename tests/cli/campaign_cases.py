@@ -29,9 +29,9 @@ def start(out: Path, *more: str) -> subprocess.Popen[str]:
 def run(out: Path, *more: str, timeout: float = AT_MOST) -> tuple[int, dict[str, Any], str]:
     """Exit code, the summary, and what was said."""
     running = start(out, *more, "--json")
-    said, err = running.communicate(timeout=timeout)
-    assert "Traceback" not in said + err
-    return running.returncode, json.loads(said) if said else {}, err
+    output, err = running.communicate(timeout=timeout)
+    assert "Traceback" not in output + err
+    return running.returncode, json.loads(output) if output else {}, err
 
 
 def outcome(out: Path) -> dict[str, tuple[str, str]]:

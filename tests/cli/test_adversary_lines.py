@@ -69,15 +69,15 @@ def test_a_further_careful_planner_is_run_once_beside_the_others(
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "expected"),
     [
         (["--careful", "rds"], "add --adversaries"),
         (["--adversaries", "--careful", "bully"], "--careful bully: this planner is an adversary"),
     ],
 )
 def test_a_careful_planner_that_cannot_be_one(
-    options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    options: list[str], expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     argv = ["audit", "challenge-2026", *options, "--dry-run", "--out", str(tmp_path)]
     assert cli.main(argv) == 1
-    assert said in capsys.readouterr().err
+    assert expected in capsys.readouterr().err

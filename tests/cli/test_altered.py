@@ -41,14 +41,14 @@ Tell = Callable[..., tuple[str, str]]
 
 
 @pytest.fixture
-def told(capsys: pytest.CaptureFixture[str]) -> Tell:
+def output_of(capsys: pytest.CaptureFixture[str]) -> Tell:
     """A function that returns output and messages of a command that ends well."""
 
     def tell(*words: str) -> tuple[str, str]:
         capsys.readouterr()
         assert cli.main(list(words)) == 0
-        said = capsys.readouterr()
-        return said.out, said.err
+        captured = capsys.readouterr()
+        return captured.out, captured.err
 
     return tell
 
@@ -75,11 +75,11 @@ def test_the_folder_says_what_was_altered(root: Path) -> None:
     assert folders[1].startswith("alone+time_limit=0.25_s-")
 
 
-def test_results_leave_them_out_and_say_so(root: Path, told: Tell) -> None:
-    out, message = told("results", "--runs", str(root), "--metric", "success", "--json")
+def test_results_leave_them_out_and_say_so(root: Path, output_of: Tell) -> None:
+    out, message = output_of("results", "--runs", str(root), "--metric", "success", "--json")
     assert planners(out) == [1]
     assert f"1 run of altered scenarios left out ({SHORT})" in message
-    out, message = told(
+    out, message = output_of(
         "results", "--runs", str(root), "--metric", "success", "--json", "--altered"
     )
     assert planners(out) == [1, 1]
@@ -88,14 +88,14 @@ def test_results_leave_them_out_and_say_so(root: Path, told: Tell) -> None:
     assert {name.rpartition("-")[0] or name for name in suites} == {
         "scenarios", "scenarios+time_limit=0.25_s",
     }  # fmt: skip
-    by_suite = told("results", "--runs", str(root), "--altered", "--by", "suite", "--json")[0]
+    by_suite = output_of("results", "--runs", str(root), "--altered", "--by", "suite", "--json")[0]
     assert {line["suite"] for line in json.loads(by_suite)} == suites
 
 
-def test_the_table_names_what_was_altered(root: Path, told: Tell) -> None:
-    out, _ = told("results", "--runs", str(root), "--metric", "success", "--altered")
+def test_the_table_names_what_was_altered(root: Path, output_of: Tell) -> None:
+    out, _ = output_of("results", "--runs", str(root), "--metric", "success", "--altered")
     assert "scenarios+time_limit=0.25_s-" in out
-    assert "suite" not in told("results", "--runs", str(root), "--metric", "success")[0]
+    assert "suite" not in output_of("results", "--runs", str(root), "--metric", "success")[0]
 
 
 def test_a_metric_that_no_run_has_is_told_where_all_are_left_out(
@@ -110,8 +110,8 @@ def test_a_metric_that_no_run_has_is_told_where_all_are_left_out(
     assert cli.main(["results", "--runs", str(tmp_path), "--metric", "success"]) == 0
 
 
-def test_report_needs_no_choice_of_suite(root: Path, tmp_path: Path, told: Tell) -> None:
-    told("report", str(root), "--out", str(tmp_path / "report.html"))
+def test_report_needs_no_choice_of_suite(root: Path, tmp_path: Path, output_of: Tell) -> None:
+    output_of("report", str(root), "--out", str(tmp_path / "report.html"))
 
 
 def test_python_leaves_them_out_too(root: Path) -> None:
@@ -129,9 +129,11 @@ def test_runs_of_earlier_versions_are_told_by_their_id() -> None:
     assert [row.scenario for row in kept] == ["s0", "s0+calibrated"]
 
 
-def test_report_takes_a_suite_by_id_and_by_file(root: Path, tmp_path: Path, told: Tell) -> None:
+def test_report_takes_a_suite_by_id_and_by_file(
+    root: Path, tmp_path: Path, output_of: Tell
+) -> None:
     for suite in ("scenarios", str(root.parent / "alone.yaml")):
-        told("report", str(root), "--suite", suite, "--out", str(tmp_path / "report.html"))
+        output_of("report", str(root), "--suite", suite, "--out", str(tmp_path / "report.html"))
 
 
 def test_bundle_guesses_neither_suite_nor_planner(
@@ -147,7 +149,7 @@ def test_bundle_guesses_neither_suite_nor_planner(
 
 
 def test_tables_of_pairs_keep_suites_apart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: Tell
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, output_of: Tell
 ) -> None:
     """Power, ladder and atlas of a suite are the same whether another is there or not."""
     few = {"axes": {"density": ("d1", "d2")}, "metrics": ["safe_efficiency"], "failures": 0}
@@ -155,16 +157,18 @@ def test_tables_of_pairs_keep_suites_apart(
     other = campaign(suite="b", **few, planners={"her": 0.4, "his": 0.9})  # type: ignore[arg-type]
     both = replace(made, runs=made.runs + other.runs, scores=(*made.scores, *other.scores))
     for command in ("power", "atlas"):
-        said = {}
+        values = {}
         for name, found in (("a", made), ("b", other), ("both", both)):
             monkeypatch.setattr(Results, "open", lambda _, found=found: found)
-            said[name] = json.loads(told("results", command, "--runs", str(tmp_path), "--json")[0])
-        alone = [{"suite": n, **line} for n in ("a", "b") for line in said[n]]
-        assert said["both"] == alone
+            values[name] = json.loads(
+                output_of("results", command, "--runs", str(tmp_path), "--json")[0]
+            )
+        alone = [{"suite": n, **line} for n in ("a", "b") for line in values[n]]
+        assert values["both"] == alone
     monkeypatch.setattr(Results, "open", lambda _: both)
-    page, _ = told("results", "atlas", "--runs", str(tmp_path))
+    page, _ = output_of("results", "atlas", "--runs", str(tmp_path))
     assert page.index("## a") < page.index("## b")
-    rows = json.loads(told("results", "--runs", str(tmp_path), "--json")[0])
+    rows = json.loads(output_of("results", "--runs", str(tmp_path), "--json")[0])
     assert {row["suite"] for row in rows} == {"a", "b"}
 
 

@@ -36,8 +36,8 @@ FLOORS = ["goal_seek", "stand_still", "stop_and_go", "wall_hug"]
 
 def audit(capsys: pytest.CaptureFixture[str], *argv: str) -> tuple[int, Any, str]:
     code = cli.main(["audit", *argv, "--json"])
-    said = capsys.readouterr()
-    return code, json.loads(said.out) if said.out else {}, said.err
+    captured = capsys.readouterr()
+    return code, json.loads(captured.out) if captured.out else {}, captured.err
 
 
 @pytest.mark.slow
@@ -104,9 +104,9 @@ def test_what_is_wrong_is_told(
     argv: list[str], says: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["audit", *argv]) in (1, 2)
-    said = capsys.readouterr().err
-    assert says in said
-    assert "Traceback" not in said
+    output = capsys.readouterr().err
+    assert says in output
+    assert "Traceback" not in output
 
 
 def plan_of(capsys: pytest.CaptureFixture[str], out: Path, *argv: str) -> dict[str, Any]:

@@ -271,9 +271,9 @@ def test_ctrl_c_ends_workers_and_keeps_what_is_finished(tmp_path: Path) -> None:
     wait_until(lambda: running.poll() is not None or _records(out) >= 1)
     workers = _descendants(running.pid)
     os.killpg(running.pid, signal.SIGINT)
-    said, err = running.communicate(timeout=AT_MOST)
-    assert running.returncode == 130, said + err
-    assert "Traceback" not in said + err
+    output, err = running.communicate(timeout=AT_MOST)
+    assert running.returncode == 130, output + err
+    assert "Traceback" not in output + err
     assert "interrupted; the same command makes the runs that are missing" in err
     assert not any(map(_alive, workers))
     assert _records(out) >= 1

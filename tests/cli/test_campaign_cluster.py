@@ -60,8 +60,8 @@ def test_a_killed_worker_changes_nothing(
     running = start(out, "--planner", "goal_seek", "--cluster", address)
     wait_until(lambda: running.poll() is not None or list(out.rglob("*.partial")))
     os.kill(workers[0].pid, signal.SIGKILL)
-    said, err = running.communicate(timeout=AT_MOST)
-    assert running.returncode == 0, said + err
+    output, err = running.communicate(timeout=AT_MOST)
+    assert running.returncode == 0, output + err
     local = tmp_path / "local"
     assert run(local, "--planner", "goal_seek")[0] == 0
     assert len(outcome(out)) == 3

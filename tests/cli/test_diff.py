@@ -36,17 +36,17 @@ def test_two_scenarios(capsys: Captured) -> None:
 def test_equal_ones(capsys: Captured) -> None:
     file = ROOT / "scenario_specs" / "challenge-2020.yaml"
     assert main(["diff", A, f"{file}#in-d0125-slow-c01-r02"]) == 0
-    first, second, said = capsys.readouterr().out.splitlines()
-    assert said == "scenario: equal"
+    first, second, output = capsys.readouterr().out.splitlines()
+    assert output == "scenario: equal"
     assert first.split()[2] == second.split()[2]
 
 
 def test_set_changes_the_second(capsys: Captured) -> None:
     assert main(["diff", A, A, "--set", "crowd=null", "--json"]) == 1
-    said = json.loads(capsys.readouterr().out)
-    assert said["equal"] is False
-    assert said["a"]["hash"] != said["b"]["hash"]
-    fields = {d["field"]: d for d in said["scenario"]}
+    document = json.loads(capsys.readouterr().out)
+    assert document["equal"] is False
+    assert document["a"]["hash"] != document["b"]["hash"]
+    fields = {d["field"]: d for d in document["scenario"]}
     assert fields["crowd"]["b"] is None
     assert {"kinds.rvo", "kinds.ttca_dca", "kinds.velocity_space"} < set(fields)
     assert "b" not in fields["kinds.rvo"]
@@ -92,10 +92,10 @@ def test_two_runs(tmp_path: Path, capsys: Captured) -> None:
     assert main(["diff", first, again]) == 0  # neither spelling nor wall time counts
     capsys.readouterr()
     assert main(["diff", first, other, "--json"]) == 1
-    said = json.loads(capsys.readouterr().out)
-    assert said["scenario"] == []
-    assert said["run"] == [{"field": "hashes.trajectory", "a": "x", "b": "y"}]
-    assert said["scores"] == [{"field": "risk.literal.value", "a": 1.5, "b": 2.5}]
+    document = json.loads(capsys.readouterr().out)
+    assert document["scenario"] == []
+    assert document["run"] == [{"field": "hashes.trajectory", "a": "x", "b": "y"}]
+    assert document["scores"] == [{"field": "risk.literal.value", "a": 1.5, "b": 2.5}]
     assert main(["diff", first, A]) == 0  # a run against a scenario: its scenario
     assert main(["diff", A, first, "--set", "crowd=null"]) == 1
     assert "not a run" in capsys.readouterr().err

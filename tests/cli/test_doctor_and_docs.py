@@ -179,6 +179,6 @@ def test_pages_for_developers_are_searched_only_when_asked(
     assert cli.main(["docs", "--search", "atomically"]) == 0
     assert "developers/" not in capsys.readouterr().out
     assert cli.main(["docs", "--search", "hash", "--developers"]) == 0
-    said = capsys.readouterr().out
-    assert "decisions/" in said
-    assert "developers/glossary:" in said
+    output = capsys.readouterr().out
+    assert "decisions/" in output
+    assert "developers/glossary:" in output

@@ -147,14 +147,16 @@ def test_an_interrupted_run(tmp_path: Path, capsys: Captured) -> None:
     partial.mkdir()
     record(partial / "run.mcap", CROWDED, complete=False)
     until = CROWDED.t[-1]
-    said = f"run.mcap: the recording is cut: it can be read until {until:g} s; --allow-incomplete"
-    assert said in failure(capsys, partial)
+    expected = (
+        f"run.mcap: the recording is cut: it can be read until {until:g} s; --allow-incomplete"
+    )
+    assert expected in failure(capsys, partial)
     assert main(["evaluate", str(partial), "--json"]) == 1
     captured = capsys.readouterr()
     (run,) = json.loads(captured.out)
     assert (run["complete"], run["until"], run["scores"]) == (False, until, [])
-    assert said in run["error"]
-    assert said in captured.err
+    assert expected in run["error"]
+    assert expected in captured.err
     (run,) = evaluated(capsys, partial, "--allow-incomplete")
     assert (run["scenario"], run["complete"], run["until"]) == ("", False, until)
     assert main(["evaluate", str(partial), "--allow-incomplete"]) == 0

@@ -63,9 +63,9 @@ def scores(capsys: Captured, *argv: object) -> list[dict[str, Any]]:
 
 def refused(capsys: Captured, *argv: object, code: int = 1) -> str:
     assert main(["evaluate", *map(str, argv)]) == code
-    said = capsys.readouterr()
-    assert "Traceback" not in said.err
-    return said.err
+    captured = capsys.readouterr()
+    assert "Traceback" not in captured.err
+    return captured.err
 
 
 # ---------------------------------------------------------------------- other files
@@ -182,12 +182,12 @@ def campaign(tmp_path: Path) -> Path:
 def test_a_bad_run_stops_no_other(jobs: str, campaign: Path, capsys: Captured) -> None:
     argv = ["evaluate", str(campaign), "--metrics", "success", "--json", "--jobs", jobs]
     assert main(argv) == 1
-    said = capsys.readouterr()
-    found = json.loads(said.out)
+    captured = capsys.readouterr()
+    found = json.loads(captured.out)
     assert [r["seed"] for r in found] == [0, 1, None, 3]
     assert [len(r["scores"]) for r in found] == [1, 1, 0, 1]
     assert "seed-2" in found[2]["error"]
-    lines = said.err.splitlines()  # on a slow machine progress is among them
+    lines = captured.err.splitlines()  # on a slow machine progress is among them
     (error,) = [line for line in lines if line.startswith("error: ")]
     assert "not an MCAP file" in error
     assert lines[-1] == "scored 3 of 4 runs, 1 failed"

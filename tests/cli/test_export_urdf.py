@@ -69,8 +69,8 @@ scenario:
   robots.robot.task: {{start: [2.5, 0, 0], goal: {{zone: robot_goal}}, time_limit: 9 s}}
 """)
     registry = discover(allow=())
-    told = open_spec(str(file), registry, ()).scenarios[0].robots["robot"]
-    model: RobotModel = build_model(registry, told.model)
+    values = open_spec(str(file), registry, ()).scenarios[0].robots["robot"]
+    model: RobotModel = build_model(registry, values.model)
     robot: Any = _exported(capsys, "export-urdf", "robot", "--spec", str(file))
     links = {link.name: link for link in robot.links}
     joints = {joint.child: joint for joint in robot.joints}
@@ -80,10 +80,10 @@ scenario:
     assert joints["base_link"].origin.xyz == pytest.approx([0.0, 0.0, model.base_height])
     driven = [j for j in robot.joints if j.type == "continuous" and j.limit is not None]
     assert len(driven) == (0 if model.limits.vy_max > 0.0 else 2)
-    placed = [n for n, sensor in told.sensors.items() if sensor.kind in SEEN_FROM]
+    placed = [n for n, sensor in values.sensors.items() if sensor.kind in SEEN_FROM]
     assert len(placed) == {"pepper": 5, "qolo": 3, "cuybot": 3, "smart_wheelchair": 15}[kind]
     for name in placed:
-        sensor: Any = told.sensors[name]
+        sensor: Any = values.sensors[name]
         mount, joint = sensor.mount, joints[name]
         assert joint.parent == "base_link"
         assert joint.origin.xyz == pytest.approx([mount.x, mount.y, mount.z])

@@ -205,7 +205,7 @@ def test_no_plain_text_is_an_error(
     make(file)
     (tmp_path / "RUNS").mkdir()
     code = main([word.format(file) for word in words])
-    said = capsys.readouterr().err
-    assert code in (1, 2), said
-    assert "internal error" not in said
-    assert place in NOT_REACHED or "given" in said or "/dev/zero" in said
+    output = capsys.readouterr().err
+    assert code in (1, 2), output
+    assert "internal error" not in output
+    assert place in NOT_REACHED or "given" in output or "/dev/zero" in output

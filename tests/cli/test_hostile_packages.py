@@ -164,9 +164,9 @@ def test_the_table_is_whole_and_tracebacks_come_on_request(site: Site) -> None:
     assert "Traceback" not in plain.stdout + plain.stderr
     assert plain.stdout.startswith("plugin ")
     assert "hello from import" in plain.stderr
-    told = site.run("plugins", "-v")
-    assert "Traceback" in told.stderr
-    assert "import no_such_module" in told.stderr
+    done = site.run("plugins", "-v")
+    assert "Traceback" in done.stderr
+    assert "import no_such_module" in done.stderr
 
 
 def test_a_document_that_names_what_failed_is_told(site: Site) -> None:

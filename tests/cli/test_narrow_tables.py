@@ -26,14 +26,14 @@ def test_results_fit_and_say_everything(
     print_table([LINE])
     text = capsys.readouterr().out
     assert max(map(len, text.splitlines())) <= width
-    told = "".join(text.split())
+    expected = "".join(text.split())
     if width < 70:  # broken between words, not between letters
         assert {"contacts_", "per_km", "at_fault,", "1/km"} <= set(text.split())
     else:
         for word in ("dwa", "contacts_per_km", "at_fault", "1/km", "12.3", "1.5", "98.5", "7"):
-            assert word in told
-    assert "12" in told
-    assert "censored" in told or width == 60
+            assert word in expected
+    assert "12" in expected
+    assert "censored" in expected or width == 60
 
 
 @pytest.mark.parametrize("width", [60, 100, 200])
@@ -59,11 +59,11 @@ def test_topics_of_a_recording_are_named_in_full(
     )  # fmt: skip
     monkeypatch.setenv("COLUMNS", str(width))
     _show({"file": "run.mcap"}, found)
-    told = "".join(capsys.readouterr().out.split())
-    assert "…" not in told
+    output = "".join(capsys.readouterr().out.split())
+    assert "…" not in output
     if width > 70:
-        assert "crowdbot_msgs/msg/VelocityCandidates" in told
-    assert "3780" in told
+        assert "crowdbot_msgs/msg/VelocityCandidates" in output
+    assert "3780" in output
 
 
 @pytest.mark.parametrize("width", [60, 80, 300])

@@ -43,9 +43,9 @@ def test_folders_are_made_and_files_are_not_folders(
     (tmp_path / "file").write_text("")
     capsys.readouterr()
     assert cli.main([*words, "--out", str(tmp_path / "file" / "x" / file)]) == 1
-    told = re.sub(r"\s+", " ", capsys.readouterr().err)
-    assert file in told
-    assert "cannot be written: Not a directory" in told
+    output = re.sub(r"\s+", " ", capsys.readouterr().err)
+    assert file in output
+    assert "cannot be written: Not a directory" in output
 
 
 def test_a_page_is_called_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,5 +81,5 @@ def test_links_in_a_circle_are_told(tmp_path: Path, capsys: pytest.CaptureFixtur
     loop.symlink_to(loop)
     words = ["challenge-2020", "--only", "in-d0125-slow-c01-r02", "--planner", "goal_seek"]
     assert cli.main(["campaign", *words, "--no-floors", "--out", str(loop)]) == 1
-    told = re.sub(r"\s+", "", capsys.readouterr().err)
-    assert f"{loop}:Toomanylevelsofsymboliclinks" in told
+    output = re.sub(r"\s+", "", capsys.readouterr().err)
+    assert f"{loop}:Toomanylevelsofsymboliclinks" in output

@@ -148,9 +148,9 @@ def test_a_worker_is_killed(tmp_path: Path) -> None:
     os.kill(worker, signal.SIGKILL)
     wait_until(lambda: not is_alive(victim))
     other = _driving(running, tmp_path, other_than=victim)
-    said, err = running.communicate(timeout=AT_MOST)
+    output, err = running.communicate(timeout=AT_MOST)
     assert running.returncode == 0, err
-    assert json.loads(said)["statuses"] == {"timeout": 1}
+    assert json.loads(output)["statuses"] == {"timeout": 1}
     assert not is_alive(other)
 
 
@@ -173,8 +173,8 @@ def test_a_hostile_planner_stops_no_campaign(tmp_path: Path) -> None:
         "python: ./bare_python\nplanner: mine.py:Mine\nname: good\n"
     )
     running = start(tmp_path / "runs", "--only", "in-d0125-slow-c01-r02", *argv, "--json")
-    said, err = running.communicate(timeout=AT_MOST)
+    output, err = running.communicate(timeout=AT_MOST)
     assert running.returncode == 3, err
-    assert json.loads(said)["statuses"] == {"planner_failed": 1, "timeout": 1}
+    assert json.loads(output)["statuses"] == {"planner_failed": 1, "timeout": 1}
     (record,) = (tmp_path / "runs").rglob("Mine/seed-0/run.json")
     assert "its process ended with exit code 3" in json.loads(record.read_text())["reason"]

@@ -205,8 +205,8 @@ def test_privileged_planners_see_the_truth_and_are_marked(shell: Shell, tmp_path
     seen = {n: v[:, 1] for n, v in recorded.signals.items()}
     assert seen["n"][0] == (recorded.agents.x[0] == recorded.agents.x[0]).sum()
     assert seen["x"][0] == recorded.robot.x[0]
-    told = shell(*options, *QUIET)
-    assert "privileged" in told.out
+    done = shell(*options, *QUIET)
+    assert "privileged" in done.out
     assert "the planner sees the truth" in (run / "replay.html").read_text()
 
 
@@ -234,8 +234,8 @@ def test_what_is_not_installed_is_told(shell: Shell, tmp_path: Path) -> None:
     (mine,) = [p for p in record["plugins"] if p["name"] == "unsafe"]
     assert mine["distribution"] == "unsafe.py"
     assert len(mine["sha256"]) == 64
-    told = shell(*options, *QUIET)
-    assert "not pinned" in told.out.replace("\n", " ")
+    done = shell(*options, *QUIET)
+    assert "not pinned" in done.out.replace("\n", " ")
     page = (Path(record["directory"]) / "replay.html").read_text()
     assert "Not pinned" in page
     assert shell("--planner", "goal_seek", *QUIET, "--json").json["pinned"] is True

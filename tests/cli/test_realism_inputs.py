@@ -80,8 +80,8 @@ def bag(folder: Path, storage: StoragePlugin, topics: tuple[str, ...] = ("/crowd
             data = store.serialize_cdr(kinds[name](header, poses), name)
             for connection in known:
                 writer.write(connection, 250_000_000 * (40 + k), data)
-            said = kinds["std_msgs/msg/String"](data="on we go")
-            writer.write(words, 250_000_000 * (40 + k), store.serialize_cdr(said, words.msgtype))
+            values = kinds["std_msgs/msg/String"](data="on we go")
+            writer.write(words, 250_000_000 * (40 + k), store.serialize_cdr(values, words.msgtype))
     return folder / "bag"
 
 

@@ -50,9 +50,9 @@ def test_three_files_are_written(
 ) -> None:
     del runs
     assert main(["report"]) == 0
-    said = capsys.readouterr()
-    assert said.out == "report.html\n"
-    assert "dwa, orca_lookahead, straight_on: " in said.err
+    captured = capsys.readouterr()
+    assert captured.out == "report.html\n"
+    assert "dwa, orca_lookahead, straight_on: " in captured.err
     assert sorted(p.name for p in tmp_path.iterdir()) == ["report.csv", "report.html", "report.md"]
 
 
@@ -98,9 +98,9 @@ def test_runs_that_differ_in_more_than_the_planner_are_refused(
 ) -> None:
     runs["runs"] = with_changes(runs["runs"], "dwa", conditions={"rates.log": "20 Hz"})
     assert main(["report"]) == 1
-    said = capsys.readouterr().err
-    assert "rates.log" in said
-    assert "20 Hz" in said
+    output = capsys.readouterr().err
+    assert "rates.log" in output
+    assert "20 Hz" in output
     assert not Path("report.html").exists()
     assert main(["report", "--accept", "rate"]) == 1
     assert "did you mean 'rates'" in capsys.readouterr().err
@@ -167,9 +167,9 @@ def test_what_is_wrong_is_said(
 ) -> None:
     runs["empty"] = campaign(axes={"a": ()}, failures=0)
     assert main(["report", *arguments]) == code
-    said = capsys.readouterr().err
-    assert words in said
-    assert "Traceback" not in said
+    output = capsys.readouterr().err
+    assert words in output
+    assert "Traceback" not in output
 
 
 def test_runs_on_a_disk_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

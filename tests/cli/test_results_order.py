@@ -40,5 +40,5 @@ def test_a_folder_is_told_where_it_belongs(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["results", str(tmp_path)]) == 2
-    said = "".join(c for c in capsys.readouterr().err if c not in " │\n")
-    assert "afolderofrunsisgivenwith--runs" in said
+    output = "".join(c for c in capsys.readouterr().err if c not in " │\n")
+    assert "afolderofrunsisgivenwith--runs" in output

@@ -23,9 +23,9 @@ ALLOWED = {
 def test_control_characters_are_escaped(capsys: pytest.CaptureFixture[str]) -> None:
     say("a\x1b[31mb\x07\x9b2J\u202e\tc")
     say("x\rover", err=True)
-    said = capsys.readouterr()
-    assert said.out == "a\\x1b[31mb\\x07\\x9b2J\\u202e\tc\n"
-    assert said.err == "x\\rover\n"
+    captured = capsys.readouterr()
+    assert captured.out == "a\\x1b[31mb\\x07\\x9b2J\\u202e\tc\n"
+    assert captured.err == "x\\rover\n"
 
 
 @pytest.mark.parametrize(
@@ -40,9 +40,9 @@ def test_what_was_typed_is_repeated_without_control_characters(
     words: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(words) == 2
-    said = capsys.readouterr()
-    assert "\x1b[31m" not in (said.out + said.err).replace("\\x1b", "")
-    assert "\\x1b" in said.err
+    captured = capsys.readouterr()
+    assert "\x1b[31m" not in (captured.out + captured.err).replace("\\x1b", "")
+    assert "\\x1b" in captured.err
 
 
 def test_commands_print_by_say() -> None:

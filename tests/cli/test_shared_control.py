@@ -33,15 +33,15 @@ def test_the_wheelchair_of_the_guide_is_driven_and_scored(
     run = json.loads(capsys.readouterr().out)
     assert (run["status"], run["sim_time"]) == ("timeout", 2.0)
 
-    asked, told = (_velocities(Path(run["directory"]), topic) for topic in
+    asked, values_text = (_velocities(Path(run["directory"]), topic) for topic in
                    ("/joystick/cmd_vel", "/cmd_vel"))  # fmt: skip
-    assert len(asked) == len(told) == 2 * 16
+    assert len(asked) == len(values_text) == 2 * 16
     assert np.ptp(asked[:, 0]) > 0.01  # the hand is not steady
     assert asked[:, 0].max() <= 1.5
     assert asked[:, 0].mean() > 1.0  # the goal is straight ahead
-    assert told[:, 1] == pytest.approx(asked[:, 1], abs=1e-9)  # the planner only brakes
-    assert np.all(told[:, 0] <= asked[:, 0] + 1e-9)
-    assert told[:, 0].mean() > 0.5
+    assert values_text[:, 1] == pytest.approx(asked[:, 1], abs=1e-9)  # the planner only brakes
+    assert np.all(values_text[:, 0] <= asked[:, 0] + 1e-9)
+    assert values_text[:, 0].mean() > 0.5
 
     text = (Path(run["directory"]) / "scores.csv").read_text(encoding="utf-8")
     rows = csv.DictReader(text.splitlines())

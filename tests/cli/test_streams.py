@@ -34,9 +34,9 @@ def test_closed_streams_are_no_error() -> None:
 
 
 def test_characters_that_cannot_be_printed_are_written_plainly() -> None:
-    said = ascii("0 \u2013 2 m/s\u00b2 \u00d7 3 \u2026 \u4eba").replace("\\", "\\\\")
+    values = ascii("0 \u2013 2 m/s\u00b2 \u00d7 3 \u2026 \u4eba").replace("\\", "\\\\")
     begin = "from crowdbot.cli.app.streams import prepare_streams; prepare_streams(); print"
-    done = _shell(f'{sys.executable} -c "{begin}({said})"', PYTHONIOENCODING="ascii:strict")
+    done = _shell(f'{sys.executable} -c "{begin}({values})"', PYTHONIOENCODING="ascii:strict")
     assert done.stdout == "0 - 2 m/s^2 x 3 ... \\u4eba\n", done.stderr
 
 

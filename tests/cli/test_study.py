@@ -37,10 +37,10 @@ def test_a_study_runs_without_a_person(
 
     # The answers of a person, written by the page otherwise.
     form = Path("study-data/p01/steps/003-nasa_tlx-alone.json")
-    said = json.loads(form.read_text())
+    document = json.loads(form.read_text())
     scales = ("mental_demand", "physical_demand", "temporal_demand", "performance", "effort",
               "frustration")  # fmt: skip
-    form.write_text(json.dumps({**said, "answers": dict.fromkeys(scales, "30")}))
+    form.write_text(json.dumps({**document, "answers": dict.fromkeys(scales, "30")}))
     capsys.readouterr()
     assert cli.main(["study", "results", "study.yaml", "--out", "r.csv"]) == 0
     assert "alone: 1 drive of 1 participant" in capsys.readouterr().out
@@ -71,7 +71,7 @@ def test_a_plan_says_how_balanced_it_is(
 
 
 @pytest.mark.parametrize(
-    ("words", "code", "said"),
+    ("words", "code", "expected"),
     [
         (["run", "study.yaml"], 2, "who takes part?"),
         (["run", "study.yaml", "--participant", "p9"], 1, "p9"),
@@ -82,11 +82,11 @@ def test_a_plan_says_how_balanced_it_is(
 )
 def test_what_cannot_be_done_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
-    words: list[str], code: int, said: str,
+    words: list[str], code: int, expected: str,
 ) -> None:  # fmt: skip
     monkeypatch.chdir(written(tmp_path).parent)
     assert cli.main(["study", *words]) == code
-    assert said in capsys.readouterr().err
+    assert expected in capsys.readouterr().err
     assert not Path("x.txt").exists()
 
 

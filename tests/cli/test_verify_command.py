@@ -100,9 +100,9 @@ def verify(world: Path, capsys: pytest.CaptureFixture[str]) -> Verify:
         capsys.readouterr()
         code = cli.main(["verify", str(bundle), "--suite", str(world / "tiny.yaml"), "--json",
                          *own, *more])  # fmt: skip
-        said = capsys.readouterr()
-        assert "Traceback" not in said.err
-        return code, json.loads(said.out) if said.out else {"err": said.err}
+        captured = capsys.readouterr()
+        assert "Traceback" not in captured.err
+        return code, json.loads(captured.out) if captured.out else {"err": captured.err}
 
     return call
 
@@ -406,10 +406,10 @@ def test_bundle_check_says_what_verify_says(
     source = f"{empty / 'mine.py'}:Steady"
     capsys.readouterr()
     code = cli.main([*arguments, "--source", source])
-    said = json.loads(capsys.readouterr().out)["check"]
-    assert (code, said["outcome"], len(said["runs"])) == (0, "verified", 1)
+    document = json.loads(capsys.readouterr().out)["check"]
+    assert (code, document["outcome"], len(document["runs"])) == (0, "verified", 1)
     again = ["--suite", str(empty / "empty.yaml"), "--sample", "1", "--seed", "3", "--json"]
     assert cli.main(["verify", str(tmp_path / "a.cbz"), *again, "--planner", source]) == 0
-    assert json.loads(capsys.readouterr().out) == {"bundle": str(tmp_path / "a.cbz"), **said}
+    assert json.loads(capsys.readouterr().out) == {"bundle": str(tmp_path / "a.cbz"), **document}
     assert cli.main(arguments) == 1
     assert json.loads(capsys.readouterr().out)["check"]["outcome"] == "cannot be re-run"

@@ -70,12 +70,12 @@ def test_everybody_is_drawn_where_they_start(svg: ET.Element) -> None:
 
 
 def test_everything_has_its_name(svg: ET.Element) -> None:
-    said = texts(svg)
+    values = texts(svg)
     for name in ("robot_spawn", "crowd", "robot_goal (goal)", "portal a", "portal b", "robot"):
-        assert name in said
-    assert any("people: 200" in t and "0.5 1/m² in crowd at the start" in t for t in said)
-    assert sum("cb1-sha256:" in t for t in said) == 2
-    assert {"wall", "wall for robots only", "its goal", "m", "5 m"} <= set(said)
+        assert name in values
+    assert any("people: 200" in t and "0.5 1/m² in crowd at the start" in t for t in values)
+    assert sum("cb1-sha256:" in t for t in values) == 2
+    assert {"wall", "wall for robots only", "its goal", "m", "5 m"} <= set(values)
 
 
 def test_counterflow_walks_to_the_first_portal(svg: ET.Element) -> None:
@@ -166,9 +166,9 @@ def test_json_and_set(tmp_path: Path, capsys: Captured) -> None:
     file = tmp_path / "x.svg"
     argv = [*ONE, "--out", str(file), "--json", "--set", "crowd.flow.density=0.25"]
     assert main(argv) == 0
-    said = json.loads(capsys.readouterr().out)
-    assert said["path"] == str(file)
-    assert said["facts"]["people"] == "100"
+    document = json.loads(capsys.readouterr().out)
+    assert document["path"] == str(file)
+    assert document["facts"]["people"] == "100"
 
 
 @pytest.mark.parametrize(

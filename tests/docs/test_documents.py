@@ -124,8 +124,8 @@ def test_shown_output_is_what_comes(
     beside = page.startswith(BESIDE_FILES)
     monkeypatch.chdir((ROOT / page).parent / "files" if beside else ROOT)
     main(words)
-    said = capsys.readouterr()
-    assert (said.out + said.err).splitlines() == output
+    captured = capsys.readouterr()
+    assert (captured.out + captured.err).splitlines() == output
 
 
 def test_scenarios_in_the_text_exist() -> None:

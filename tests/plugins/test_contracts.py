@@ -229,9 +229,9 @@ def test_what_is_wrong_is_told(
     change: str, message: str, odd: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([*odd, "--set", change]) == 3
-    said = " ".join(capsys.readouterr().err.replace("\n", " ").split())
-    assert message in said, said
-    assert "Traceback" not in said
+    output = " ".join(capsys.readouterr().err.replace("\n", " ").split())
+    assert message in output, output
+    assert "Traceback" not in output
 
 
 @pytest.mark.parametrize("method", ["sampling", "gradient", "global"])

@@ -80,9 +80,9 @@ def test_a_turtlebot_writes_the_wheels_its_firmware_believes_in() -> None:
     assert isinstance(scenario, crowdbot.Scenario)
     spec: Any = scenario.robots["robot"].sensors["odometry"]
     assert (spec.wheel_radius, spec.track) == (0.035, 0.23)
-    told = crowdbot.load(SCENARIO, set={"robots.robot.sensors.odometry.track": 0.3})
-    assert isinstance(told, crowdbot.Scenario)
-    assert told.robots["robot"].sensors["odometry"].track == 0.3  # type: ignore[attr-defined]
+    values = crowdbot.load(SCENARIO, set={"robots.robot.sensors.odometry.track": 0.3})
+    assert isinstance(values, crowdbot.Scenario)
+    assert values.robots["robot"].sensors["odometry"].track == 0.3  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(

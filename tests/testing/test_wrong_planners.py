@@ -88,12 +88,12 @@ def test_sound_planners_pass(step: Step) -> None:
         check(driver(step), BUILT_IN)
 
 
-@pytest.mark.parametrize("told", [True, False])
-def test_only_privileged_planners_are_told_the_truth(told: bool) -> None:
+@pytest.mark.parametrize("privileged_planner", [True, False])
+def test_only_privileged_planners_are_told_the_truth(privileged_planner: bool) -> None:
     class Told(WrongPlanner):
         """Is told where people are, or is not."""
 
-        privileged: ClassVar[bool] = told
+        privileged: ClassVar[bool] = privileged_planner
 
     seen: list[bool] = []
 
@@ -106,7 +106,7 @@ def test_only_privileged_planners_are_told_the_truth(told: bool) -> None:
             return Command(0.0, 0.0)
 
     planner.check_commands_are_numbers(made(Told, lambda _: Planner()), BUILT_IN)
-    assert set(seen) == {told}
+    assert set(seen) == {privileged_planner}
 
 
 def test_a_sensor_that_nobody_has() -> None:

@@ -33,14 +33,14 @@ OFFERS = {
 
 def offer(name: str) -> Callable[[Any, Any, str], list[str]] | None:
     """Return completions for a parameter of this name; None: the shell's own completion."""
-    what = OFFERS.get(name)
-    if what is None:
+    category = OFFERS.get(name)
+    if category is None:
         return None
 
     def complete(ctx: Any, param: Any, incomplete: str) -> list[str]:
         del param
         try:
-            names = _scenarios(ctx) if what == "scenarios" else _kinds()[what]
+            names = _scenarios(ctx) if category == "scenarios" else _kinds()[category]
         except Exception:  # completion must never print a traceback
             return []
         return [n for n in names if n.startswith(incomplete)]
@@ -112,10 +112,10 @@ def _state() -> str:
     return " ".join([allowed, *(f"{p} {p.stat().st_mtime_ns}" for p in places if p.exists())])
 
 
-def _kept(what: str, key: str, make: Callable[[], Any]) -> Any:
+def _kept(prefix: str, key: str, make: Callable[[], Any]) -> Any:
     """Return what was made for a key, from the user's cache if it is there."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "crowdbot" / _CACHE
-    file = base / f"{what}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
+    file = base / f"{prefix}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
     try:
         return json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):

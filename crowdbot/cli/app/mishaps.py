@@ -88,16 +88,16 @@ def tell_of_threads() -> None:
         threading.excepthook = _tell
 
 
-def _tell(what: threading.ExceptHookArgs) -> None:
-    if what.exc_type is SystemExit:
+def _tell(failure: threading.ExceptHookArgs) -> None:
+    if failure.exc_type is SystemExit:
         return
     where = "".join(
         f" ({last.filename}:{last.lineno})"
-        for last in traceback.extract_tb(what.exc_traceback)[-1:]
+        for last in traceback.extract_tb(failure.exc_traceback)[-1:]
     )
-    said = "".join(traceback.format_exception_only(what.exc_type, what.exc_value)).strip()
-    name = what.thread.name if what.thread is not None else "?"
-    print(printable(f"warning: thread {name} ended: {said}{where}"), file=sys.stderr)
+    text = "".join(traceback.format_exception_only(failure.exc_type, failure.exc_value)).strip()
+    name = failure.thread.name if failure.thread is not None else "?"
+    print(printable(f"warning: thread {name} ended: {text}{where}"), file=sys.stderr)
 
 
 def _few(names: list[str], limit: int = 5) -> str:

@@ -52,8 +52,10 @@ def adversary_text(lines: Sequence[Mapping[str, Any]]) -> str:
         cells = [_cell(line.get(aspect)) for aspect in SCORES]
         rows.append([line["adversary"], line["careful"], *cells, line["standing"]])
     ahead = [f"{x['adversary']} of {x['careful']}" for x in lines if x["standing"] == "ahead"]
-    told = f"ahead: {', '.join(ahead)}" if ahead else "no adversary is ahead of a careful planner"
-    return "\n".join([table(rows), "", told])
+    verdict = (
+        f"ahead: {', '.join(ahead)}" if ahead else "no adversary is ahead of a careful planner"
+    )
+    return "\n".join([table(rows), "", verdict])
 
 
 def _cell(aspect: Mapping[str, Any] | None) -> str:

@@ -117,13 +117,13 @@ def as_table(results: list[Result], *, passed: bool, all_lines: bool) -> str:
     lines = [table([["component", "check", "result", "reason"], *rows])] if rows else []
     lines += dict.fromkeys(f"{r.check}: {r.advice}" for r in results if r.advice)
     counts = {word: sum(r.result == word for r in results) for word in (*_BAD, "expected failure")}
-    told = [f"{n} {word}" for word, n in counts.items() if n]
+    problems = [f"{n} {word}" for word, n in counts.items() if n]
     skipped = sum(r.result == "skipped" for r in results)
-    told += [f"{skipped} skipped"] * bool(skipped)
+    problems += [f"{skipped} skipped"] * bool(skipped)
     well = sum(r.result == "passed" for r in results)
     kinds = len({(r.plugin, r.kind) for r in results if r.kind})
     plural = "" if kinds == 1 else "s"
-    lines.append(f"{kinds} component{plural}: {', '.join([f'{well} passed', *told])}")
+    lines.append(f"{kinds} component{plural}: {', '.join([f'{well} passed', *problems])}")
     return "\n".join(lines)
 
 

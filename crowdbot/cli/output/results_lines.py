@@ -131,7 +131,16 @@ def with_interval(line: dict[str, Any]) -> dict[str, Any]:
 
 def _narrow(line: dict[str, Any]) -> dict[str, Any]:
     """Return a line of `line_of` with fewer columns, for narrow terminals."""
-    told = {"metric", "variant", "unit", "n", "median", "mean [95 %]", "mean of all", *WITHOUT}
+    shown = {
+        "metric",
+        "variant",
+        "unit",
+        "n",
+        "median",
+        "mean [95 %]",
+        "mean of all",
+        *WITHOUT,
+    }
     variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
     unit = "" if line["unit"] == "1" else f", {line['unit']}"
     cells = with_interval(line)
@@ -139,7 +148,7 @@ def _narrow(line: dict[str, Any]) -> dict[str, Any]:
     if cells["mean of all"]:
         missing.append(f"mean of all {cells['mean of all']}")
     return {
-        **{name: value for name, value in cells.items() if name not in told},
+        **{name: value for name, value in cells.items() if name not in shown},
         "metric": f"{line['metric']}{variant}{unit}",
         "mean [95 %]": cells["mean [95 %]"],
         "median": line["median"],

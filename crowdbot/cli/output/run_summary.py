@@ -101,8 +101,8 @@ def _few(shown: Sequence[Score]) -> Table:
     main = [s for s in shown if is_main(s.metric, s.variant)]
     table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False, show_header=False)
     for s in main or shown[:_FEW]:
-        told = replace(s, reason=_WORDS.get(s.reason, s.reason)) if s in main else s
-        cells = (roles.get(s.metric, s.metric), verdict(told), _BETTER.get(s.better, ""))
+        score = replace(s, reason=_WORDS.get(s.reason, s.reason)) if s in main else s
+        cells = (roles.get(s.metric, s.metric), verdict(score), _BETTER.get(s.better, ""))
         table.add_row(*map(Text, cells), style="" if s.status == "ok" else "dim")
     return table
 
@@ -133,6 +133,6 @@ def _summary(run: Run) -> str:
         ending = f"people walked alone for {record.sim_time:.1f} s"
     speed = f"{record.real_time_factor:.1f} times real time"
     note = "; was complete already, --force runs it again" if run.reused else f" ({speed})"
-    who = f"{record.scenario} · {record.planner.name} · seed {record.seed}"
+    title = f"{record.scenario} · {record.planner.name} · seed {record.seed}"
     flags = "".join(f"; {flag.lower()}" for flag in remarks(record))
-    return f"{who}: {ending}{note}{flags}"
+    return f"{title}: {ending}{note}{flags}"

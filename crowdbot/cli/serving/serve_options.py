@@ -205,8 +205,8 @@ def _rosbridge(session: LiveSession, policy: StepPolicy, listen: Listen) -> Live
     )
     shown = f"[{listen.host}]" if ":" in listen.host else listen.host
     query = f"/?token={token}" if token else ""
-    who = "clients that drive" if len(session.robots) > 1 else "a client that drives"
-    _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for {who} {_topics(session)}")
+    clients = "clients that drive" if len(session.robots) > 1 else "a client that drives"
+    _say(f"rosbridge: ws://{shown}:{server.port}{query}; waiting for {clients} {_topics(session)}")
     return server
 
 

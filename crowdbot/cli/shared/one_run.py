@@ -43,19 +43,19 @@ def interruptible() -> Iterator[Callable[[], bool]]:
 
     Before the run starts, for example during compilation, the first one aborts.
     """
-    asked = running = False
+    interrupted = running = False
 
     def handler(number: int, frame: FrameType | None) -> None:
-        nonlocal asked
+        nonlocal interrupted
         del number, frame
-        if asked or not running:
+        if interrupted or not running:
             raise UserInterrupt
-        asked = True
+        interrupted = True
 
     def stop() -> bool:
         nonlocal running
         running = True
-        return asked
+        return interrupted
 
     previous = signal.signal(signal.SIGINT, handler)
     try:

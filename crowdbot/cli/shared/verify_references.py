@@ -51,7 +51,7 @@ def verify_references(
     return {"references": text, "seed": seed, "ok": fine, "runs": runs}
 
 
-def said_of(document: dict[str, Any]) -> Iterator[str]:
+def outcome_lines(document: dict[str, Any]) -> Iterator[str]:
     """Yield the lines that report the outcome."""
     for name, relation in document["runs"].items():
         yield f"{name}: {relation}"

@@ -1,1 +1,1 @@
-"""Tasks whose goals are people: who it is, where the robot's place is, when the task is done."""
+"""Tasks whose goals are people: the person, the robot's place beside it, the end of the task."""

@@ -117,8 +117,8 @@ class ToldFinder(PersonFinder):
         poses = self._with_errors(sight.relative[:, :3])
         speeds = sight.relative[:, 3:] + _SPEED_ERROR * self.rng.normal(size=(len(poses), 2))
         c, s = math.cos(sight.pose.yaw), math.sin(sight.pose.yaw)
-        told = zip(self.members, poses.tolist(), speeds.tolist(), strict=True)
-        for member, (x, y, heading), (vx, vy) in told:
+        states = zip(self.members, poses.tolist(), speeds.tolist(), strict=True)
+        for member, (x, y, heading), (vx, vy) in states:
             if math.isnan(x):
                 continue
             member.x, member.y = sight.pose.x + c * x - s * y, sight.pose.y + s * x + c * y

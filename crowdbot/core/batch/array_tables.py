@@ -107,22 +107,22 @@ def _viewer(dtype: Any, axes: int) -> Any:
 if TYPE_CHECKING:
 
     def floats1(table: Indices, k: int) -> Array:
-        """The (N,) float64 of an entry; the memory is the table's owner's."""
+        """Return the (N,) float64 of an entry; the memory is the table's owner's."""
 
     def floats2(table: Indices, k: int) -> Array:
-        """As `floats1`, (N, M)."""
+        """Like `floats1`, (N, M)."""
 
     def floats3(table: Indices, k: int) -> Array:
-        """As `floats1`, (N, M, K)."""
+        """Like `floats1`, (N, M, K)."""
 
     def ints1(table: Indices, k: int) -> Indices:
-        """As `floats1`, of int64."""
+        """Like `floats1`, of int64."""
 
     def ints2(table: Indices, k: int) -> Indices:
-        """As `floats2`, of int64."""
+        """Like `floats2`, of int64."""
 
     def mask1(table: Indices, k: int) -> Mask:
-        """As `floats1`, of bool."""
+        """Like `floats1`, of bool."""
 else:
     floats1 = intrinsic(_viewer(types.float64, 1))
     floats2 = intrinsic(_viewer(types.float64, 2))

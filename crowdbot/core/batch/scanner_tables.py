@@ -72,7 +72,7 @@ class SeenSensor:
 
 
 class ScannerRecord:
-    """Parameters of one lidar.
+    """Mount, range and digits of one lidar, as a record for compiled code.
 
     Attributes:
         x, y, z, yaw: its place on the base, z over the floor, m and rad.
@@ -132,7 +132,7 @@ def scanner_table(
 
 
 def _grid(info: SensorInfo) -> RayGrid:
-    """The rays of a lidar of one layer or of several."""
+    """Return the rays of a lidar of one layer or of several."""
     angles = info.angles
     assert angles is not None
     if angles.ndim == 1:

@@ -151,8 +151,8 @@ class Archive:
             raise InputError(f"{self.path}: {name} is damaged: {error}") from None
 
 
-def open_zip(path: Path, what: str) -> zipfile.ZipFile:
-    """Open a zip file; error messages name it ``what``.
+def open_zip(path: Path, description: str) -> zipfile.ZipFile:
+    """Open a zip file; error messages name it ``description``.
 
     Raises:
         InputError: missing file, or not a zip file.
@@ -163,7 +163,7 @@ def open_zip(path: Path, what: str) -> zipfile.ZipFile:
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {reason_of(error)}") from None
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
-        raise InputError(f"{path} is not {what}: {error}") from None
+        raise InputError(f"{path} is not {description}: {error}") from None
 
 
 @contextmanager

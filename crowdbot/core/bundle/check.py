@@ -73,13 +73,13 @@ def claimed_runs(archive: Archive) -> tuple[list[ClaimedRun], list[str]]:
             problems.append(_without(archive, error))
             continue
         found.append(run)
-        told = (
+        findings = (
             run_problems(run, archive.manifest),
             _digest_problems(archive, run),
             condition_problems(archive, run),
         )
         try:
-            problems += [f"{entry.directory}: {text}" for texts in told for text in texts]
+            problems += [f"{entry.directory}: {text}" for texts in findings for text in texts]
         except InputError as error:
             problems.append(_without(archive, error))
     return found, problems
@@ -127,9 +127,9 @@ def _list_problems(manifest: Manifest) -> Iterator[str]:
     yield from planner_problems(manifest.planner)
     if not manifest.runs:
         yield "there is no run in it"
-    for what in ("directory", "run_id"):
-        if len({getattr(r, what) for r in manifest.runs}) < len(manifest.runs):
-            yield f"two runs have the same {what}"
+    for field in ("directory", "run_id"):
+        if len({getattr(r, field) for r in manifest.runs}) < len(manifest.runs):
+            yield f"two runs have the same {field}"
     if len({(r.scenario, r.seed) for r in manifest.runs}) < len(manifest.runs):
         yield "a run is listed twice"
     wanted = manifest.edition.scenarios * len(manifest.seeds)
@@ -171,10 +171,10 @@ def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]
     if record.axes != dict(axes):
         labels, wanted = _labels(record.axes), _labels(dict(axes))
         yield f"its axes are {labels}; the scenario's are {wanted}"
-    said = record.crowd
+    claimed = record.crowd
     same = record.versions.get("crowdbot") == metadata.version("crowdbot")
-    if same and said is not None and said != ("" if crowd is None else fingerprint(crowd)):
-        yield f"its crowd is said to be {str(said)[:40]!r}, which the scenario's is not"
+    if same and claimed is not None and claimed != ("" if crowd is None else fingerprint(crowd)):
+        yield f"its crowd is said to be {str(claimed)[:40]!r}, which the scenario's is not"
 
 
 def _labels(axes: object) -> str:

@@ -27,10 +27,10 @@ def condition_problems(archive: Archive, run: ClaimedRun) -> Iterator[str]:
     """
     name = f"{run.entry.directory}/{files.SCENARIO}"
     rates = _rates(archive.text(name), name)
-    said = {k: v for k, v in run.record.conditions.items() if k.startswith(_PREFIX)}
-    for key in sorted(said):
-        if said[key] != rates.get(key):
-            yield f"{key} is {said[key][:40]} in {files.RECORD}, and " \
+    claimed = {k: v for k, v in run.record.conditions.items() if k.startswith(_PREFIX)}
+    for key in sorted(claimed):
+        if claimed[key] != rates.get(key):
+            yield f"{key} is {claimed[key][:40]} in {files.RECORD}, and " \
                   f"{rates.get(key)} in {files.SCENARIO}"  # fmt: skip
 
 

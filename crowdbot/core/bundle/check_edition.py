@@ -66,10 +66,10 @@ def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
         "handed_in": expansion.round.planners if expansion.round else "any",
     }
     for key, value in wanted.items():
-        said = getattr(edition, key)
-        if said != value:
+        packed = getattr(edition, key)
+        if packed != value:
             field = _FIELDS.get(key, key)
-            yield f"it was packed with {field} {_shown(said)}; {name} here has {_shown(value)}"
+            yield f"it was packed with {field} {_shown(packed)}; {name} here has {_shown(value)}"
     member = manifest.members.get(LOCK)
     if edition.lock != (member.sha256 if member else ""):
         yield f"the edition is not that of {LOCK}"
@@ -85,13 +85,13 @@ def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
 def _missing(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
     """Yield runs that are missing but not declared missing, and the opposite."""
     there = {(r.scenario, r.seed) for r in manifest.runs}
-    lacking, said = missing_runs(expansion, there), set(manifest.missing)
-    hidden = [n for n in lacking if n not in said]
+    lacking, declared = missing_runs(expansion, there), set(manifest.missing)
+    hidden = [n for n in lacking if n not in declared]
     if hidden:
         some = ", ".join(hidden[:_SHOWN])
         yield f"left out without being listed as missing: {plural(len(hidden), 'run')}, {some}"
-    invented = sorted(said - set(lacking))
-    if invented or len(said) < len(manifest.missing):
+    invented = sorted(declared - set(lacking))
+    if invented or len(declared) < len(manifest.missing):
         some = ", ".join(n[:100] for n in invented[:_SHOWN]) or "one run twice"
         yield f"the manifest's list of missing runs is wrong: {some}"
     for run in manifest.runs:

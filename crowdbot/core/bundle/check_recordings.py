@@ -79,11 +79,11 @@ def ownership_problems(run: ClaimedRun, found: RecordedRun) -> Iterator[str]:
     if header.scenario != run.entry.scenario:
         yield f"it is of scenario '{header.scenario[:100]}', not of {run.entry.scenario}"
     for key, wanted in hashes.items():
-        said = header.hashes.get(key)
-        if said is None:
+        claimed = header.hashes.get(key)
+        if claimed is None:
             yield f"it does not say of which {key} it is"
-        elif said != wanted:
-            yield f"it is of another {key}: {said[:40]} instead of {wanted[:40]}"
+        elif claimed != wanted:
+            yield f"it is of another {key}: {claimed[:40]} instead of {wanted[:40]}"
     if found.trajectory != run.entry.trajectory:
         yield "what happens in it has another hash than the run: it is the recording of another one"
     if not found.complete:

@@ -62,10 +62,10 @@ def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
         if declared is None:
             yield f"{score.metric} has no variant '{score.variant[:60]}'"
             continue
-        said = (score.symbol, score.category, score.unit, score.better)
+        claimed = (score.symbol, score.category, score.unit, score.better)
         wanted = (metric.symbol, metric.score_category, declared.unit, declared.better)
-        if said != wanted:
-            yield f"{score.metric}.{score.variant} is {', '.join(said)} there, here " \
+        if claimed != wanted:
+            yield f"{score.metric}.{score.variant} is {', '.join(claimed)} there, here " \
                   f"{', '.join(wanted)}"  # fmt: skip
         low, high = declared.invariants.minimum, declared.invariants.maximum
         if score.value is not None and not low - _ROUNDING <= score.value <= high + _ROUNDING:

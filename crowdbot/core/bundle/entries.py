@@ -69,11 +69,11 @@ class LeaderboardEntry:
 
     def in_round(self, held: Round | None) -> LeaderboardEntry:
         """Return the entry judged by the organisers' dates and form, not by those in the bundle."""
-        told = {
+        fields = {
             "closes": (held and held.closes) or "",
             "handed_in": held.planners if held else "any",
         }
-        edition = self.manifest.edition.model_copy(update=told)
+        edition = self.manifest.edition.model_copy(update=fields)
         return replace(self, manifest=self.manifest.model_copy(update={"edition": edition}))
 
     @property

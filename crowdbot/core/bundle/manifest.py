@@ -95,7 +95,7 @@ class BundledRun(_Model):
 
 
 class Manifest(_Model):
-    """The content of ``bundle.json``.
+    """The manifest of a bundle: the content of ``bundle.json``.
 
     Attributes:
         planner: as in ``run.json``: kind, name, label and every parameter.
@@ -174,7 +174,7 @@ def parse_manifest(text: str) -> Manifest:
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
-        said = first["msg"].removeprefix("Value error, ")
-        raise InputError(f"{MANIFEST} is not a manifest: {place}: {said}") from None
+        message = first["msg"].removeprefix("Value error, ")
+        raise InputError(f"{MANIFEST} is not a manifest: {place}: {message}") from None
     except ValueError as error:
         raise InputError(f"{MANIFEST} is not a manifest: {error}") from None

@@ -41,7 +41,7 @@ _SHOWN = 10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Submission:
-    """The arguments of `pack`.
+    """The runs, texts and options of a bundle: the arguments of `pack`.
 
     Attributes:
         root: root of the run directories.
@@ -157,7 +157,7 @@ def other_seeds(submission: Submission, expansion: Expansion) -> list[int]:
 
 
 def _record(place: Path) -> RunRecord | None:
-    """The record of a complete run, beside a table of scores; None where there is none."""
+    """Return the record of a complete run, beside a table of scores; None where there is none."""
     try:
         document = files.checked_record(place)
     except InputError:
@@ -290,7 +290,7 @@ def _manifest(
     )
 
 
-def read_json(text: str, what: str) -> dict[str, Any]:
+def read_json(text: str, description: str) -> dict[str, Any]:
     """Return a JSON document that is a mapping.
 
     Raises:
@@ -299,7 +299,7 @@ def read_json(text: str, what: str) -> dict[str, Any]:
     try:
         document = parse_json(text)
     except ValueError as error:
-        raise InputError(f"{what} is not a JSON document: {error}") from None
+        raise InputError(f"{description} is not a JSON document: {error}") from None
     if not isinstance(document, dict):
-        raise InputError(f"{what} is not a mapping")
+        raise InputError(f"{description} is not a mapping")
     return document

@@ -46,7 +46,7 @@ Relation = Literal["identical", "different", "different_platform", "nondetermini
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rerun:
-    """One repeated run.
+    """A claimed run of a bundle, and the same run simulated here.
 
     Attributes:
         record: that of the new run.
@@ -165,11 +165,11 @@ def _other_ending(rerun: Rerun) -> Iterator[str]:
     """Yield claims of the record that the equal trajectory contradicts."""
     claimed, here = rerun.claimed.record.document(), rerun.record.document()
     for key in _ENDING:
-        said, found = claimed.get(key), here.get(key)
-        numbers = [x for x in (said, found) if isinstance(x, float)]
-        equal = are_equal(*numbers) if len(numbers) == 2 else said == found
+        claim, found = claimed.get(key), here.get(key)
+        numbers = [x for x in (claim, found) if isinstance(x, float)]
+        equal = are_equal(*numbers) if len(numbers) == 2 else claim == found
         if not equal:
-            yield f"{rerun.claimed.name}: {key} is claimed to be {said!r}, but is {found!r}"
+            yield f"{rerun.claimed.name}: {key} is claimed to be {claim!r}, but is {found!r}"
     for key in _TO_THE_DIGIT if rerun.same_platform else ():
         if claimed.get(key) != here.get(key):
             yield f"{rerun.claimed.name}: {key} does not follow from the run"
@@ -180,11 +180,11 @@ def _other_people(rerun: Rerun) -> Iterator[str]:
 
     On another platform they may be sampled differently, and then the trajectory differs too.
     """
-    said, found = (r.hashes.realisation for r in (rerun.claimed.record, rerun.record))
-    if said != found and (rerun.same_platform or rerun.relation == "identical"):
+    claim, found = (r.hashes.realisation for r in (rerun.claimed.record, rerun.record))
+    if claim != found and (rerun.same_platform or rerun.relation == "identical"):
         yield (
-            f"{rerun.claimed.name}: its people are claimed to have the hash {said[:30]}, but those "
-            f"of the scenario have {found[:30]}"
+            f"{rerun.claimed.name}: its people are claimed to have the hash {claim[:30]}, but "
+            f"those of the scenario have {found[:30]}"
         )
 
 
@@ -195,14 +195,14 @@ def _not_comparable(reruns: Sequence[Rerun]) -> dict[str, str]:
         for metric in sorted({s.metric for s in rerun.claimed.scores}):
             if metric in found or _same_metric(rerun, metric):
                 continue
-            said, here = (r.metrics.get(metric) for r in (rerun.claimed.record, rerun.record))
-            found[metric] = f"{metric} is not comparable: {_versions(said, here)}"
+            claim, here = (r.metrics.get(metric) for r in (rerun.claimed.record, rerun.record))
+            found[metric] = f"{metric} is not comparable: {_versions(claim, here)}"
     return found
 
 
-def _versions(said: MetricPart | None, here: MetricPart | None) -> str:
+def _versions(claim: MetricPart | None, here: MetricPart | None) -> str:
     """Describe how two entries of a metric differ."""
-    a, b = (None if x is None else x.spec_version for x in (said, here))
+    a, b = (None if x is None else x.spec_version for x in (claim, here))
     if b is None:
         return f"version {a} was scored; here there is no such metric among those of the suite"
     if a != b:
@@ -220,12 +220,12 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
     if claimed.versions != here.versions:
         return
     for key in ("metrics", "conditions"):
-        said, found = (getattr(r, key) for r in (claimed, here))
+        claims, found = (getattr(r, key) for r in (claimed, here))
         differing = [
             name
-            for name in sorted(said.keys() | found.keys())
-            if said.get(name) != found.get(name)
-            and not _other_version(said.get(name), found.get(name))
+            for name in sorted(claims.keys() | found.keys())
+            if claims.get(name) != found.get(name)
+            and not _other_version(claims.get(name), found.get(name))
         ]
         if differing:
             yield f"{rerun.claimed.name}: {key} differ from those of the suite: " \
@@ -239,8 +239,8 @@ def _other_role(rerun: Rerun) -> Iterator[str]:
     """
     if rerun.claimed.record.versions == rerun.record.versions:
         for key in _OF_SUITE:
-            said = getattr(rerun.claimed.record, key)  # nothing of a run made from Python
-            if said and said != getattr(rerun.record, key):
+            claim = getattr(rerun.claimed.record, key)  # nothing of a run made from Python
+            if claim and claim != getattr(rerun.record, key):
                 yield f"{rerun.claimed.name}: {key} is not that of the suite"
     role, found = (r.role for r in (rerun.claimed.record, rerun.record))
     if role != found:

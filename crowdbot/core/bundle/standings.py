@@ -210,8 +210,8 @@ def _table(
     check_comparable(findings)
     table = Table(results)
     summary, ordered = summarise(results, table=table), orders(table)
-    told = [(r.axes.get(AXIS, ""), r.record.crowd or "") for r in results.runs]
-    crowds = [(name, like) for name, like in told if name or like]
+    labels = [(r.axes.get(AXIS, ""), r.record.crowd or "") for r in results.runs]
+    crowds = [(name, like) for name, like in labels if name or like]
     metric = PRIMARY.metric if by == RULE else by  # of equal ranks, the better mean is first
     ranks = ordered.rule.ranks if by == RULE else summary.ranks(by)
     scores = [s for s in summary.scores if s.metric == metric and s.mean.value is not None]

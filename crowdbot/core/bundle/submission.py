@@ -40,7 +40,7 @@ _EPOCH, _CHUNK = (1980, 1, 1, 0, 0, 0), 1 << 20
 
 
 class SealedFile(BaseModel):
-    """One file of a planner."""
+    """Hash, size and mode of one file in a planner's archive."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 

@@ -72,8 +72,8 @@ class Job:
     @property
     def title(self) -> str:
         """Return a readable name."""
-        who = {"crowd_alone": "crowd alone", "robot_alone": f"{self.label} alone"}
-        return f"{self.scenario} · {who.get(self.kind, self.label)} · seed {self.seed}"
+        names = {"crowd_alone": "crowd alone", "robot_alone": f"{self.label} alone"}
+        return f"{self.scenario} · {names.get(self.kind, self.label)} · seed {self.seed}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -42,7 +42,7 @@ _SHORT, _REASON = 16, 500
 
 @dataclass(frozen=True, kw_only=True)
 class Judge:
-    """A judge of one suite.
+    """Receives and runs the sealed submissions of one suite.
 
     Attributes:
         suite: file or name of the suite.

@@ -37,7 +37,7 @@ from crowdbot.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannedRun:
-    """One run of the campaign.
+    """A run that the campaign needs, with its status if it exists.
 
     Attributes:
         key: its id.
@@ -242,11 +242,11 @@ class _PlanBuilder:
         suite: SelectedSuite,
         entry: PlannerEntry,
         request: Request,
-        what: Prepared | Reference,
+        planned: Prepared | Reference,
         depends_on: Sequence[Reference],
     ) -> None:
-        trial = what.run if isinstance(what, Prepared) else what.trial
-        directory = request.directory if isinstance(what, Prepared) else what.directory
+        trial = planned.run if isinstance(planned, Prepared) else planned.trial
+        directory = request.directory if isinstance(planned, Prepared) else planned.directory
         people = len(trial.people.agents)
         self._size += self._estimate.size(kind, people, longest(request.scenario))
         self._jobs[key] = Job(

@@ -23,7 +23,7 @@ _LOOK = 0.25
 
 @dataclass(slots=True)
 class State:
-    """Progress of a campaign.
+    """Progress of a campaign: finished runs, jobs left, remaining time.
 
     Attributes:
         statuses: statuses of existing runs, by key; ``failed`` for failures.
@@ -140,8 +140,8 @@ class _Campaign:
 
     def _end(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
         if done.disk_full:  # every further job would fail, and none of them is the planner's fault
-            said = done.error.removeprefix(f"{InputError.__name__}: ")
-            raise InputError(f"{said}; free some, and the same command goes on where it was")
+            message = done.error.removeprefix(f"{InputError.__name__}: ")
+            raise InputError(f"{message}; free some, and the same command goes on where it was")
         del self.state.left[job.key]
         self._ended.add(job.key)
         if done.error:

@@ -59,7 +59,7 @@ class WorkerProcess:
         self.progress: Progress | None = None
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
-        self._said: Any = None
+        self._output: Any = None
         self._jobs = self._deaths = 0
         self._began = self._heard = 0.0
         self._patient = True
@@ -108,9 +108,9 @@ class WorkerProcess:
             self._process.wait()
         if self._connection is not None:
             self._connection.close()
-        if self._said is not None:
-            self._said.close()
-        self._process = self._connection = self._said = None
+        if self._output is not None:
+            self._output.close()
+        self._process = self._connection = self._output = None
         self._jobs = 0
 
     def _send(self) -> None:
@@ -119,7 +119,7 @@ class WorkerProcess:
             self._start()
         self._jobs += 1
         self._heard, self._patient = time.monotonic(), True
-        self._said.truncate(0)
+        self._output.truncate(0)
         try:
             self.connection.send(self.job)
         except OSError:
@@ -129,15 +129,15 @@ class WorkerProcess:
         """Start a fresh interpreter: threads do not survive a fork, and no script is run again."""
         ours, theirs = Pipe()
         # Its output must not get into tables; the end of it shows why it died.
-        self._said = tempfile.TemporaryFile(mode="ab+")  # noqa: SIM115
+        self._output = tempfile.TemporaryFile(mode="ab+")  # noqa: SIM115
         command = [sys.executable, "-c", _START, json.dumps(sys.path)]
         with theirs:
             self._process = subprocess.Popen(
                 [*command, str(theirs.fileno()), str(os.getpid())],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
-                stdout=self._said,
-                stderr=self._said,
+                stdout=self._output,
+                stderr=self._output,
                 env=worker_environment(),
             )
         self._connection = ours
@@ -172,19 +172,19 @@ class WorkerProcess:
 
     def _give_up(self, error: PlannerHungError | SimulationError) -> Done:
         assert self.job is not None
-        key, said = self.job.key, self._tail()
+        key, output = self.job.key, self._tail()
         self.stop()
         return self._finish(
             Done(
                 key=key,
                 error=f"{type(error).__name__}: {error}",
                 exit_code=error.exit_code,
-                traceback=said,
+                traceback=output,
                 wall_time=time.monotonic() - self._began,
             )
         )
 
     def _tail(self) -> str:
-        size = self._said.seek(0, os.SEEK_END)
-        self._said.seek(max(0, size - _TAIL))
-        return str(self._said.read().decode(errors="replace"))
+        size = self._output.seek(0, os.SEEK_END)
+        self._output.seek(max(0, size - _TAIL))
+        return str(self._output.read().decode(errors="replace"))

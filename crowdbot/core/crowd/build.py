@@ -109,9 +109,9 @@ def _check_compiled(name: str, signature: Any, function: Any) -> None:
         return
     found = getattr(function, "nopython_signatures", ())
     if signature not in found:
-        what = f"is compiled for {found[0]}" if found else "is not compiled"
+        problem = f"is compiled for {found[0]}" if found else "is not compiled"
         raise PluginError(
-            f"{name} {what}; decorate it with "
+            f"{name} {problem}; decorate it with "
             f'@njit({name.upper()}, cache=True, error_model="numpy"), which is {signature}'
         )
 

@@ -330,7 +330,7 @@ class CrowdEngine:
         if self._router is not None:
             number = int(flat[s.TICK]) // self.ticks_per_decision
             self._router.find(people, self.ticks_per_decision * TICK, number)
-        asked = list[tuple[NDArray[np.bool_], Array]]()
+        decisions = list[tuple[NDArray[np.bool_], Array]]()
         for group in self.groups if len(robots) else self._groups_alone:
             shown = robots[:, _SEEN] if group.sees_robot and len(robots) else _NOT_SHOWN
             view = self._view(flat, rows, group.members, shown)
@@ -339,7 +339,7 @@ class CrowdEngine:
                 view = immutable_fields(replace(view, **self._kept))
             wanted = desired_acceleration(group.policy, view)
             if self._led and np.any(group.members & self._commanded):
-                asked.append((decides, wanted))
+                decisions.append((decides, wanted))
             if self._steering is not None:
                 wanted = self._steering.steer(view, relaxation_time_of(group.policy), wanted)
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
@@ -351,7 +351,7 @@ class CrowdEngine:
                 self._place.boundary, self._cohesion,
             )  # fmt: skip
         self._evade(flat, people, robots, outlines)
-        for decides, wanted in asked:  # nothing else changes what those want who are led
+        for decides, wanted in decisions:  # nothing else changes what those want who are led
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
 
     def _evade(self, flat: Array, people: s.People, robots: Array, outlines: Array) -> None:

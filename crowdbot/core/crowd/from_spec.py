@@ -20,7 +20,7 @@ Fields = Mapping[str, Any]
 def policy_of(
     policy: Fields, costs: Mapping[str, Fields] | None = None, registry: Registry | None = None
 ) -> PolicyFactory:
-    """A policy for `CrowdEngine`, from the fields ``crowd.policy`` and ``crowd.costs``.
+    """Return a policy for `CrowdEngine`, from the fields ``crowd.policy`` and ``crowd.costs``.
 
     Args:
         policy: ``kind`` and other fields of a crowd policy.

@@ -154,7 +154,7 @@ def _pull(
 
 @kernel
 def _nearest(step: float, width: float) -> float:
-    """The shortest of the ways to a person on a torus of a width, which may be infinite."""
+    """Return the shortest of the ways to a person on a torus of a width, which may be infinite."""
     if math.isinf(width):
         return step
     return step - width * math.floor(step / width + 0.5)

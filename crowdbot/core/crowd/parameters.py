@@ -83,7 +83,7 @@ def _may_stay(agents: Agents) -> Mask:
 
 
 class RulesRecord:
-    """Rules for all people.
+    """Rules of portals, pillars and contacts that hold for all people, as a record.
 
     Attributes:
         keep_offset: 1 if people come out of the in-portal opposite to where they went in.

@@ -32,12 +32,12 @@ class RecordedCrowd:
     time: dict[int, Array]
     place: dict[int, Array]
 
-    def at(self, who: int, t: float) -> Array:
+    def at(self, person: int, t: float) -> Array:
         """Return the position (2,) of one person at a time, m, interpolated linearly.
 
         Outside the record it is the first or last sample.
         """
-        time, place = self.time[who], self.place[who]
+        time, place = self.time[person], self.place[person]
         return np.array([np.interp(t, time, place[:, 0]), np.interp(t, time, place[:, 1])])
 
     def agents(self, **same_for_all: Any) -> Agents:
@@ -61,8 +61,8 @@ class RecordedCrowd:
             **same_for_all,
         )
 
-    def _speed(self, who: int) -> float:
-        time, place = self.time[who], self.place[who]
+    def _speed(self, person: int) -> float:
+        time, place = self.time[person], self.place[person]
         if len(time) < 2:
             return 0.0
         way = np.hypot(*np.diff(place, axis=0).T)
@@ -84,27 +84,27 @@ def read_record(path: Path) -> RecordedCrowd:
                 raise InputError(f"{path}:1: a record has the columns {','.join(COLUMNS)}")
             for cells in table:
                 if cells:
-                    t, who, x, y = _numbers(cells, f"{path}:{table.line_num}")
-                    if t in rows[who]:
+                    t, person, x, y = _numbers(cells, f"{path}:{table.line_num}")
+                    if t in rows[person]:
                         raise InputError(
-                            f"{path}:{table.line_num}: id {who} is in two places at t = {t:g}"
+                            f"{path}:{table.line_num}: id {person} is in two places at t = {t:g}"
                         )
-                    rows[who][t] = (x, y)
+                    rows[person][t] = (x, y)
     except csv.Error as error:
         raise InputError(f"{path}: cannot be read: {error}") from error
     if not rows:
         raise InputError(f"{path}: the record is empty")
     return RecordedCrowd(
-        {who: np.array(sorted(found)) for who, found in rows.items()},
-        {who: np.array([found[t] for t in sorted(found)]) for who, found in rows.items()},
+        {person: np.array(sorted(found)) for person, found in rows.items()},
+        {person: np.array([found[t] for t in sorted(found)]) for person, found in rows.items()},
     )
 
 
 def _numbers(cells: list[str], where: str) -> tuple[float, int, float, float]:
     try:
-        t, who, x, y = (float(cell) for cell in cells)
-        if not all(math.isfinite(v) for v in (t, who, x, y)) or who != int(who):
+        t, person, x, y = (float(cell) for cell in cells)
+        if not all(math.isfinite(v) for v in (t, person, x, y)) or person != int(person):
             raise ValueError
     except ValueError:
         raise InputError(f"{where}: '{','.join(cells)}' is not t,id,x,y") from None
-    return t, int(who), x, y
+    return t, int(person), x, y

@@ -13,7 +13,7 @@ from crowdbot.core.types.arrays import Array
 
 
 class HeaderRecord:
-    """The header.
+    """The first numbers of the state vector.
 
     Attributes:
         robots: number of robots that there is room for.
@@ -27,7 +27,7 @@ class HeaderRecord:
 
 
 class PersonRecord:
-    """A person; SI units.
+    """One person's numbers in the state vector; SI units.
 
     Attributes:
         x, y, vx, vy, ax, ay: position, velocity, desired acceleration.
@@ -181,7 +181,7 @@ def people_in(flat: Array) -> People:
 
 
 def contact_with(flat: Array, robot: int = 0) -> tuple[Array, Array]:
-    """The forces on a robot (F,), and its contact with each agent (N, T), sharing memory."""
+    """Return the forces on a robot (F,), and its contact with each agent (N, T), sharing memory."""
     start = _contacts_start(flat)
     size = (len(flat) - start) // int(flat[ROBOTS])
     own = flat[start + robot * size : start + (robot + 1) * size]

@@ -16,7 +16,7 @@ from crowdbot.errors import PluginError
 
 
 def build_environment(registry: Registry, spec: EnvironmentSpec) -> EnvironmentParts:
-    """The place that a spec describes.
+    """Return the place that a spec describes.
 
     Raises:
         PluginError: it cannot be built, or its tables do not fit each other.

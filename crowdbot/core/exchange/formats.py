@@ -46,7 +46,7 @@ Reader = Callable[[Sequence[OpenedScene], Context], list[Draft]]
 
 @dataclass(frozen=True, slots=True)
 class SceneFormat:
-    """One format.
+    """A file format of scenes: how it is recognised, and its reader.
 
     Attributes:
         name: short name.

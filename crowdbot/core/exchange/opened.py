@@ -21,7 +21,7 @@ _LARGEST_DATA = 8_000_000
 
 @dataclass(slots=True)
 class OpenedScene:
-    """One file.
+    """A file to import: its text, and its parsed elements.
 
     Attributes:
         path: its path.

@@ -50,7 +50,7 @@ def _line_and_column(mark: Mark) -> dict[str, int]:
 
 @dataclass(slots=True)
 class Report:
-    """All entries so far."""
+    """Collects what an import or export carried over, interpreted, left out and added."""
 
     entries: list[Trace] = field(default_factory=list)
 
@@ -161,7 +161,6 @@ def _line(key: tuple[PartOutcome, str, str, str], entries: list[Trace]) -> str:
     more = f" and {len(entries) - 1} more" if len(entries) > 1 else ""
     names = dict.fromkeys(_below(path, theirs) for entry in entries for path, _ in entry.within)
     shown = ", ".join([*list(names)[:_SHOWN], *(["…"] if len(names) > _SHOWN else [])])
-    what = " -> ".join(filter(None, (f"{theirs} ({shown})" if shown else theirs, ours)))
-    return (
-        f"{outcome.value}: {f'{first}{more}: ' if first else ''}{what}{f': {note}' if note else ''}"
-    )
+    change = " -> ".join(filter(None, (f"{theirs} ({shown})" if shown else theirs, ours)))
+    where, why = f"{first}{more}: " if first else "", f": {note}" if note else ""
+    return f"{outcome.value}: {where}{change}{why}"

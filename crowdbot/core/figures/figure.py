@@ -28,7 +28,7 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 @dataclass(frozen=True, slots=True)
 class FigurePart:
-    """Triangles of one material.
+    """A figure's triangles of one material.
 
     Attributes:
         points: (N, 3) m, of a figure 1 m high.

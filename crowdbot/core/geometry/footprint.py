@@ -86,7 +86,7 @@ class Footprint:
 
 
 def footprint_of_model(robot: RobotModel) -> Footprint:
-    """The outline of a robot, corners of a polygon counter-clockwise; a disc has none.
+    """Return the outline of a robot, corners of a polygon counter-clockwise; a disc has none.
 
     Raises:
         ValueError: it is neither a segment nor a convex polygon.

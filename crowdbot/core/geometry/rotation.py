@@ -23,7 +23,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> Array:
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
-    """The rotation as a quaternion x, y, z, w."""
+    """Return the rotation as a quaternion x, y, z, w."""
     angles = (roll, pitch, yaw)
     cr, sr, cp, sp, cy, sy = (f(0.5 * a) for a in angles for f in (math.cos, math.sin))
     return (

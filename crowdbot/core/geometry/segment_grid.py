@@ -20,7 +20,7 @@ _SLACK = 1e-6
 
 
 class SegmentGrid(NamedTuple):
-    """Segments near each cell.
+    """Grid over segments; each cell lists the segments near it.
 
     Attributes:
         frame: (5,) x and y of the lower left corner, m; cells per metre; columns and rows. With 0

@@ -25,7 +25,7 @@ _VERSION = 1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Conventions:
-    """Conventions of a policy.
+    """A trained policy's observation, and the meaning of its actions.
 
     Attributes:
         observation: its spec.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass
 class LiveCounts:
-    """Counters of a run.
+    """Counts of steps, missed commands and lag in a live run.
 
     Attributes:
         steps: planner steps so far; all robots take one together.

@@ -25,7 +25,7 @@ class LiveRobot:
         name: its name in the current run; empty if the run does not have it.
         pose, twist: x, y, yaw and v, w, vy by odometry.
         driver: the client that drives it.
-        asked: the step that waits for its command.
+        pending: the step that waits for its command.
         limits: of its commands, once they are known.
         latest, fresh: the latest command; True if it has not been read.
     """
@@ -34,7 +34,7 @@ class LiveRobot:
     pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
     twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
     driver: Hashable | None = None
-    asked: PendingStep | None = None
+    pending: PendingStep | None = None
     latest: Command | None = None
     fresh: bool = False
     limits: RobotLimits | None = None

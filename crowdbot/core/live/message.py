@@ -20,7 +20,7 @@ class OfferedTopic:
 
 @dataclass(frozen=True)
 class LiveMessage:
-    """One message.
+    """A message on a topic of a live run, serialised.
 
     Attributes:
         msgtype: ``package/msg/Name``.

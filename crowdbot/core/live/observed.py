@@ -63,7 +63,7 @@ class Observed:
         self._odometry = any(is_odometry(i) for i in sensors.values())
         self._frame, self._tf = odom, template.transform(odom, base)
         self._odom, self._clock = template.odometry(base, odom), template.clock()
-        self._told: dict[str, float] = {}
+        self._shown: dict[str, float] = {}
 
     def offers(self) -> list[OfferedTopic]:
         """Return the topics, the clock last."""
@@ -94,8 +94,8 @@ class Observed:
         """
         self._wheels.turn(obs)
         for name, reading in obs.readings.items():
-            if self._told.get(name, -1.0) < reading.stamp:
-                self._told[name] = reading.stamp
+            if self._shown.get(name, -1.0) < reading.stamp:
+                self._shown[name] = reading.stamp
                 yield from self._reading(name, reading, wanted)
         yield from self._state(obs, wanted)
 

@@ -49,7 +49,7 @@ class ServiceType:
         if kind in store.fielddefs:
             return
         for name, fields in ((self._request, request), (self._response, response)):
-            text = "\n".join(f"{what} {field}" for field, what in fields.items())
+            text = "\n".join(f"{field_type} {field}" for field, field_type in fields.items())
             plain = name.replace("/srv/", "/msg/")
             store.register({name: get_types_from_msg(text, plain)[plain]})
         parts = {p: ((), [*_parts(kind, p)]) for p in (f"{kind}_Event", kind)}
@@ -102,12 +102,12 @@ def _made(msgtype: str, values: object) -> Any:
 
 
 def _value(desc: Any, value: Any) -> Any:
-    node, what = desc
+    node, details = desc
     if node == Nodetype.NAME:
-        return _made(what, value)
+        return _made(details, value)
     if node == Nodetype.BASE:
-        return _ZERO.get(what[0], 0) if value is None else value
-    (inner, rest), size = what
+        return _ZERO.get(details[0], 0) if value is None else value
+    (inner, rest), size = details
     items = list(value or ())
     if inner == Nodetype.BASE and rest[0] not in ("string", "wstring"):
         kind = {"bool": "bool", "char": "uint8", "byte": "uint8", "octet": "uint8"}

@@ -21,7 +21,7 @@ TRIGGER: Fields = {"success": "bool", "message": "string"}
 
 @dataclass(frozen=True, kw_only=True)
 class Service:
-    """A service.
+    """A service of a live run: types of request and response, and its function.
 
     Attributes:
         kind: ``package/srv/Name``.

@@ -70,7 +70,7 @@ class LiveSession:
             self.run += 1
             self.counts, self.state = LiveCounts(), "waiting"
             for robot in self.robots.values():
-                robot.name, robot.asked = "", None
+                robot.name, robot.pending = "", None
             for name, space in namespaces(robots).items():
                 self.robots[space].name = name
             self._request = ""
@@ -91,7 +91,7 @@ class LiveSession:
         with self._changed:
             self._listeners = False
             for robot in robots:
-                self.robots[robot].asked = PendingStep(ns)
+                self.robots[robot].pending = PendingStep(ns)
 
     def answer(
         self, budget: float, listened: Callable[[], None], robot: str = ""
@@ -106,12 +106,12 @@ class LiveSession:
         until = time.monotonic() + budget
         while True:
             with self._changed:
-                asked = self.robots[robot].asked
-                assert asked is not None
-                self._wait(lambda: asked.answer is not None or self._listeners, until)  # noqa: B023
-                if asked.answer is not None or not self._listeners:
-                    self.robots[robot].asked = None
-                    return asked.answer
+                request = self.robots[robot].pending
+                assert request is not None
+                self._wait(lambda: request.answer is not None or self._listeners, until)  # noqa: B023
+                if request.answer is not None or not self._listeners:
+                    self.robots[robot].pending = None
+                    return request.answer
                 self._listeners = False
             listened()
 
@@ -177,7 +177,7 @@ class LiveSession:
         """Return the topics of joysticks: topic -> namespace of the robot."""
         return joy_topics(self.robots)
 
-    def joystick(self, who: Hashable, message: Any, robot: str) -> str:
+    def joystick(self, client: Hashable, message: Any, robot: str) -> str:
         """Take a client's sensor_msgs/Joy; return why it is refused, empty if accepted.
 
         Raises:
@@ -187,36 +187,36 @@ class LiveSession:
         if limits is None:
             self.refuse()
             return "the run has not begun, so the robot's limits are not known"
-        return self.command(who, joy(message, limits), None, robot)
+        return self.command(client, joy(message, limits), None, robot)
 
-    def drive(self, who: Hashable, robot: str = "") -> bool:
+    def drive(self, client: Hashable, robot: str = "") -> bool:
         """Return True if this client may drive a robot; the first one does until it leaves."""
         with self._changed:
             one = self.robots[robot]
             if one.driver is None:
-                one.driver = who
+                one.driver = client
                 self._changed.notify_all()
-            return one.driver == who
+            return one.driver == client
 
-    def leave(self, who: Hashable, robot: str | None = None) -> None:
+    def leave(self, client: Hashable, robot: str | None = None) -> None:
         """Handle a client that stopped driving a robot, or, without a robot, disconnected."""
         with self._changed:
             for one in self.robots.values() if robot is None else [self.robots[robot]]:
-                if one.driver == who:
+                if one.driver == client:
                     one.driver = None
-            if robot is None and self._clock_keeper == who:
+            if robot is None and self._clock_keeper == client:
                 self._clock_keeper = None
             self._changed.notify_all()
 
-    def leave_clock(self, who: Hashable) -> None:
+    def leave_clock(self, client: Hashable) -> None:
         """Handle a client that no longer drives the external clock."""
         with self._changed:
-            if self._clock_keeper == who:
+            if self._clock_keeper == client:
                 self._clock_keeper = None
 
-    def drives(self, who: Hashable) -> bool:
+    def drives(self, client: Hashable) -> bool:
         """Return True if this client drives a robot or the external clock."""
-        return self._clock_keeper == who or any(r.driver == who for r in self.robots.values())
+        return self._clock_keeper == client or any(r.driver == client for r in self.robots.values())
 
     @property
     def here(self) -> list[LiveRobot]:
@@ -233,12 +233,12 @@ class LiveSession:
         return self.robots[robot].driver is not None
 
     def command(
-        self, who: Hashable, command: Command, stamp: int | None = None, robot: str = ""
+        self, client: Hashable, command: Command, stamp: int | None = None, robot: str = ""
     ) -> str:
         """Take a client's command.
 
         Args:
-            who: the client.
+            client: the client.
             command: m/s, rad/s.
             stamp: stamp of the message, ns; None or 0 if it has none.
             robot: namespace of the robot.
@@ -246,7 +246,7 @@ class LiveSession:
         Returns:
             Why the command is refused; empty if accepted.
         """
-        why = self._taken(who, command, stamp, robot)
+        why = self._taken(client, command, stamp, robot)
         if why:
             self.refuse()
         return why
@@ -256,21 +256,21 @@ class LiveSession:
         with self._changed:
             self.counts.refused += 1
 
-    def _taken(self, who: Hashable, command: Command, stamp: int | None, robot: str) -> str:
+    def _taken(self, client: Hashable, command: Command, stamp: int | None, robot: str) -> str:
         if not all(math.isfinite(x) for x in command):
             return "a command must be finite"
         if self.run and not self.robots[robot].name:
             return "the run has no robot with this topic"
-        if not self.drive(who, robot):
+        if not self.drive(client, robot):
             return "another client drives; its commands count until it leaves"
         with self._changed:
             one = self.robots[robot]
-            asked = one.asked
-            if asked is not None and stamp and stamp < asked.ns - _ROUNDING:
+            request = one.pending
+            if request is not None and stamp and stamp < request.ns - _ROUNDING:
                 return "the command's stamp is older than the step that waits for one"
             one.latest, one.fresh = command, True
-            if asked is not None and asked.answer is None:
-                asked.answer = command
+            if request is not None and request.answer is None:
+                request.answer = command
             self._changed.notify_all()
         return ""
 
@@ -280,7 +280,7 @@ class LiveSession:
             self._listeners = True
             self._changed.notify_all()
 
-    def clock(self, t: float, who: Hashable) -> bool:
+    def clock(self, t: float, client: Hashable) -> bool:
         """Set the external clock to ``t``, s; it never goes back.
 
         Returns:
@@ -288,8 +288,8 @@ class LiveSession:
         """
         with self._changed:
             if self._clock_keeper is None:
-                self._clock_keeper = who
-            if self._clock_keeper != who:
+                self._clock_keeper = client
+            if self._clock_keeper != client:
                 return False
             if t > self._clock and math.isfinite(t):
                 self._clock = t

@@ -44,8 +44,8 @@ class LiveSteps:
         self._robots: dict[str, RobotMessages] = {}
         self._look: Callable[[], Mapping[str, Observation]] = dict
         self._seen: Mapping[str, Observation] = {}
-        self._said, self._open = set[str](), set[str]()
-        self._t = self._began = self._told = -math.inf
+        self._passed_on, self._open = set[str](), set[str]()
+        self._t = self._began = self._reported = -math.inf
 
     def begin_run(self, look: Callable[[], Mapping[str, Observation]]) -> None:
         """Start a recording; ``look`` returns all robots' observations at the present step."""
@@ -62,7 +62,7 @@ class LiveSteps:
         self._robots[robot] = messages
         if set(self._robots) != set(self._spaces):
             return
-        self._t = self._began = self._told = -math.inf
+        self._t = self._began = self._reported = -math.inf
         self._open = set()
         constant = constant_of(self._robots.values())
         offers = [OfferedTopic(m.topic, m.msgtype, latched=True) for m in constant]
@@ -96,8 +96,10 @@ class LiveSteps:
     def tell_who_came(self) -> None:
         """Publish the current step again for new subscribers."""
         for robot, obs in self._seen.items():
-            more = self._robots[robot].again(obs, lambda t: t not in self._said and self._wanted(t))
-            self._said |= self._pass_on(more)
+            more = self._robots[robot].again(
+                obs, lambda t: t not in self._passed_on and self._wanted(t)
+            )
+            self._passed_on |= self._pass_on(more)
 
     def _note(self, t: float) -> None:
         self.session.t = t
@@ -119,7 +121,7 @@ class LiveSteps:
             session.ask(ns, [self._spaces[name] for name in self._seen])
         else:
             self._keep_pace(t)
-        self._said = self._pass_on(
+        self._passed_on = self._pass_on(
             message
             for name, obs in self._seen.items()
             for message in self._robots[name].messages(obs, self._wanted)
@@ -140,7 +142,7 @@ class LiveSteps:
     def _finish(self) -> None:
         self._open = set()
         self.session.counts.steps += 1
-        if time.monotonic() - self._told > _TELL:
+        if time.monotonic() - self._reported > _TELL:
             self._tell()
 
     def _pass_on(self, found: Iterable[LiveMessage]) -> set[str]:
@@ -154,7 +156,7 @@ class LiveSteps:
         return any(connection.wants(topic) for connection in self._connections)
 
     def _tell(self) -> None:
-        self._told = time.monotonic()
+        self._reported = time.monotonic()
         message = status(self.session, self.policy.epoch)
         for connection in self._connections:
             connection.publish([message])

@@ -42,7 +42,7 @@ _NODE = "crowdbot"
 
 @dataclass(frozen=True, kw_only=True)
 class Network:
-    """The ROS 2 network.
+    """Address, domain and distribution of the ROS 2 network.
 
     Attributes:
         endpoint: address of the router, ``tcp/HOST:PORT``.
@@ -58,7 +58,7 @@ class Network:
 
 
 class _Publisher:
-    """One published topic."""
+    """A topic as eclipse-zenoh publishes it."""
 
     def __init__(self, topic: Ros2Topic, publisher: Any, token: Any, gid: bytes) -> None:
         self.topic, self.publisher, self.token = topic, publisher, token

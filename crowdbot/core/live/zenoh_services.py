@@ -41,11 +41,13 @@ class ZenohServices:
         types = service_type(service)
         topic = Ros2Topic(name, service.kind, service_hash_in(types.hash, distro))
 
-        def asked(query: Any) -> None:
+        def on_query(query: Any) -> None:
             with suppress(RuntimeError):  # already closed
                 self._threads.submit(self._answer, query, service, types)
 
-        self._kept.append(self._session.declare_queryable(topic.key(domain), asked, complete=True))
+        self._kept.append(
+            self._session.declare_queryable(topic.key(domain), on_query, complete=True)
+        )
         return topic
 
     def close(self) -> None:
@@ -54,19 +56,21 @@ class ZenohServices:
 
     def _answer(self, query: Any, service: Service, types: ServiceType) -> None:
         with query:
-            told = None if query.attachment is None else query.attachment.to_bytes()
-            known = None if told is None else read_attachment(told)
+            attached = None if query.attachment is None else query.attachment.to_bytes()
+            known = None if attached is None else read_attachment(attached)
             if known is None:
                 query.reply_err(b"a request of rmw_zenoh has an attachment of 33 bytes")
                 return
-            number, who = known
+            number, client = known
             data = b"" if query.payload is None else query.payload.to_bytes()
             try:
                 answer = types.response(asyncio.run(_called(service, types.request(data))))
             except InputError as error:
                 query.reply_err(str(error).encode())
                 return
-            query.reply(query.key_expr, answer, attachment=attachment(number, time.time_ns(), who))
+            query.reply(
+                query.key_expr, answer, attachment=attachment(number, time.time_ns(), client)
+            )
 
 
 async def _called(service: Service, values: Values) -> Values:

@@ -53,24 +53,24 @@ def sensors_of(needs: tuple[str, ...] | None, spec: PlannerSpec) -> tuple[str, .
     return None if needs is None else (*needs, *(f"{want}?" for want in spec.wants))
 
 
-def read_description(said: Mapping[str, Any], who: str) -> PlannerDescription:
+def read_description(message: Mapping[str, Any], planner: str) -> PlannerDescription:
     """Check the description sent by a planner process, which may be malformed.
 
     Raises:
         InputError: it is not a valid description.
     """
-    needs, runtime = said.get("needs"), said.get("runtime", "")
+    needs, runtime = message.get("needs"), message.get("runtime", "")
     if needs is not None and not (isinstance(needs, list) and all(map(_is_name, needs))):
-        raise InputError(f"{who}: hello: 'needs' is a list of names of sensors, or nil")
+        raise InputError(f"{planner}: hello: 'needs' is a list of names of sensors, or nil")
     if not isinstance(runtime, str):
-        raise InputError(f"{who}: hello: 'runtime' is text")
-    data = said.get("data", [])
+        raise InputError(f"{planner}: hello: 'runtime' is text")
+    data = message.get("data", [])
     if not (isinstance(data, list) and all(map(_is_name, data))):
-        raise InputError(f"{who}: hello: 'data' is a list of names of files")
+        raise InputError(f"{planner}: hello: 'data' is a list of names of files")
     return PlannerDescription(
         needs=None if needs is None else tuple(needs),
-        privileged=said.get("privileged", False) is True,
-        role=_role(said.get("role", "candidate"), who),
+        privileged=message.get("privileged", False) is True,
+        role=_role(message.get("role", "candidate"), planner),
         runtime=runtime[:80],
         data=tuple(data),
     )
@@ -85,11 +85,11 @@ def role_of(holder: type) -> PlannerRole:
     return _role(getattr(holder, "role", "candidate"), f"planner '{holder.__name__}'")
 
 
-def _role(role: object, who: str) -> PlannerRole:
+def _role(role: object, planner: str) -> PlannerRole:
     known = get_args(PlannerRole)
     if role not in known:
         near = did_you_mean(nearest(str(role), known)) or f"; there are {', '.join(known)}"
-        raise InputError(f"{who}: no role '{role}'{near}")
+        raise InputError(f"{planner}: no role '{role}'{near}")
     return cast(PlannerRole, role)
 
 

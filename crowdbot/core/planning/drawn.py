@@ -15,7 +15,7 @@ _LONGEST_TEXT, _MOST_TEXTS = 80, 200
 
 
 class Drawn(NamedTuple):
-    """A valid drawing.
+    """A planner's drawing after validation.
 
     Attributes:
         name: its name.

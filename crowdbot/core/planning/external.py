@@ -58,12 +58,12 @@ def external_choice(
         raise InputError(f"{path}: another program cannot run in the simulator's process")
     program = _Program(path, document)
     parameters = {**program.parameters, **settings}
-    said, build = describe(program.process(parameters, place), lenient=place.lenient)
+    description, build = describe(program.process(parameters, place), lenient=place.lenient)
     dump: dict[str, Any] = {
         "kind": f"{path.name}:{program.name}",
         "sha256": program.sha256,
-        **({"data": _data(path.resolve().parent, said.data)} if said.data else {}),
-        **({"runtime": said.runtime} if said.runtime else {}),
+        **({"data": _data(path.resolve().parent, description.data)} if description.data else {}),
+        **({"runtime": description.runtime} if description.runtime else {}),
         **({"parameters": parameters} if parameters else {}),
         **({"network": True} if program.needs.network else {}),
     }
@@ -75,10 +75,10 @@ def external_choice(
         ),
         pinned=False,
         origin=str(path),
-        needs=said.needs,
-        label=label_of(program.name, parameters, said.privileged),
-        privileged=said.privileged,
-        role="candidate" if parameters else said.role,
+        needs=description.needs,
+        label=label_of(program.name, parameters, description.privileged),
+        privileged=description.privileged,
+        role="candidate" if parameters else description.role,
         in_process=False,
         memory=place.memory,
     )
@@ -204,8 +204,8 @@ class _Program:
             self._fail("'network' is true or false")
         return found
 
-    def _fail(self, what: str) -> NoReturn:
-        raise InputError(f"{self._path}: {what}")
+    def _fail(self, problem: str) -> NoReturn:
+        raise InputError(f"{self._path}: {problem}")
 
 
 def _digest(words: Sequence[str], files: Mapping[str, Path]) -> str:

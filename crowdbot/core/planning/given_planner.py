@@ -95,22 +95,22 @@ def _of_class(kind: type[Any], parameters: Mapping[str, Any]) -> PlannerChoice:
     check_parameters(kind, parameters, kind.__name__)
     origin, digest = _written(kind)
     name = kind.__name__
-    said = described(kind, call_of_class(Path(origin), name))
+    description = described(kind, call_of_class(Path(origin), name))
     file = origin.endswith(".py")
     return PlannerChoice(
         name=name,
         spec_dump={
             "kind": f"{Path(origin).name}:{name}" if file else origin,
-            "sha256": source_digest(Path(origin), said.data) if file else digest,
+            "sha256": source_digest(Path(origin), description.data) if file else digest,
             **({"parameters": dict(parameters)} if parameters else {}),
         },
         build=partial(build_of_class, kind, parameters, Path(origin), name),
         pinned=False,
         origin=origin,
-        needs=said.needs,
-        label=label_of(name, parameters, said.privileged),
-        privileged=said.privileged,
-        role="candidate" if parameters else said.role,
+        needs=description.needs,
+        label=label_of(name, parameters, description.privileged),
+        privileged=description.privileged,
+        role="candidate" if parameters else description.role,
     )
 
 
@@ -174,20 +174,20 @@ def _state(given: object) -> str:
         return hashlib.sha256(repr(held).encode()).hexdigest()
 
 
-def _written(what: Any) -> tuple[str, str]:
+def _written(built: Any) -> tuple[str, str]:
     """Return where a class or function is defined, and its source's digest.
 
     In a notebook its text.
     """
-    name = f"{getattr(what, '__module__', '')}.{getattr(what, '__qualname__', '')}"
+    name = f"{getattr(built, '__module__', '')}.{getattr(built, '__qualname__', '')}"
     try:
-        file = Path(inspect.getfile(what))
+        file = Path(inspect.getfile(built))
         if file.is_file():
             return str(file), source_digest(file)
     except (TypeError, OSError):
         pass
     try:
-        text = inspect.getsource(what)
+        text = inspect.getsource(built)
     except (TypeError, OSError):
         text = name
     return name, hashlib.sha256(text.encode()).hexdigest()

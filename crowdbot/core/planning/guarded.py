@@ -79,13 +79,13 @@ class GuardedPlanner:
         with self._around, self._step_call("step"):
             return self._checked(self._planner.step(obs))
 
-    def fail(self, what: str) -> None:
+    def fail(self, problem: str) -> None:
         """Report an error in a step.
 
         Raises:
             PlannerError: always.
         """
-        self._step_call.fail(what)
+        self._step_call.fail(problem)
 
     def _sources(self) -> frozenset[str]:
         """Return the files that define the planner's class and its bases."""

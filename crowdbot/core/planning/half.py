@@ -86,7 +86,7 @@ class PlannerWithHalf:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """As `Planner.reset`."""
+        """Like `Planner.reset`."""
         self.planner.reset(task, limits, sensors, seed)
 
     def step(self, obs: Observation) -> Command:

@@ -67,8 +67,8 @@ def choice_with_half(
         is_default: returns True if a spec has the defaults of its component only.
     """
     load_build(component, registry.plugin_call(spec))
-    said = described(component.spec, registry.plugin_call(spec))
-    own = sensors_of(said.needs, spec)
+    description = described(component.spec, registry.plugin_call(spec))
+    own = sensors_of(description.needs, spec)
     both = None if own is None or half.needs is None else (*own, *half.needs)
     privileged = is_privileged(spec) or half.privileged
     as_given = is_default(component, spec)
@@ -83,7 +83,7 @@ def choice_with_half(
         needs=both,
         label=label_of(spec.kind, {} if as_given else dump, privileged),
         privileged=privileged,
-        role=said.role if as_given else "candidate",
+        role=description.role if as_given else "candidate",
         in_process=half.in_process,
         memory=half.memory,
         repeatable=half.repeatable,

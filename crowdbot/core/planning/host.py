@@ -41,7 +41,7 @@ class HostedCommand(NamedTuple):
 
 
 class PlannerHost:
-    """One planner in one run.
+    """Calls a robot's planner for one run and checks what it returns.
 
     Args:
         planner: anything with ``reset`` and ``step``.

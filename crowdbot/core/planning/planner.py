@@ -171,11 +171,11 @@ class SignalBounds:
         self._names.add(name)
         self._values += values
         if len(self._names) > _MOST_SIGNALS:
-            what = f"{_MOST_SIGNALS} names of {self._kind}"
-            raise PlannerError(f"{self._what}: more than {what} in a run")
+            limit = f"{_MOST_SIGNALS} names of {self._kind}"
+            raise PlannerError(f"{self._what}: more than {limit} in a run")
         if self._values > self._most:
-            what = f"{self._most} values of {self._kind}"
-            raise PlannerError(f"{self._what}: more than {what} in a run")
+            limit = f"{self._most} values of {self._kind}"
+            raise PlannerError(f"{self._what}: more than {limit} in a run")
 
 
 def drawing_bounds() -> SignalBounds:

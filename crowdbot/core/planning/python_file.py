@@ -108,8 +108,8 @@ def checked_planner(planner: object) -> Planner:
     """
     missing = missing_methods(planner)
     if missing:
-        what = type(planner).__name__
-        raise PlannerError(f"what was built, a {what}, has no {' and no '.join(missing)}")
+        kind = type(planner).__name__
+        raise PlannerError(f"what was built, a {kind}, has no {' and no '.join(missing)}")
     return cast(Planner, planner)
 
 

@@ -109,11 +109,11 @@ def half_spec(spec: PlannerSpec, registry: Registry, where: str = "") -> Planner
     Raises:
         InputError: it is not a registered kind, or a parameter is wrong.
     """
-    what, where = getattr(spec, spec.half), f"{where}{spec.half}: "
-    if not isinstance(what, Mapping) or not isinstance(what.get("kind"), str):
+    half, where = getattr(spec, spec.half), f"{where}{spec.half}: "
+    if not isinstance(half, Mapping) or not isinstance(half.get("kind"), str):
         raise InputError(f"{where}'{spec.kind}' runs in a process of its own; name a kind here")
-    parameters = {name: value for name, value in what.items() if name != "kind"}
-    return spec_of_kind(find_kind(what["kind"], registry, where), parameters, where)
+    parameters = {name: value for name, value in half.items() if name != "kind"}
+    return spec_of_kind(find_kind(half["kind"], registry, where), parameters, where)
 
 
 def uses_half(spec: PlannerSpec) -> bool:

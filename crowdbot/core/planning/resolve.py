@@ -234,12 +234,12 @@ def _half(
     spec: PlannerSpec, registry: Registry, origin: _Origin, place: PlannerPlace
 ) -> PlannerChoice:
     """Return the planner in a planner's spec, which is a document, a kind, or a file."""
-    what = getattr(spec, spec.half)
+    half = getattr(spec, spec.half)
     where = f"{origin.where}{spec.half}: "
-    if isinstance(what, Mapping):
-        return _from_document(what, {}, registry, _Origin(where, origin.path), place)
+    if isinstance(half, Mapping):
+        return _from_document(half, {}, registry, _Origin(where, origin.path), place)
     folder = origin.path.parent if origin.path else Path()
-    found = resolve_planner(str(folder / what), registry, (), place)
+    found = resolve_planner(str(folder / half), registry, (), place)
     if found.fleet:
         raise InputError(f"{where}one planner is wanted, not those of several robots")
     return found

@@ -19,7 +19,7 @@ HIP = 0.53
 
 @dataclass(frozen=True, slots=True)
 class Bodies:
-    """Bodies of some people.
+    """Sizes, masses and speeds of some people.
 
     Attributes:
         radius, mass: (N,) m and kg.

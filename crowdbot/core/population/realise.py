@@ -116,18 +116,18 @@ def _recorded(crowd: Crowd, record: Asset, streams: Streams) -> Iterator[Row]:
     from crowdbot.core.crowd.recorded import read_record  # slow import of the engine
 
     people = read_record(record.file).agents()
-    for i, who in enumerate(people.id.tolist()):
+    for i, person in enumerate(people.id.tolist()):
         start = float(people.x[i]), float(people.y[i])
         goal = float(people.route[i, 0]), float(people.route[i, 1])  # one point each
         yield {
             **crowd.body.model_dump(include={"radius", "mass", "max_speed", "max_acceleration"}),
-            "id": who,
+            "id": person,
             "x": start[0],
             "y": start[1],
             "heading": heading_to(*start, goal),
             "speed": float(people.preferred_speed[i]),
             "start_time": float(people.start_time[i]),
-            "attention": draw_attention(streams, "crowd.attention", who),
+            "attention": draw_attention(streams, "crowd.attention", person),
             "group": -1,
             "policy": "",
             "at_goal": "remove",

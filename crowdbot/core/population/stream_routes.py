@@ -22,7 +22,7 @@ _POINT = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """The route of one person.
+    """Goals and pauses of one person of a stream.
 
     Attributes:
         goals: points, or centres of areas, m.

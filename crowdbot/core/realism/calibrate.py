@@ -111,7 +111,7 @@ class Fitted(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """The result of a fit.
+    """Fitted parameters and their scores against recordings.
 
     Attributes:
         values, spread: key -> value and standard deviation, SI units.
@@ -175,8 +175,8 @@ def fit(
             points = [strategy.ask() for _ in range(strategy.population_size)]
             known = done[number] if number < len(done) else None
             if known is None:
-                asked = [(overrides_of(parameters, p), 1 + number % _DRAWS) for p in points]
-                known = losses_of(asked)
+                trials = [(overrides_of(parameters, p), 1 + number % _DRAWS) for p in points]
+                known = losses_of(trials)
                 _write_log(log, head, done := [*done[:number], list(known)])
             strategy.tell(list(zip(points, known, strict=True)))
             watch(Generation(number=number, losses=known, from_log=number < logged))
@@ -233,11 +233,11 @@ def _result(task: Fitted, parameters: Sequence[Parameter], strategy: CMA, genera
 
 def _head(task: Fitted, parameters: Sequence[Parameter], seed: int, size: int) -> str:
     """Return the first line that a log of this fit must have."""
-    what = [
+    inputs = [
         *task.what, seed, size,
         [(p.key, p.start, p.low, p.high) for p in parameters],
     ]  # fmt: skip
-    return hashlib.sha256(json.dumps(what).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(inputs).encode()).hexdigest()
 
 
 def digest(path: Path) -> str:
@@ -265,19 +265,19 @@ def _write_log(log: Path, head: str, done: Sequence[Sequence[float]]) -> None:
     atomic_write(log, "".join(json.dumps(line) + "\n" for line in lines))
 
 
-_Asked = Sequence[tuple[Sequence[str], int]]
+_Trials = Sequence[tuple[Sequence[str], int]]
 
 
 @contextmanager
-def _losses(task: Fitted, jobs: int) -> Iterator[Callable[[_Asked], list[float]]]:
+def _losses(task: Fitted, jobs: int) -> Iterator[Callable[[_Trials], list[float]]]:
     """Yield a function for the losses of a generation: in this process or in several."""
     if jobs <= 1:
-        yield lambda asked: [task.loss(overrides, seed) for overrides, seed in asked]
+        yield lambda trials: [task.loss(overrides, seed) for overrides, seed in trials]
         return
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
 
-        def all_of(asked: _Asked) -> list[float]:
-            waiting = [pool.submit(task.loss, list(o), seed) for o, seed in asked]
+        def all_of(trials: _Trials) -> list[float]:
+            waiting = [pool.submit(task.loss, list(o), seed) for o, seed in trials]
             return [one.result() for one in waiting]
 
         yield all_of

@@ -33,7 +33,7 @@ _TRIES = 4000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Corridor:
-    """One corridor with people.
+    """Settings of one simulated corridor: flow, density, seed and times.
 
     Attributes:
         flow: ``uni`` or ``counter``.

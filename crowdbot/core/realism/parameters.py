@@ -27,7 +27,7 @@ _FITTED_RESPONSE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """One fitted parameter.
+    """A parameter to fit: its path in the scenario, start and bounds.
 
     Attributes:
         key: path in the scenario, such as ``crowd.costs.way.d_max``.

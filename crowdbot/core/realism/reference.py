@@ -68,7 +68,7 @@ class RealismReference:
 
     @property
     def cells(self) -> list[Cell]:
-        """The cells that count."""
+        """Return the cells that count."""
         return compared_cells(self.whole)
 
     def within(self, cells: Sequence[Cell]) -> RealismReference:

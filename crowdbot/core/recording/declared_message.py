@@ -22,11 +22,11 @@ def declared_encoder(info: SensorInfo, _: str) -> Callable[[int, Array], bytes]:
     Raises:
         PluginError: a definition is not one, or contradicts a type that is known.
     """
-    told = info.message
-    assert told is not None
+    declared = info.message
+    assert declared is not None
     kind = info.ros_type
     try:
-        ros.declare(told.definitions)
+        ros.declare(declared.definitions)
     except ValueError as error:
         raise PluginError(f"the messages of sensor '{info.frame}': {error}") from error
     fields = ros.field_types(kind)
@@ -37,7 +37,7 @@ def declared_encoder(info: SensorInfo, _: str) -> Callable[[int, Array], bytes]:
     def message(ns: int, values: Array) -> bytes:
         # tf2 takes a stamp of 0 for "the latest".
         head = {stamped: ros.header(ns or 1, info.frame)} if stamped else {}
-        found = {**head, **told.fields(values)}
+        found = {**head, **declared.fields(values)}
         try:
             return ros.to_cdr(message_from(kind, found))
         except (TypeError, ValueError, OverflowError, AttributeError) as error:

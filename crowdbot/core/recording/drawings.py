@@ -63,9 +63,9 @@ def text_markers(ns: int, name: str, columns: Array, texts: Sequence[str]) -> li
     found = []
     for number, ((x, y), text) in enumerate(zip(columns[:2].T.tolist(), texts, strict=True)):
         if text:
-            said = markers.text_marker(ns, name, text, (x, y, _TEXT_HEIGHT), (_LETTER, _COLOUR))
-            said.id, said.lifetime.nanosec = number, round(1e9 * _TEXT_AGE)
-            found.append(ros.to_cdr(said))
+            label = markers.text_marker(ns, name, text, (x, y, _TEXT_HEIGHT), (_LETTER, _COLOUR))
+            label.id, label.lifetime.nanosec = number, round(1e9 * _TEXT_AGE)
+            found.append(ros.to_cdr(label))
     return found
 
 

@@ -77,9 +77,9 @@ def text_marker(
         look: height of a capital letter, m, and red, green, blue, opacity.
     """
     height, rgba = look
-    said = marker(ns, namespace, "TEXT_VIEW_FACING", (0.0, 0.0, height), rgba, np.zeros((0, 3)))
-    said.text, said.pose.position = text, ros.point(*place)
-    return said
+    label = marker(ns, namespace, "TEXT_VIEW_FACING", (0.0, 0.0, height), rgba, np.zeros((0, 3)))
+    label.text, label.pose.position = text, ros.point(*place)
+    return label
 
 
 def marker_array(markers: Iterable[Any]) -> Any:

@@ -233,7 +233,7 @@ class Recording:
         self._cursor = None
 
     def _learned(self, record: Record) -> Callable[[Record], None] | None:
-        """The function that takes the records of a topic, found at its first record."""
+        """Return the function that takes the records of a topic, found at its first record."""
         topic = record.topic
         self._types[topic] = record.msgtype
         self._takers[topic] = self._taker(topic)
@@ -270,7 +270,7 @@ class Recording:
             self._first = topic
 
     def _taker(self, topic: str) -> Callable[[Record], None] | None:
-        """The function that takes the records of a topic; None: nothing does."""
+        """Return the function that takes the records of a topic; None: nothing does."""
         for known in RobotRecords.TOPICS:
             if topic.endswith(known):
                 prefix = topic.removesuffix(known)

@@ -103,12 +103,12 @@ def field_types(msgtype: str) -> dict[str, str] | None:
     return {field: _field_type(*kind) for field, kind in found[1]}
 
 
-def _field_type(node: Any, what: Any) -> str:
+def _field_type(node: Any, details: Any) -> str:
     if node.name == "NAME":
-        return str(what).replace("/msg/", "/")
+        return str(details).replace("/msg/", "/")
     if node.name == "BASE":
-        return str(what[0])
-    (inner, size) = what
+        return str(details[0])
+    (inner, size) = details
     return f"{_field_type(*inner)}[{size if node.name == 'ARRAY' else ''}]"
 
 

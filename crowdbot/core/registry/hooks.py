@@ -89,8 +89,8 @@ def _check_hooks(manager: pluggy.PluginManager, module: Any) -> None:
         if name not in marked and inspect.isroutine(getattr(module, name, None)):
             raise PluginError(f"'{name}' is not marked as a hook: write @hookimpl above it")
     if not marked:
-        what = getattr(module, "__name__", type(module).__name__)
-        raise PluginError(f"{what} has no hook: no function is marked with @hookimpl")
+        module_name = getattr(module, "__name__", type(module).__name__)
+        raise PluginError(f"{module_name} has no hook: no function is marked with @hookimpl")
 
 
 def _answers(manager: pluggy.PluginManager, hook: str) -> Iterator[Any]:

@@ -67,7 +67,7 @@ class Plugin:
 
     @property
     def failure_traceback(self) -> str:
-        """The traceback of `failure`, where there is one."""
+        """Return the traceback of `failure`, where there is one."""
         late = (error.__cause__ or error for error in self._late_errors.values())
         return self.traceback or "\n".join("".join(format_exception(e)) for e in late)
 

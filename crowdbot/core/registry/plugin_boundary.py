@@ -75,23 +75,23 @@ class PluginCall:
         finally:
             sys.stdout = self._stdouts.pop()
 
-    def fail(self, what: str) -> NoReturn:
+    def fail(self, problem: str) -> NoReturn:
         """Report an invalid result of a call.
 
         Raises:
             PluginError: always; of the requested class.
         """
-        raise self._error(printable(f"{self.who}: {what}" if self.who else what))
+        raise self._error(printable(f"{self.who}: {problem}" if self.who else problem))
 
     def _let_pass_or_raise(self, error: BaseException) -> None:
         if is_user_interrupt(error):
             return
         if not isinstance(error, self._passes):
-            raise self._error(self._told(describe_error(error, self._sources()))) from error
+            raise self._error(self._message(describe_error(error, self._sources()))) from error
         if isinstance(error, CrowdbotError) and self.who.partition(" (")[0] not in str(error):
             error.args = (printable(f"{self.who}: {error}"),)
 
-    def _told(self, what: str) -> str:
+    def _message(self, problem: str) -> str:
         """Return the message: plugin, call, time, and error."""
         doing = self._doing if self._t is None else f"{self._doing} at t = {self._t:g} s"
-        return printable(": ".join(part for part in (self.who, doing, what) if part))
+        return printable(": ".join(part for part in (self.who, doing, problem) if part))

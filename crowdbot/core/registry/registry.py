@@ -190,7 +190,7 @@ class Registry:
 
     @cached_property
     def _models(self) -> Models:
-        """The narrowed classes, which equal registries share."""
+        """Return the narrowed classes, which equal registries share."""
         return models_of(
             tuple(
                 (category, component.spec)
@@ -336,8 +336,10 @@ def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
     errors = {}
     for (category, kind), indices in owners.items():
         if len(indices) > 1:
-            who = " and ".join(plugins[i].origin for i in indices)
-            errors.update(dict.fromkeys(indices, f"E301 {category} '{kind}' is provided by {who}"))
+            origins = " and ".join(plugins[i].origin for i in indices)
+            errors.update(
+                dict.fromkeys(indices, f"E301 {category} '{kind}' is provided by {origins}")
+            )
     return errors
 
 

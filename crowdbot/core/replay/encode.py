@@ -116,7 +116,7 @@ def summary(run: Trajectories) -> Mapping[str, str]:
         facts["People"] = str(len(run.agents.id))
     if run.contacts is not None:
         sides = Counter(map(body_side, run.contacts.bearing.tolist()))
-        told = ", ".join(f"{sides[s]} {s}" for s in _SIDES if sides[s])
+        by_side = ", ".join(f"{sides[s]} {s}" for s in _SIDES if sides[s])
         count = str(len(run.contacts.agent))
-        facts["Contacts"] = f"{count} ({told})" if told else count
+        facts["Contacts"] = f"{count} ({by_side})" if by_side else count
     return facts

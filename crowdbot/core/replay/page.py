@@ -79,12 +79,12 @@ def _words(shown: Sequence[ShownRun]) -> list[str]:
     found: dict[str, set[str]] = {}
     for words in filter(None, (one.words for one in shown)):
         found.setdefault(_REALISED.sub("", words), set()).add(words)
-    return [told.pop() if len(told) == 1 else name for name, told in found.items()]
+    return [texts.pop() if len(texts) == 1 else name for name, texts in found.items()]
 
 
 def _facts(shown: ShownRun) -> dict[str, str]:
-    told = {k: v for k, v in shown.facts.items() if k.lower() != "status"}
-    return told | dict(summary(shown.run))
+    facts = {k: v for k, v in shown.facts.items() if k.lower() != "status"}
+    return facts | dict(summary(shown.run))
 
 
 def _order(shown: Sequence[ShownRun]) -> Any:

@@ -49,8 +49,8 @@ def card(text: str) -> dict[str, Any]:
 
 def reference(card_: dict[str, Any] | None) -> dict[str, Any] | None:
     """Return the value that means "no effect", if the card's range names one."""
-    said = dict(card_["head"]).get("range", "") if card_ else ""
-    match = re.search(r"; (-?\d+(?:\.\d+)?): ([^;,]+)", said)
+    range_text = dict(card_["head"]).get("range", "") if card_ else ""
+    match = re.search(r"; (-?\d+(?:\.\d+)?): ([^;,]+)", range_text)
     return None if match is None else {"value": float(match[1]), "meaning": match[2].strip()}
 
 

@@ -167,8 +167,8 @@ class Contents:
 
 def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
     """Return the realism of the people in some runs; runs without people are skipped."""
-    told = [(r.axes.get(AXIS, ""), r.crowd) for r in runs]
-    return lines_of((name, like) for name, like in told if name or like)
+    labels = [(r.axes.get(AXIS, ""), r.crowd) for r in runs]
+    return lines_of((name, like) for name, like in labels if name or like)
 
 
 def _responses(runs: Sequence[RunRow]) -> list[str]:

@@ -4,12 +4,12 @@
 function replayAt(run, beside = null) {
   const [page, moment] = [report.runs.replay[run], report.runs.moment[run]];
   if (!page) return page;
-  const said = [
+  const options = [
     ...(moment ? [["t", moment[0]]] : []),
     ...(beside ? [["with", seenFrom(page, beside)]] : []),
     ["report", seenFrom(page, location.pathname.replace(/.*\//, ""))],
   ];
-  return `${page}#${said.map(([name, value]) => `${name}=${encodeURI(value).replace(/[&#+]/g, encodeURIComponent)}`).join("&")}`;
+  return `${page}#${options.map(([name, value]) => `${name}=${encodeURI(value).replace(/[&#+]/g, encodeURIComponent)}`).join("&")}`;
 }
 
 /** An address relative to a page, where both are relative to this one. */

@@ -58,17 +58,17 @@ def axes_of(results: Results) -> list[dict[str, Any]]:
     found: dict[str, dict[str, set[tuple[str, str]]]] = {}
     tried: list[Attempt] = [*results.runs, *results.failures]
     for one in tried:
-        told = one.axis_words if isinstance(one, RunRow) else {}
+        words_of = one.axis_words if isinstance(one, RunRow) else {}
         for name, label in one.axes.items():
-            said = found.setdefault(name, {}).setdefault(label, set())
-            if words := told.get(name):
-                said.add((words[0], words[1]))
+            titles = found.setdefault(name, {}).setdefault(label, set())
+            if words := words_of.get(name):
+                titles.add((words[0], words[1]))
     return [_axis(name, labels) for name, labels in found.items()]
 
 
 def _axis(name: str, labels: Mapping[str, set[tuple[str, str]]]) -> dict[str, Any]:
-    titles = {title for said in labels.values() for title, _ in said}
-    words = [next(iter(said))[1] if len(said) == 1 else x for x, said in labels.items()]
+    titles = {title for pairs in labels.values() for title, _ in pairs}
+    words = [next(iter(pairs))[1] if len(pairs) == 1 else x for x, pairs in labels.items()]
     agreed = len(titles) == 1 and len(set(words)) == len(words)
     return {
         "name": name,

@@ -61,10 +61,10 @@ function showFilters() {
   report.planners.forEach((_, p) =>
     byId(`planner-${p}`).setAttribute("aria-pressed", String(!state.hidden.has(p))));
   const shown = shownPlanners().reduce((sum, p) => sum + selectedRuns(p).length, 0);
-  const said = filterText();
+  const text = filterText();
   byId("shown").textContent = `${shown} of ${plural(report.runs.count, "run")}`;
-  byId("filter-text").textContent = said ? `Only ${said}.` : "All runs.";
-  byId("clear").disabled = !said && state.variant === HEADLINE;
+  byId("filter-text").textContent = text ? `Only ${text}.` : "All runs.";
+  byId("clear").disabled = !text && state.variant === HEADLINE;
 }
 
 function filterText() {

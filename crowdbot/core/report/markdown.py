@@ -156,8 +156,8 @@ def _family(summary: Summary) -> str:
 def _left_out(summary: Summary) -> str:
     """Return how many comparisons are in the page only."""
     count = len(summary.comparisons) - len(_shown(summary))
-    told = f"{plural(count, 'comparison')} of detail without a difference: on the page."
-    return told if count else ""
+    line = f"{plural(count, 'comparison')} of detail without a difference: on the page."
+    return line if count else ""
 
 
 def family(summary: Summary) -> str:
@@ -175,8 +175,8 @@ def _endings(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
 def _scores(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
     summary = contents.figures.headline
     places = {s.name: i for i, s in enumerate(contents.series)}
-    told = dict.fromkeys((s.metric, s.variant) for s in summary.scores)
-    names = sorted(told, key=lambda name: places.get(name, len(places)))
+    shown = dict.fromkeys((s.metric, s.variant) for s in summary.scores)
+    names = sorted(shown, key=lambda name: places.get(name, len(places)))
     scores = {(s.metric, s.variant, s.planner): s for s in summary.scores}
     rows: list[Sequence[str]] = []
     for metric, variant in names:

@@ -42,8 +42,8 @@ def _named(contents: Contents, planner: str) -> str:
         "privileged" if contents.is_privileged(planner) else "",
         "reference scores" if planner in contents.heading.references else "",
     ]
-    said = ", ".join(filter(None, marks))
-    return f"{planner} ({said})" if said else planner
+    notes = ", ".join(filter(None, marks))
+    return f"{planner} ({notes})" if notes else planner
 
 
 def _seeds(seeds: Sequence[int]) -> str:
@@ -78,7 +78,7 @@ def _compared(contents: Contents) -> list[str]:
         return []
     main = any(is_main(s.metric, s.variant) for s in summary.scores)
     family = "the four scores" if main else "the scores"
-    said = [
+    sentences = [
         "Means were compared in pairs of the same scenario and seed by sign-flip tests, which "
         "exchange the signs of whole crowd draws; Holm's correction over the "
         f"{plural(summary.tests, 'test')} of {family} keeps the chance of any false verdict "
@@ -87,11 +87,11 @@ def _compared(contents: Contents) -> list[str]:
     ]
     sample = contents.sample
     if sample is not None and sample.too_small:
-        said.append(
+        sentences.append(
             f"With {plural(sample.draws, 'crowd draw')} no verdict was possible; at least "
             f"{sample.least} would be needed."
         )
-    return said
+    return sentences
 
 
 def _accepted(contents: Contents) -> list[str]:

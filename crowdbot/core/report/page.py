@@ -95,8 +95,8 @@ def _note_words(contents: Contents) -> str:
         plural(len(heading.accepted), "accepted difference") if heading.accepted else "",
         plural(len(heading.warnings), "warning") if heading.warnings else "",
     ]
-    said = "; ".join(filter(None, parts))
-    return f"Notes and warnings: {said}" if said else "Notes"
+    listed = "; ".join(filter(None, parts))
+    return f"Notes and warnings: {listed}" if listed else "Notes"
 
 
 def _planner(contents: Contents, planner: str) -> dict[str, Any]:

@@ -140,7 +140,7 @@ function forestRow(row, pair, x, top, { width, narrow }) {
     group.append(svg("line", { class: "whisker", x1: round(x.place(row.improvement_low)), x2: round(x.place(row.improvement_high)), y1: y, y2: y }));
   }
   group.append(clear ? marker(winner, place, y, 4.5, "ringed") : svg("circle", { class: "open", cx: place, cy: y, r: 4 }));
-  const said = clear ? sentence({ a: pair[0], b: pair[1], verdict: row.verdict }) : row.verdict;
-  group.append(narrow ? label(clear ? said : "", width - 8, y - 10, "label", "end") : label(said, width - 140, y + 4, clear ? "label" : "tick"));
+  const text = clear ? sentence({ a: pair[0], b: pair[1], verdict: row.verdict }) : row.verdict;
+  group.append(narrow ? label(clear ? text : "", width - 8, y - 10, "label", "end") : label(text, width - 140, y + 4, clear ? "label" : "tick"));
   return group;
 }

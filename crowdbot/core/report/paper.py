@@ -100,12 +100,12 @@ def caption(contents: Contents, subject: str) -> str:
     summary = contents.figures.headline
     draws = {s.draws for c in main_columns(summary) for s in c.scores if s.counts.ok}
     low, high = min(draws, default=0), max(draws, default=0)
-    said = plural(low, "crowd draw") if low == high else f"{low} to {plural(high, 'crowd draw')}"
+    crowds = plural(low, "crowd draw") if low == high else f"{low} to {plural(high, 'crowd draw')}"
     runs = ", ".join(f"{p} {len(contents.of(p))}" for p in contents.planners)
     scenarios = plural(len({a.scenario for a in contents.attempts}), "scenario")
     return (
         f"{subject} in {scenarios} of {contents.heading.suite}. Runs: {runs}. Brackets and bars: "
-        f"{100 * summary.level:g} % intervals by Student's t over {said}."
+        f"{100 * summary.level:g} % intervals by Student's t over {crowds}."
     )
 
 
@@ -117,10 +117,10 @@ def _scores(contents: Contents, columns: Sequence[LeadColumn]) -> str:
          *(" ".join(estimate_text(c.scores[i].mean)) + _missing(c, i) for c in columns)]
         for i, planner in enumerate(contents.planners)
     ]  # fmt: skip
-    said = caption(contents, "Mean scores")
+    caption_text = caption(contents, "Mean scores")
     if any(_missing(c, i) for c in columns for i in range(len(contents.planners))):
-        said += " In parentheses: the runs with a value, where some have none."
-    return _table(said, "scores", "lr" + "r" * len(columns), head, rows)
+        caption_text += " In parentheses: the runs with a value, where some have none."
+    return _table(caption_text, "scores", "lr" + "r" * len(columns), head, rows)
 
 
 def _missing(column: LeadColumn, place: int) -> str:
@@ -169,11 +169,11 @@ def _p(found: Comparison) -> str:
 
 
 def _table(
-    said: str, label: str, columns: str, head: Sequence[str], rows: Sequence[Sequence[str]]
+    caption_text: str, label: str, columns: str, head: Sequence[str], rows: Sequence[Sequence[str]]
 ) -> str:
     lines = [f"{' & '.join(map(escaped, row))} \\tabularnewline" for row in (head, *rows)]
     return "\n".join([
-        "\\begin{table}", "\\centering", f"\\caption{{{escaped(said)}}}",
+        "\\begin{table}", "\\centering", f"\\caption{{{escaped(caption_text)}}}",
         f"\\label{{tab:{label}}}", "\\medskip", _AS_WIDE_AS_FITS,
         f"\\begin{{tabular}}{{{columns}}}", "\\toprule", lines[0],
         "\\midrule", *lines[1:], "\\bottomrule", "\\end{tabular}}", "\\end{table}",

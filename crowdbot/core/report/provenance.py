@@ -61,8 +61,8 @@ def _metrics(conditions: Mapping[str, str]) -> dict[str, str]:
 
 def _plain_conditions(conditions: Mapping[str, str]) -> dict[str, str]:
     """Return the conditions without metrics, software and machine."""
-    told = ("metrics.", "versions.", "processor")
-    return {n: text for n, text in conditions.items() if not n.startswith(told)}
+    prefixes = ("metrics.", "versions.", "processor")
+    return {n: text for n, text in conditions.items() if not n.startswith(prefixes)}
 
 
 def _merged(

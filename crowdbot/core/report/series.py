@@ -28,7 +28,7 @@ NAMED = "named by the suite"
 
 
 class Series(NamedTuple):
-    """One variant of one metric.
+    """Values of one variant of one metric, by planner and scenario.
 
     ``plain``: the corrected variant, or any if the metric has none. ``headline``: shown by default.
     ``centre``: the summary of its runs. ``over``: for a rate, the variant by which it is divided.

@@ -209,9 +209,11 @@ def _unpaired(runs: Sequence[RunRow]) -> Iterator[Finding]:
         by_place.setdefault((_scenario(run), run.seed), []).append(run)
     alone: dict[str, list[str]] = {}
     for group in by_place.values():
-        who = tuple(sorted({r.planner for r in group}))
-        if who != planners:
-            alone.setdefault(", ".join(who), []).extend(r.directory or r.run_id for r in group)
+        group_planners = tuple(sorted({r.planner for r in group}))
+        if group_planners != planners:
+            alone.setdefault(", ".join(group_planners), []).extend(
+                r.directory or r.run_id for r in group
+            )
     if alone:
         paired = [r.directory or r.run_id for g in by_place.values() for r in g
                   if len({x.planner for x in g}) == len(planners)]  # fmt: skip

@@ -58,12 +58,12 @@ class RunRow:
 
     @property
     def planner(self) -> str:
-        """The label, with a digest of its parameters where they are not the defaults."""
+        """Return the label, with a digest of its parameters where they are not the defaults."""
         return self.entry or self.record.planner.label
 
     @property
     def seed(self) -> int:
-        """The seed of sensor noise and planner."""
+        """Return the seed of sensor noise and planner."""
         return self.record.seed
 
     @property
@@ -78,7 +78,7 @@ class RunRow:
 
     @property
     def reason(self) -> str:
-        """The reason for which it ended."""
+        """Return the reason for which it ended."""
         return self.record.reason
 
     @property

@@ -47,7 +47,7 @@ class ColumnState(NamedTuple):
 
 @dataclass(frozen=True, slots=False, eq=False, kw_only=True)
 class ScoreColumns(Sequence[ScoreRow]):
-    """Scores as columns.
+    """Scores of many runs, one array per column.
 
     Attributes:
         run_ids, labels, states: what the rows refer to.

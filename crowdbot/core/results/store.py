@@ -131,7 +131,7 @@ def _copy(root: Path) -> Iterator[Store]:
 
 
 class Store:
-    """An open index."""
+    """An open index of run directories, ``results.sqlite``."""
 
     def __init__(self, root: Path, database: sqlite3.Connection) -> None:
         self._root, self._database = root, database
@@ -251,7 +251,7 @@ _FAILURE = ("suite", "scenario", "position", "planner", "seed", "axes", "error",
 
 
 def _read_row(run: Path, directory: str) -> RunRow:
-    """The row of a run.
+    """Return the row of a run.
 
     Raises:
         InputError: a part is missing, truncated or malformed.

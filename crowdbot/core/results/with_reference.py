@@ -120,8 +120,8 @@ def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
         means = {n: fmean(fmean(values[n][s]) for s in shared) for n in (planner, *others)}
         order = sorted(means, key=lambda n: -means[n])
         plain = {n: n if without_mark(n) == planner else without_mark(n) for n in order}
-        said = ", ".join(f"{plain[n]} {means[n]:.2f}" for n in order)
+        listed = ", ".join(f"{plain[n]} {means[n]:.2f}" for n in order)
         yield (
             f"{planner}: number {order.index(planner) + 1} of {len(order)} by {PRIMARY.role} in "
-            f"{plural(len(shared), 'scenario')}: {said}"
+            f"{plural(len(shared), 'scenario')}: {listed}"
         )

@@ -42,7 +42,7 @@ _EXPAND = (
 
 @dataclass(frozen=True)
 class Description:
-    """A robot's description.
+    """A parsed robot description, SDFormat or URDF.
 
     Attributes:
         text: the text as read.
@@ -59,12 +59,12 @@ class Description:
 
     @cached_property
     def links(self) -> Mapping[str, Xml.Element]:
-        """The links by name."""
+        """Return the links by name."""
         return {name_of(link): link for link in self.model.findall("link")}
 
     @cached_property
     def joints(self) -> Mapping[str, Joint]:
-        """The joints by name."""
+        """Return the joints by name."""
         read = urdf_joint if self.format == "urdf" else sdf_joint
         return {name_of(joint): read(joint) for joint in self.model.findall("joint")}
 
@@ -281,8 +281,8 @@ def parse_description(text: str) -> Description:
     plain_poses(model)
     flat, nested = without_nested(model)
     made, written = written_out(flat, version)
-    told = (*notes, *nested, *written)
-    return Description(text, "sdf", made, version if made is model else "1.9", told)
+    all_notes = (*notes, *nested, *written)
+    return Description(text, "sdf", made, version if made is model else "1.9", all_notes)
 
 
 def _only_model(top: Xml.Element) -> Xml.Element | None:
@@ -343,9 +343,9 @@ def _check_limits(described: Description) -> None:
             )
 
 
-def _unknown(what: str, name: str, known: Mapping[str, object]) -> str:
+def _unknown(part: str, name: str, known: Mapping[str, object]) -> str:
     hint = did_you_mean(nearest(name, known)) or f"; there are: {', '.join(known) or 'none'}"
-    return f"the robot's description has no {what} '{name}'{hint}"
+    return f"the robot's description has no {part} '{name}'{hint}"
 
 
 def _check_circle(link: str, below: tuple[str, ...]) -> None:

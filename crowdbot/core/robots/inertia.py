@@ -53,5 +53,5 @@ def rolling(inertial: Xml.Element, radius: float) -> None:
         inertia.set(name, f"{moment:.9g}" if name[1] == name[2] else "0")
 
 
-def _value(element: Xml.Element | None, name: str, what: str) -> float:
-    return 0.0 if element is None else number(element.get(name, "0"), what)
+def _value(element: Xml.Element | None, name: str, subject: str) -> float:
+    return 0.0 if element is None else number(element.get(name, "0"), subject)

@@ -173,8 +173,8 @@ def _kept(file: Path, factors: list[float]) -> Path:
         made_by = version("coacd")
     except PackageNotFoundError:
         made_by = ""
-    told = [factors, MOST_PIECES, MOST_CORNERS, _CONCAVITY, _DIGITS, made_by, file.suffix.lower()]
-    digest = hashlib.sha256(json.dumps(told).encode() + input_bytes(file, LARGEST_TABLE))
+    inputs = [factors, MOST_PIECES, MOST_CORNERS, _CONCAVITY, _DIGITS, made_by, file.suffix.lower()]
+    digest = hashlib.sha256(json.dumps(inputs).encode() + input_bytes(file, LARGEST_TABLE))
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return base / "crowdbot" / "pieces" / f"{digest.hexdigest()}.json"
 

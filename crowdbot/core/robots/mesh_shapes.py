@@ -55,13 +55,13 @@ def simplify_mesh(
     geometry.remove(mesh)
     at = list(link).index(collision)
     link.remove(collision)
-    told = collision.get("name") or f"{name}_mesh{at}"
+    base_name = collision.get("name") or f"{name}_mesh{at}"
     for k, corners in enumerate(pieces.corners):
         one = deepcopy(collision)
-        one.set("name", f"{told}_{k}")
+        one.set("name", f"{base_name}_{k}")
         inner = one.find("geometry")
         assert inner is not None
-        add_piece(inner, corners, f"{told}_{k}")
+        add_piece(inner, corners, f"{base_name}_{k}")
         link.insert(at + k, one)
     return True
 

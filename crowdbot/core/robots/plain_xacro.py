@@ -30,9 +30,9 @@ def write_out(top: Xml.Element) -> tuple[str, ...]:
     Returns:
         their names; none if something else is left to xacro, and nothing was changed.
     """
-    told = [element for element in top if _tag(element)]
+    definitions = [element for element in top if _tag(element)]
     values: dict[str, str] = {}
-    for element in told:
+    for element in definitions:
         given = element.get({"property": "value", "arg": "default"}.get(_tag(element), ""))
         if given is None or len(element):
             return ()
@@ -40,12 +40,12 @@ def write_out(top: Xml.Element) -> tuple[str, ...]:
     texts = [(e, key, value) for e in top.iter() for key, value in e.items()]
     variables = [found[1] for _, _, value in texts for found in _VARIABLE.finditer(value)]
     pairs = [(e, key, _filled(value, values)) for e, key, value in texts]
-    if any("${" in text or "$(" in text for e, _, text in pairs if e not in told):
+    if any("${" in text or "$(" in text for e, _, text in pairs if e not in definitions):
         return ()
-    for element in told:
+    for element in definitions:
         top.remove(element)
     if any(_tag(element) for element in top.iter()):
-        top.extend(told)
+        top.extend(definitions)
         return ()
     for element, key, text in pairs:
         element.set(key, text)

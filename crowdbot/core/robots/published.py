@@ -137,8 +137,8 @@ class _Work:
         if names:
             listed = ", ".join(names[:_NAMED])
             more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-            what = one if len(names) == 1 else several.format(len(names))
-            self.notes.append(f"{what}: {listed}{more}")
+            subject = one if len(names) == 1 else several.format(len(names))
+            self.notes.append(f"{subject}: {listed}{more}")
 
     def check(self) -> None:
         """Check that everything named exists."""
@@ -146,10 +146,10 @@ class _Work:
         named += [("joint", joint, self.joints) for joint in self.wheels]
         if both := sorted(set(self.wheels) & set(self.positions)):
             raise PluginError(f"positions: joint '{both[0]}' is a wheel")
-        for what, name, known in named:
+        for part, name, known in named:
             if name not in known:
                 hint = did_you_mean(nearest(name, known)) or f"; there are: {', '.join(known)}"
-                raise PluginError(f"the robot's description has no {what} '{name}'{hint}")
+                raise PluginError(f"the robot's description has no {part} '{name}'{hint}")
 
     def keep_one_tree(self) -> None:
         """Remove links that are not connected to the base."""

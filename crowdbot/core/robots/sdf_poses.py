@@ -26,31 +26,33 @@ def plain_poses(model: Xml.Element) -> None:
             _make_plain(pose, f"the pose of '{name_of(element)}'")
 
 
-def _make_plain(pose: Xml.Element, what: str) -> None:
+def _make_plain(pose: Xml.Element, subject: str) -> None:
     kind, old = pose.attrib.pop("rotation_format", _FORMATS[0]), pose.attrib.pop("frame", "")
     if old and not pose.get("relative_to"):
         pose.set("relative_to", old)
     in_degrees = pose.attrib.pop("degrees", "false").strip().lower() in ("true", "1")
     if kind not in _FORMATS:
-        raise PluginError(f"{what} has the rotation_format '{kind}'; known: {', '.join(_FORMATS)}")
+        raise PluginError(
+            f"{subject} has the rotation_format '{kind}'; known: {', '.join(_FORMATS)}"
+        )
     if (kind == _FORMATS[0] and not in_degrees) or not (pose.text or "").strip():
         return
-    found = numbers(pose.text or "", what)
+    found = numbers(pose.text or "", subject)
     count = 6 if kind == _FORMATS[0] else 7
     if len(found) != count:
-        raise PluginError(f"{what} has {len(found)} numbers, not {count}")
+        raise PluginError(f"{subject} has {len(found)} numbers, not {count}")
     if count == 7:
-        found = _from_quaternion(found, what)
+        found = _from_quaternion(found, subject)
     else:
         found = [*found[:3], *(math.radians(angle) for angle in found[3:])]
     pose.text = " ".join(f"{value:.17g}" for value in found)
 
 
-def _from_quaternion(found: list[float], what: str) -> list[float]:
+def _from_quaternion(found: list[float], subject: str) -> list[float]:
     """Return x, y, z, roll, pitch, yaw of x, y, z and a quaternion x, y, z, w."""
     length = math.sqrt(sum(part * part for part in found[3:]))
     if length < 1e-6:
-        raise PluginError(f"{what} has a quaternion of length 0")
+        raise PluginError(f"{subject} has a quaternion of length 0")
     x, y, z, w = (part / length for part in found[3:])
     made = np.eye(4)
     made[:3, :3] = [

@@ -37,7 +37,7 @@ def pose_of(element: Xml.Element) -> list[float]:
     return pose
 
 
-def numbers(text: str, what: str) -> list[float]:
+def numbers(text: str, subject: str) -> list[float]:
     """Return the numbers in a text.
 
     Raises:
@@ -46,21 +46,21 @@ def numbers(text: str, what: str) -> list[float]:
     try:
         found = [float(word) for word in text.split()]
     except ValueError as error:
-        raise PluginError(f"{what}: {error}") from error
+        raise PluginError(f"{subject}: {error}") from error
     if not all(math.isfinite(n) for n in found):
-        raise PluginError(f"{what} is not finite")
+        raise PluginError(f"{subject} is not finite")
     return found
 
 
-def number(text: str, what: str) -> float:
+def number(text: str, subject: str) -> float:
     """Return the only number in a text.
 
     Raises:
         PluginError: it is not a number, or not finite.
     """
-    found = numbers(text, what)
+    found = numbers(text, subject)
     if len(found) != 1:
-        raise PluginError(f"{what} is {len(found)} numbers, not one")
+        raise PluginError(f"{subject} is {len(found)} numbers, not one")
     return found[0]
 
 

@@ -27,7 +27,7 @@ _PASSING = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiffSide:
-    """One side of a comparison.
+    """Scenario and run on one side of a comparison.
 
     Attributes:
         name: readable name.

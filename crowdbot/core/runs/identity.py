@@ -68,7 +68,7 @@ class Prepared:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """One calibration run.
+    """A calibration run that a run is compared with: robot or crowd alone.
 
     Attributes:
         name: ``robot_alone`` or ``crowd_alone``.

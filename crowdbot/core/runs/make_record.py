@@ -152,15 +152,15 @@ def _conditions(scenario: Scenario, runs: Mapping[str, Trajectories]) -> dict[st
 
 def _own_words(response: RobotResponse) -> str:
     """Return the kind of a response, and its values that are not default."""
-    told = {"kind", "reaction", "ignoring_fraction", "velocity", "margin"}  # elsewhere
-    fields = {n: f for n, f in type(response).model_fields.items() if n not in told}
+    elsewhere = {"kind", "reaction", "ignoring_fraction", "velocity", "margin"}  # elsewhere
+    fields = {n: f for n, f in type(response).model_fields.items() if n not in elsewhere}
     given = {n: getattr(response, n) for n, f in fields.items()}
     changed = [f"{n} {value:g}" for n, value in given.items() if value != fields[n].default]
     return ", ".join([response.kind, *changed])
 
 
 def _worst(runs: Iterable[Trajectories]) -> MomentPart | None:
-    """The moment at which the run is worst, to the millisecond and millimetre."""
+    """Return the moment at which the run is worst, to the millisecond and millimetre."""
     moments = [found for found in map(worst_moment, runs) if found is not None]
     if not moments:
         return None

@@ -113,7 +113,7 @@ class CostPart(EndedPart):
 
 
 class RobotPart(EndedPart):
-    """One of several robots."""
+    """Planner and trajectory's hash of one robot, in a run of several."""
 
     planner: PlannerPart
     trajectory: Hash

@@ -66,10 +66,10 @@ def find_source(
         robot_alone=robot_alone or found.robot_alone,
         crowd_alone=crowd_alone or found.crowd_alone,
     )
-    for what in ("recording", "robot_alone", "crowd_alone"):
-        file = getattr(found, what)
+    for part in ("recording", "robot_alone", "crowd_alone"):
+        file = getattr(found, part)
         if file is not None and not file.is_file():
-            raise InputError(f"{path}: {what.replace('_', ' ')} not found: {file}")
+            raise InputError(f"{path}: {part.replace('_', ' ')} not found: {file}")
     return found
 
 

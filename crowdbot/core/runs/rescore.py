@@ -136,7 +136,7 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
 def _whole_fleet(
     request: RescoreRequest, source: RecordingSource, recording: Recording, registry: Registry
 ) -> Rescored:
-    """All robots of a run, and the fleet.
+    """Return all robots of a run, and the fleet.
 
     Raises:
         IncompleteError: the recording is incomplete, which is not allowed.

@@ -21,7 +21,7 @@ Recorded = Literal["all", "used", "none"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunOptions:
-    """Options for making runs.
+    """Options of making a run that do not belong to its scenario or planner.
 
     Attributes:
         record: which sensors are simulated and recorded.

@@ -67,20 +67,20 @@ class _Record(CostPart):
     digests: dict[str, Hash] = Field(default_factory=dict)
 
     @classmethod
-    def parse(cls, document: Mapping[str, Any], what: object) -> Self:
-        """The record that a document holds.
+    def parse(cls, document: Mapping[str, Any], source: object) -> Self:
+        """Return the record that a document holds.
 
         Raises:
-            InputError: something is missing or malformed; it begins with ``what``.
+            InputError: something is missing or malformed; it begins with ``source``.
         """
         try:
             return cls.model_validate(dict(document))
         except (ValidationError, RecursionError) as error:
-            raise InputError(f"{what}: {_described(error)[0]}") from None
+            raise InputError(f"{source}: {_described(error)[0]}") from None
 
     @classmethod
     def read(cls, directory: Path) -> Self:
-        """The record of the complete run in a directory.
+        """Return the record of the complete run in a directory.
 
         Raises:
             InputError: it cannot be read, or is malformed.
@@ -104,7 +104,7 @@ class _Record(CostPart):
         files.write_json(directory / files.RECORD, self.document())
 
     def document(self) -> dict[str, Any]:
-        """The record as ``run.json`` has it."""
+        """Return the record as ``run.json`` has it."""
         return {"run_id": self.run_id, **super().document()}
 
 
@@ -190,7 +190,7 @@ class RunRecord(_Record, RunIdentity):
         }
 
     def __getitem__(self, key: str) -> Any:
-        """A value by its key in ``run.json``; deprecated."""
+        """Return a value by its key in ``run.json``; deprecated."""
         warnings.warn(
             f"record[{key!r}] is deprecated: use record.{key}, or record.document()",
             DeprecationWarning,

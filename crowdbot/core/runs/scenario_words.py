@@ -20,14 +20,14 @@ def scenario_words(record: RunRecord, scenario: Scenario) -> str:
         record: of the run, with the labels of the suite's axes.
         scenario: what was run; numbers are read from it.
     """
-    told = []
+    parts = []
     for axis, label in record.axes.items():
         if axis == DRAW:
-            told.append(f"{label}: {_draw(label)}")
+            parts.append(f"{label}: {_draw(label)}")
         elif words := record.axis_words.get(axis):
             title, value = words
-            told.append(f"{label}: {_plain(title, axis, value, record, scenario)}")
-    return f"In this scenario's name, {'; '.join(told)}." if told else ""
+            parts.append(f"{label}: {_plain(title, axis, value, record, scenario)}")
+    return f"In this scenario's name, {'; '.join(parts)}." if parts else ""
 
 
 def _draw(label: str) -> str:
@@ -94,8 +94,8 @@ def _attention(_: Scenario, crowd: Crowd) -> str:
     if not ignoring:
         return f"{late:.0%} of people notice the robot {when}" if late else _ALL_NOTICE
     while_it_moves = " while it moves" if response.reaction == "distracted" else ""
-    told = f"{ignoring:.0%} of people take no notice of the robot{while_it_moves}"
-    return f"{told}, {late:.0%} of the others notice it {when}" if late else told
+    text = f"{ignoring:.0%} of people take no notice of the robot{while_it_moves}"
+    return f"{text}, {late:.0%} of the others notice it {when}" if late else text
 
 
 _ALL_NOTICE = "all people notice the robot in time"

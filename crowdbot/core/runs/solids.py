@@ -30,7 +30,7 @@ _LOG = logging.getLogger("crowdbot")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolidPeople:
-    """Bodies of people.
+    """Heights and appearances of people for the 3-D view.
 
     Attributes:
         height: (M,) m, or (1,) if all are alike.

@@ -155,8 +155,8 @@ def _of_needed_tables(expansion: Expansion, lock: Lock) -> Iterator[LockDifferen
                 continue
             needed.add(inputs)
             if lock.table_of(inputs) is None:
-                who = f"reference '{name}'" if name else "the scenario"
-                yield LockDifference("agents", scenario.id, (f"no table for {who}",))
+                owner = f"reference '{name}'" if name else "the scenario"
+                yield LockDifference("agents", scenario.id, (f"no table for {owner}",))
     for name, table in lock.draws.items():
         if table.inputs not in needed:
             yield LockDifference("agents", name, ("no scenario needs this table",))

@@ -209,8 +209,10 @@ def metric_specs(
     chosen: set[str] = set()
     for glob in texts_of("metrics", metrics):
         chosen.update(_matching(known, glob, registry.why_absent(glob)))
-    asked = chosen.union(parameters)
-    specs = {kind: _spec(known[kind], parameters.get(kind, {})) for kind in known if kind in asked}
+    requested = chosen.union(parameters)
+    specs = {
+        kind: _spec(known[kind], parameters.get(kind, {})) for kind in known if kind in requested
+    }
     return [specs[kind] for kind in known if kind in chosen]
 
 
@@ -245,11 +247,11 @@ def _spec(component: Component[MetricSpec], fields: Mapping[str, Any]) -> Metric
         raise InputError("\n".join(lines)) from error
 
 
-def _complaint(component: Component[MetricSpec], where: Sequence[int | str], what: str) -> str:
+def _complaint(component: Component[MetricSpec], where: Sequence[int | str], problem: str) -> str:
     field, known = str(where[0]) if where else "", component.spec.model_fields
     if where and field not in known:
-        what = f"unknown{did_you_mean(nearest(field, known))}"
-    return f"metric '{component.kind}', parameter '{'.'.join(map(str, where))}': {what}"
+        problem = f"unknown{did_you_mean(nearest(field, known))}"
+    return f"metric '{component.kind}', parameter '{'.'.join(map(str, where))}': {problem}"
 
 
 def build_metric(registry: Registry, spec: MetricSpec, call: PluginCall | None = None) -> Metric:

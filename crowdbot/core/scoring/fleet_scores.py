@@ -45,10 +45,10 @@ def _of_fleet(scores: Mapping[str, Score]) -> Score:
     if any(score.status == "censored" for score in known.values()):
         lower = _mean([s.value if s.value is not None else s.lower for s in known.values()])
         upper = _mean([s.value if s.value is not None else s.upper for s in known.values()])
-        told = [f"{r}: {s.reason}" for r, s in known.items() if s.reason]
+        by_robot = [f"{r}: {s.reason}" for r, s in known.items() if s.reason]
         return replace(
             first, status="censored", value=None, lower=lower, upper=upper, extras={},
-            reason="; ".join([*told, *([reason] if reason else [])]),
+            reason="; ".join([*by_robot, *([reason] if reason else [])]),
         )  # fmt: skip
     value = _mean([score.value for score in known.values()])
     return replace(

@@ -34,7 +34,7 @@ Scales = Mapping[tuple[str, str], ScoreScale]
 
 
 def score_scales(registry: Registry) -> Scales:
-    """The scales of all scores of the installed metrics."""
+    """Return the scales of all scores of the installed metrics."""
     metrics: Mapping[str, Any] = registry.components("metric")
     return {
         (kind, name): ScoreScale(

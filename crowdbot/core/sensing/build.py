@@ -127,8 +127,8 @@ class CheckedCamera(CheckedSensor):
         with self._call("depth_mm", given[2]):
             image = self._sensor.depth_mm(*given)
         if getattr(image, "dtype", None) != np.uint16 or image.shape != self._shape:
-            what = f"{getattr(image, 'dtype', type(image).__name__)} {np.shape(image)}"
-            self._call.fail(f"depth_mm returned {what}, not uint16 {self._shape}")
+            kind = f"{getattr(image, 'dtype', type(image).__name__)} {np.shape(image)}"
+            self._call.fail(f"depth_mm returned {kind}, not uint16 {self._shape}")
         return cast(NDArray[np.uint16], image.copy())
 
 

@@ -194,7 +194,7 @@ def _insert_before(
     columns: _Columns, c: int,
     near: float, far: float, facing: float, low: float, high: float, who: int, rank: int,
 ) -> None:  # fmt: skip
-    """As `_insert`, but before bodies at the same distance whose owner is below ``rank``."""
+    """Like `_insert`, but before bodies at the same distance whose owner is below ``rank``."""
     work, filled = columns.work, columns.filled
     n = filled[c]
     if n == work.shape[1]:
@@ -273,7 +273,7 @@ def _covered_by(
 def _covered_roughly(
     px: float, py: float, ex: float, ey: float, yaw: float, azimuth: Array, runs: Indices
 ) -> int:
-    """As `_covered_by`, faster, and perhaps with a column more at each end."""
+    """Like `_covered_by`, faster, and perhaps with a column more at each end."""
     if (px == 0.0 and py == 0.0) or (px + ex == 0.0 and py + ey == 0.0):
         return _covered_by(px, py, ex, ey, yaw, azimuth, runs)
     begin, end = rough_angle(px, py), rough_angle(px + ex, py + ey)
@@ -373,7 +373,7 @@ def _fill_visible(
     x: float, y: float, z: float, yaw: float, lowest: float, highest: float, max_range: float,
     grid: GridArrays, obstacles: Obstacles, order: Indices, bound: Array,
 ) -> None:  # fmt: skip
-    """As `fill_columns` for rays from a height ``z``, without walls that nearer ones hide.
+    """Like `fill_columns` for rays from a height ``z``, without walls that nearer ones hide.
 
     Args:
         order, bound: (S,) the walls, nearest first, and lower bounds of their distances, m.

@@ -48,7 +48,7 @@ class RunRobot:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotBlocks:
-    """The blocks of one robot."""
+    """The systems of one robot in a Drake diagram."""
 
     given: RunRobot
     base: ControlledRobot
@@ -133,7 +133,7 @@ def _others(
     k: int,
     contacts: RobotContacts | None,
 ) -> OtherRobots:
-    """All robots but robot k, as its blocks know them."""
+    """Return all robots but robot k, as its blocks know them."""
     if contacts is None:
         return OtherRobots(robots[k].ending)
     rest = [i for i in range(len(robots)) if i != k]

@@ -21,5 +21,5 @@ def drake_failures() -> Iterator[None]:
     except SystemExit as error:
         if not (isinstance(error.code, str) and error.code.startswith(_BEGINS)):
             raise
-        _, _, what = error.code.partition(" in ")
-        raise RuntimeError(f"a condition of Drake failed: {what or error.code}") from error
+        _, _, condition = error.code.partition(" in ")
+        raise RuntimeError(f"a condition of Drake failed: {condition or error.code}") from error

@@ -89,7 +89,7 @@ def _seen(blocks: Blocks, root: Any) -> dict[str, Observation]:
 
 @contextmanager
 def _hosted(setup: RunSetup, built: BuiltRun) -> Iterator[PlannerHost]:
-    """The planner of a robot, watched over."""
+    """Return the planner of a robot, watched over."""
     own = replace(setup, choice=setup.choice.of(built.name))
     with watchdog_of(own) as watchdog, hosted(own, built, watchdog) as host:
         yield host

@@ -36,15 +36,15 @@ class Exchange:
         self.closed = False
 
     def planner(self, robot: str) -> Planner:
-        """The planner of a robot, for the run."""
+        """Return the planner of a robot, for the run."""
         return _Asking(self, robot)
 
     def begin(self, look: Callable[[], Seen]) -> None:
-        """The run's side: it begins; ``look`` gives what all robots see at the present step."""
+        """Called by the run: begin; ``look`` returns the present observations of all robots."""
         self._look = look
 
     def step(self, robot: str, obs: Observation) -> Command:
-        """The run's side: the first robot that is asked shows what all see, and waits."""
+        """Called by the run: return a robot's command; the first robot of a step waits for all."""
         if self.closed:
             return STOP
         if obs.t > self._t:
@@ -54,25 +54,25 @@ class Exchange:
         return self._commands.get(robot, STOP)
 
     def put(self, end: Outcome | BaseException) -> None:
-        """Run's side: report the end."""
+        """Called by the run: report the end."""
         self._out.put(end)
 
     def next(self) -> Seen | Outcome | BaseException:
-        """Session's side: return the next observation or the end."""
+        """Called by the session: return the next observation or the end."""
         return self._out.get()
 
     def answer(self, commands: Mapping[str, Command]) -> None:
-        """Session's side: send the command."""
+        """Called by the session: send the commands."""
         self._in.put(commands)
 
     def close(self) -> None:
-        """Session's side: end the run at its next check."""
+        """Called by the session: end the run at its next check."""
         self.closed = True
         self._in.put({})
 
 
 class _Asking:
-    """A planner that asks the session."""
+    """A planner whose commands are those given to the session."""
 
     def __init__(self, exchange: Exchange, robot: str) -> None:
         self._exchange, self._robot = exchange, robot
@@ -83,7 +83,7 @@ class _Asking:
         """Do nothing: the caller of the session knows all that already."""
 
     def step(self, obs: Observation) -> Command:
-        """The command that the session is given."""
+        """Return the command that the session is given."""
         return self._exchange.step(self._robot, obs)
 
 

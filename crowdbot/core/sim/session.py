@@ -39,7 +39,7 @@ from crowdbot.errors import InputError, kind_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionRobot:
-    """One robot of a session.
+    """Task, limits and sensors of one robot in a session.
 
     Attributes:
         task: start pose, goal and time limit; its body under ``task.robot``.
@@ -223,7 +223,7 @@ class Session:
         return () if self.done else self._going_on
 
     def observe(self) -> Observation:
-        """The current observation of the only robot; it stays the same until the next step.
+        """Return the current observation of the only robot; it stays the same until the next step.
 
         Raises:
             InputError: `reset` was not called, or there are several robots.
@@ -244,17 +244,17 @@ class Session:
 
     @property
     def task(self) -> Task:
-        """The only robot's task: start pose, goal, time limit, and its body."""
+        """Return the only robot's task: start pose, goal, time limit, and its body."""
         return self.robots[self._only("task")].task
 
     @property
     def limits(self) -> RobotLimits:
-        """The only robot's limits, into which commands are clamped."""
+        """Return the only robot's limits, into which commands are clamped."""
         return self.robots[self._only("limits")].limits
 
     @property
     def sensors(self) -> Mapping[str, SensorInfo]:
-        """The only robot's sensors that are seen: name -> constant description."""
+        """Return the only robot's sensors that are seen: name -> constant description."""
         return self.robots[self._only("sensors")].sensors
 
     @property
@@ -299,7 +299,7 @@ class Session:
 
     @property
     def trajectories(self) -> Trajectories:
-        """The run of the only robot, for `crowdbot.score`.
+        """Return the run of the only robot, for `crowdbot.score`.
 
         Raises:
             InputError: the run was not recorded, has not ended, or has several robots.
@@ -307,7 +307,7 @@ class Session:
         return self.trajectories_of(self._only("trajectories"))
 
     def trajectories_of(self, robot: str) -> Trajectories:
-        """The run of one robot, for `crowdbot.score`.
+        """Return the run of one robot, for `crowdbot.score`.
 
         Raises:
             InputError: the run was not recorded, has not ended, or has no such robot.
@@ -337,7 +337,7 @@ class Session:
             cast(Exchange, self._exchange).close()
 
     def _only(self, name: str) -> str:
-        """The only robot.
+        """Return the only robot.
 
         Raises:
             InputError: there are several.

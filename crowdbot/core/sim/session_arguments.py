@@ -17,7 +17,7 @@ CommandLike = Command | tuple[float, ...] | Sequence[float]
 
 
 def checked_recording(recording: str | Path) -> Path:
-    """The path of a recording.
+    """Return the path of a recording.
 
     Raises:
         InputError: it is a folder.
@@ -31,7 +31,7 @@ def checked_recording(recording: str | Path) -> Path:
 def checked_commands(
     commands: Mapping[str, CommandLike], going_on: Collection[str], robots: Collection[str]
 ) -> dict[str, Command]:
-    """The commands of the robots that go on, as finite floats.
+    """Return the commands of the robots that go on, as finite floats.
 
     Raises:
         InputError: one is something else, is missing, or is for a robot that is not there.
@@ -48,7 +48,7 @@ def checked_commands(
 
 
 def checked_command(command: CommandLike) -> Command:
-    """The command as finite floats.
+    """Return the command as finite floats.
 
     Raises:
         InputError: it is something else.

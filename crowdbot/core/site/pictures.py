@@ -58,10 +58,10 @@ def draw_conditions(expansion: Expansion, registry: Registry, folder: Path) -> l
 def _draw(expansion: Expansion, group: list[Scenario], registry: Registry, folder: Path) -> Picture:
     first = group[0]
     words = expansion.words_of(first.id)
-    said = tuple(f"{one.title}: {one.value}" for axis, one in words.items() if axis != DRAW)
+    words_shown = tuple(f"{one.title}: {one.value}" for axis, one in words.items() if axis != DRAW)
     place = f"{FOLDER}/{first.id.replace('/', '_')}"
     picture = Picture(
-        scenario=first.id, words=said, draws=len(group), file=f"{place}.svg",
+        scenario=first.id, words=words_shown, draws=len(group), file=f"{place}.svg",
         small=f"{place}-small.svg",
     )  # fmt: skip
     (folder / FOLDER).mkdir(exist_ok=True)

@@ -34,7 +34,7 @@ ALPHA = 0.05
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Site:
-    """The contents of a site.
+    """The data from which a challenge's pages are made.
 
     Attributes:
         suite: name of the suite in commands, as the organiser gave it.

@@ -23,7 +23,7 @@ _LEAST_RUNS = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AtlasEntry:
-    """One score in the atlas.
+    """A score in the atlas: what drives it, and which scores repeat it.
 
     Attributes:
         runs: number of runs with a value.

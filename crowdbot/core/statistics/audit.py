@@ -61,7 +61,7 @@ class AuditedPair(_Model):
 
 
 class Audit(_Model):
-    """The result of an audit.
+    """The result of an audit: verdict and reason.
 
     Attributes:
         suite: the suite's id.
@@ -152,8 +152,8 @@ def _wanted(roles: Mapping[str, str], seeing: Collection[str]) -> list[tuple[str
     careful = [f for f in floors if f in seeing]
     blind = [f for f in floors if f not in seeing]
     required = [(a, b, True) for a in (*baselines, *careful) for b in blind]
-    told = [(b, f, False) for b in baselines for f in careful]
-    return required + told + [(c, b, False) for c in of.get("ceiling", []) for b in baselines]
+    compared = [(b, f, False) for b in baselines for f in careful]
+    return required + compared + [(c, b, False) for c in of.get("ceiling", []) for b in baselines]
 
 
 def _pair(lead: Lead, required: bool) -> AuditedPair:

@@ -72,11 +72,11 @@ class CrowdVerdict:
         """Return the result as one sentence."""
         if not self.before and not self.against:
             return f"{self.first} and {self.second} are equal in all {self.crowds} crowds"
-        said = (
+        text = (
             f"{self.first} before {self.second} in {len(self.before)} of {self.crowds} crowds, "
             f"{100 * self.weighted:.0f} % weighted by realism"
         )
-        return said + (
+        return text + (
             f"; the other way round in {', '.join(self.against)}" if self.against else ""
         )
 

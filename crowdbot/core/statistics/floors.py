@@ -1,4 +1,4 @@
-"""Floors: does a planner beat the floor planners in the primary score?
+"""Floors: test if a planner beats the floor planners in the primary score.
 
 A planner has to beat every floor. All of these tests must succeed together, so none needs a
 correction for the others (Berger 1982, intersection-union test).
@@ -88,8 +88,8 @@ class FloorCheck:
             names = ", ".join(x.other for x in self.leads)
             return f"{self.planner} beats the floors in {score}: {_by(self.leads[0])} ({names})"
         if self.undecided:
-            return f"{self.planner}: no verdict against the floors in {score}: {_told(lost)}"
-        return f"{self.planner} does not beat the floors in {score}: {_told(lost)}"
+            return f"{self.planner}: no verdict against the floors in {score}: {_leads_text(lost)}"
+        return f"{self.planner} does not beat the floors in {score}: {_leads_text(lost)}"
 
 
 def check_floors(
@@ -191,14 +191,14 @@ def _low(lead: Lead) -> float:
     return float("-inf") if lead.by.low is None else lead.by.low
 
 
-def _told(leads: Sequence[Lead]) -> str:
+def _leads_text(leads: Sequence[Lead]) -> str:
     """Return all leads as text; a shared reason is given once."""
     reasons = {lead.reason for lead in leads}
     if len(leads) == 1 or len(reasons) > 1 or reasons == {""}:
         return "; ".join(map(_by, leads))
     every = "both" if len(leads) == 2 else "all"
-    said = "; ".join(_by(replace(lead, reason="")) for lead in leads)
-    return f"{said} ({every}: {leads[0].reason})"
+    leaders = "; ".join(_by(replace(lead, reason="")) for lead in leads)
+    return f"{leaders} ({every}: {leads[0].reason})"
 
 
 def _by(lead: Lead) -> str:

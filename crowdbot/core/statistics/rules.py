@@ -51,7 +51,7 @@ class Orders:
 
     @property
     def planners(self) -> list[str]:
-        """All planners, the best by the ranking rule first."""
+        """Return all planners, the best by the ranking rule first."""
         return sorted(self.rule.ranks, key=lambda planner: (self.rule.ranks[planner], planner))
 
     @property
@@ -62,14 +62,16 @@ class Orders:
         if not self.pairs:
             return "one planner alone has no rank"
         apart = [x for x in map(_led, self.pairs) if x is not None]
-        told = [
+        sentences = [
             f"{first} is ahead of {', '.join(other for a, other in apart if a == first)}"
             for first in dict.fromkeys(a for a, _ in apart)
         ]
         tied = len(self.pairs) - len(apart)
-        if not told:
+        if not sentences:
             return "no planner is ahead of another by the ranking rule"
-        return "; ".join(told) + (f"; {tied} of {len(self.pairs)} pairs are tied" if tied else "")
+        return "; ".join(sentences) + (
+            f"; {tied} of {len(self.pairs)} pairs are tied" if tied else ""
+        )
 
 
 def orders(table: Table, marks: Set[str] = frozenset(), alpha: float = 0.05) -> Orders:

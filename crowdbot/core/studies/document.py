@@ -164,16 +164,16 @@ def planner_text(study: Study, condition: StudyCondition, registry: Registry) ->
     Raises:
         InputError: the planner is wrong.
     """
-    what = condition.planner
-    if isinstance(what, dict):
-        if set(what) != {"kind"}:
+    planner = condition.planner
+    if isinstance(planner, dict):
+        if set(planner) != {"kind"}:
             raise InputError(
                 "a planner with parameters needs a file of its own: write its fields there, and "
                 "name the file here"
             )
-        what = str(what["kind"])
-    path, colon, name = what.rpartition(":")
-    text = f"{study.beside(path)}{colon}{name}" if path else study.beside(what)
+        planner = str(planner["kind"])
+    path, colon, name = planner.rpartition(":")
+    text = f"{study.beside(path)}{colon}{name}" if path else study.beside(planner)
     resolve_planner(text, registry)
     return text
 

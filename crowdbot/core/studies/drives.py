@@ -82,11 +82,11 @@ def finished_run(progress: StudyProgress, step: Step) -> Path | None:
 def _planner(progress: StudyProgress, step: Step, registry: Registry) -> str:
     """Return what ``--planner`` gets; a document with parameters is written beside the data."""
     condition: StudyCondition = progress.study.spec.conditions[step.condition]
-    what = condition.planner
-    if not isinstance(what, dict) or set(what) == {"kind"}:
+    planner = condition.planner
+    if not isinstance(planner, dict) or set(planner) == {"kind"}:
         return planner_text(progress.study, condition, registry)
     path = (progress.folder / "planners" / f"{step.condition}.yaml").resolve()
-    atomic_write(path, json.dumps(what, indent=2) + "\n")
+    atomic_write(path, json.dumps(planner, indent=2) + "\n")
     return str(path)
 
 

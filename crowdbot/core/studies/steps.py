@@ -14,7 +14,7 @@ StepKind = Literal["consent", "welcome", "practice", "trial", "nasa_tlx", "weigh
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """One step.
+    """A step of a participant: a form, a practice drive or a trial.
 
     Attributes:
         number: from 1 on.
@@ -63,7 +63,7 @@ def _steps(study: Study, participant: str) -> Iterator[dict[str, object]]:
             yield {"kind": "trial", "trial": trial, "index": index, **block}
         for form in spec.forms:
             yield {"kind": form, **block}
-            asked = spec.tlx_weights == "each" or (spec.tlx_weights == "once" and position == 1)
-            if form == "nasa_tlx" and asked:
+            with_tlx = spec.tlx_weights == "each" or (spec.tlx_weights == "once" and position == 1)
+            if form == "nasa_tlx" and with_tlx:
                 yield {"kind": "weights", **block}
     yield {"kind": "end"}

@@ -12,7 +12,7 @@ from crowdbot.core.studies.progress import StudyProgress
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParticipantState:
-    """One participant.
+    """Progress of one participant in a study.
 
     Attributes:
         participant: pseudonym.

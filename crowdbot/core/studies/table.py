@@ -45,20 +45,20 @@ def _rows(progress: StudyProgress, registry: Registry) -> Iterator[Row]:
     weights: Mapping[str, Any] = {}
     answers: dict[str, dict[str, Any]] = {}
     for step in progress.steps:  # comparisons may be asked once, for all conditions
-        said = done.get(step.name)
-        if said is None:
+        entry = done.get(step.name)
+        if entry is None:
             break
-        found = said.get("answers")
+        found = entry.get("answers")
         if step.kind == "weights" and found:
             weights = found
         if step.kind in ("nasa_tlx", "weights", "use") and found:
             answers.setdefault(step.condition, {})[step.kind] = found
     for step in progress.steps:
-        said = done.get(step.name)
-        if step.kind != "trial" or said is None or step.trial is None:
+        entry = done.get(step.name)
+        if step.kind != "trial" or entry is None or step.trial is None:
             continue
-        asked = answers.get(step.condition, {})
-        run = progress.folder / said["run"]
+        sheets = answers.get(step.condition, {})
+        run = progress.folder / entry["run"]
         yield {
             "participant": progress.participant,
             "position": step.position,
@@ -67,11 +67,11 @@ def _rows(progress: StudyProgress, registry: Registry) -> Iterator[Row]:
             "trial": step.index,
             "suite": step.trial.suite,
             "scenario": step.trial.scenario,
-            "driver": said["driver"],
+            "driver": entry["driver"],
             "status": RunRecord.read(run).status,
-            "run": said["run"],
+            "run": entry["run"],
             **_scores(run),
-            **_of_answers(asked, asked.get("weights") or weights, registry),
+            **_of_answers(sheets, sheets.get("weights") or weights, registry),
         }
 
 
@@ -85,12 +85,12 @@ def _scores(run: Path) -> Row:
 
 
 def _of_answers(
-    asked: Mapping[str, Mapping[str, Any]], weights: Mapping[str, Any], registry: Registry
+    sheets: Mapping[str, Mapping[str, Any]], weights: Mapping[str, Any], registry: Registry
 ) -> Row:
     """Return the scores of the questionnaires of one condition."""
-    if not asked:
+    if not sheets:
         return {}
-    tlx, use = asked.get("nasa_tlx", {}), asked.get("use", {})
+    tlx, use = sheets.get("nasa_tlx", {}), sheets.get("use", {})
     given = Questionnaires(
         tlx_ratings={s: float(tlx[s]) for s in TLX_SCALES if s in tlx},
         tlx_weights={s: float(weights[s]) for s in TLX_SCALES if tlx and s in weights},

@@ -132,5 +132,5 @@ def mapping_of(name: str, value: Any, of: str) -> Mapping[Any, Any]:
 
 
 def _refuse(name: str, value: object, wanted: str, hint: str = "") -> Any:
-    told = f"; {hint}" if hint else ""
-    raise InputError(f"{name} must be {wanted}, not {kind_of(value)}{told}")
+    advice = f"; {hint}" if hint else ""
+    raise InputError(f"{name} must be {wanted}, not {kind_of(value)}{advice}")

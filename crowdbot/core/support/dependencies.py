@@ -18,7 +18,7 @@ _LONGEST = 80
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """One installed package.
+    """An installed package: version, licence and the packages it needs.
 
     Attributes:
         licence: SPDX expression or name; empty if the package does not say.
@@ -100,8 +100,8 @@ def _licence(about: metadata.PackageMetadata) -> str:
     """Return the licence by the expression, the classifiers, or the first line of the field."""
     if expression := about["License-Expression"]:
         return str(expression)
-    told = [c for c in about.get_all("Classifier") or () if c.startswith(_PREFIX)]
-    names = [c.rpartition(" :: ")[2] for c in told]
+    classifiers = [c for c in about.get_all("Classifier") or () if c.startswith(_PREFIX)]
+    names = [c.rpartition(" :: ")[2] for c in classifiers]
     if names := [n for n in names if n != "OSI Approved"]:
         return ", ".join(names)
     first = str(about["License"] or "").strip().partition("\n")[0]

@@ -38,10 +38,10 @@ class LoopThread:
         """Start a coroutine without waiting for it."""
         return asyncio.run_coroutine_threadsafe(work, self._loop)
 
-    def soon(self, what: Callable[..., object], *given: object) -> None:
+    def soon(self, callback: Callable[..., object], *given: object) -> None:
         """Call a function in the loop's thread; does nothing once the loop is closed."""
         with suppress(RuntimeError):
-            self._loop.call_soon_threadsafe(what, *given)
+            self._loop.call_soon_threadsafe(callback, *given)
 
     def close(self) -> None:
         """Stop the loop, and wait for its thread."""

@@ -41,7 +41,7 @@ class Rows(Protocol[T]):
 
     @property
     def shape(self) -> tuple[int]:
-        """The number of records, as of an array with one dimension."""
+        """Return the number of records, as of an array with one dimension."""
 
     @overload
     def __getitem__(self, row: int) -> T: ...
@@ -144,7 +144,7 @@ def rows_argument(record: RecordType[Any]) -> Any:
 
 
 def start_of(context: Any, builder: Any, source: Any, value: Any) -> Any:
-    """The LLVM pointer to the memory of a pointer, an array or a record."""
+    """Return the LLVM pointer to the memory of a pointer, an array or a record."""
     if isinstance(source, types.Array):
         return context.make_array(source)(context, builder, value).data
     return value
@@ -183,7 +183,7 @@ def _as_rows(_: Any, source: Any, record: Any) -> tuple[Any, Any]:
 
 
 def _at(made: Any) -> Any:
-    """The code that makes a pointer of an address."""
+    """Return the code that makes a pointer of an address."""
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
         number = builder.fptosi(values[0], context.get_value_type(types.int64))
@@ -205,7 +205,7 @@ def _integers_at(_: Any, address: Any) -> tuple[Any, Any]:
 if TYPE_CHECKING:
 
     def as_record(source: Any, record: RecordType[T]) -> T:
-        """The record at a pointer, or at the beginning of an array."""
+        """Return the record at a pointer, or at the beginning of an array."""
 
     def as_rows(source: Any, record: RecordType[T]) -> Rows[T]:
         """The records at a pointer, or those of a contiguous array, whose length is then known.
@@ -214,10 +214,10 @@ if TYPE_CHECKING:
         """
 
     def rows_at(address: float, record: RecordType[T]) -> Rows[T]:
-        """The records at an address, which is a whole number below 2^53, as all are."""
+        """Return the records at an address, which is a whole number below 2^53, as all are."""
 
     def integers_at(address: float) -> NDArray[np.int64]:
-        """The 64-bit integers at an address."""
+        """Return the 64-bit integers at an address."""
 else:
     as_record, as_rows = intrinsic(_as_record), intrinsic(_as_rows)
     rows_at, integers_at = intrinsic(_rows_at), intrinsic(_integers_at)

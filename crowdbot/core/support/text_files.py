@@ -56,8 +56,8 @@ def input_bytes(file: Path, most: int = LARGEST, name: str = "", *, text: bool =
         if isinstance(error, UnicodeDecodeError):
             near = _what_it_is(content)
         raise InputError(f"{name or file}: cannot be read: {reason_of(error)}{near}") from None
-    if text and (said := _stands_for(content)):
-        raise InputError(f"{name or file}: cannot be read: {said}")
+    if text and (reason := _stands_for(content)):
+        raise InputError(f"{name or file}: cannot be read: {reason}")
     return content
 
 
@@ -74,8 +74,8 @@ _OTHERS = {
 
 
 def _what_it_is(content: bytes) -> str:
-    told = (text for start, text in _OTHERS.items() if content.startswith(start))
-    return "; " + next(told, "save it as UTF-8 if it is text")
+    descriptions = (text for start, text in _OTHERS.items() if content.startswith(start))
+    return "; " + next(descriptions, "save it as UTF-8 if it is text")
 
 
 def _stands_for(content: bytes) -> str:

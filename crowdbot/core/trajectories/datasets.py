@@ -112,15 +112,15 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
         columns[name] = columns[name] * (unit_in(header) or found.unit)
     if assumed:
         whole_numbers(raw, "frame", "id")
-    told = _exchanged(columns, names) if assumed else []
-    told += not_used(c for c, ours in zip(found.header, names, strict=False) if not ours)
+    notes = _exchanged(columns, names) if assumed else []
+    notes += not_used(c for c, ours in zip(found.header, names, strict=False) if not ours)
     rate = found.frame_rate if frame_rate is None else frame_rate
     frames = columns.pop("frame")
     t = _seconds(frames, 0.4) if rate is None else (frames - frames.min()) / rate
     table = RawTable(str(path), {"t": t, **columns}, found.lines)
     if not assumed:
         refuse_exchanged(table, frames)
-    return table, told
+    return table, notes
 
 
 def _exchanged(columns: dict[str, Array], names: Sequence[str]) -> list[str]:

@@ -91,12 +91,12 @@ def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
     """Compute accelerations only for the few people who are near at a time."""
     pair, dt = encounter(run, jump_speed), np.diff(run.t)
     limit = reach + DISTANCE_TOLERANCE
-    step, who = np.nonzero(pair.valid & (np.abs(_middle(pair.px)) <= limit))
-    px, py = (_at_middle(p, step, who) for p in (pair.px, pair.py))
+    step, agent = np.nonzero(pair.valid & (np.abs(_middle(pair.px)) <= limit))
+    px, py = (_at_middle(p, step, agent) for p in (pair.px, pair.py))
     distance = np.hypot(px, py)
     rx, ry = (_middle(v)[step] for v in robot_velocities(run, jump_speed))
     ax, ay = (
-        (v[step + 1, who] - v[step, who]) / dt[step] for v in people_velocities(run, jump_speed)
+        (v[step + 1, agent] - v[step, agent]) / dt[step] for v in people_velocities(run, jump_speed)
     )
     known = np.isfinite(ax) & np.isfinite(ay) & np.isfinite(rx) & np.isfinite(ry)
     near = known & (distance <= limit)
@@ -106,7 +106,7 @@ def _evasion(run: Trajectories, reach: float, jump_speed: float) -> Evasion:
     def spread(values: NDArray[_T]) -> NDArray[_T]:
         """Expand values to all steps and people; 0 if not near."""
         whole = np.zeros(pair.valid.shape, values.dtype)
-        whole[step, who] = values
+        whole[step, agent] = values
         return whole
 
     return Evasion(
@@ -153,6 +153,6 @@ def _middle(values: Array) -> Array:
     return (values[1:] + values[:-1]) / 2.0
 
 
-def _at_middle(values: Array, step: Indices, who: Indices) -> Array:
-    """As `_middle`, for some steps and people."""
-    return (values[step + 1, who] + values[step, who]) / 2.0
+def _at_middle(values: Array, step: Indices, agent: Indices) -> Array:
+    """Like `_middle`, for some steps and people."""
+    return (values[step + 1, agent] + values[step, agent]) / 2.0

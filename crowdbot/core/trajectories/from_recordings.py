@@ -280,7 +280,7 @@ _FOR_COLUMNS = ("agent_radius", "agent_mass", "resample", "clock_offset", "max_g
 
 
 def _checked(name: str, value: Any) -> Any:
-    """The value of an option.
+    """Return the value of an option.
 
     Raises:
         InputError: it should be a number or a point, and is something else.
@@ -307,7 +307,7 @@ def _names_of(columns: TableColumns | None) -> TableColumns:
 
 
 def _people_and_robot(table: RawTable, robot: int | None) -> dict[str, RawTable | None]:
-    """The tables of a data set, of which one person may be taken for the robot."""
+    """Return the tables of a data set, of which one person may be taken for the robot."""
     own_robot, others = split_robot(table, robot)
     return {"robot": own_robot, "agents": others if len(others) else None}
 

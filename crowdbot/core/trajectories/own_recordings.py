@@ -244,8 +244,8 @@ def _on_samples(
         )
     cells, count = np.unique(k * len(ids) + column, return_counts=True)
     if np.any(count > 1):
-        at, who = divmod(int(cells[count > 1][0]), len(ids))
-        raise InputError(f"{table.name}: two rows of id {ids[who]} at t = {t[at]:g} s")
+        at, person = divmod(int(cells[count > 1][0]), len(ids))
+        raise InputError(f"{table.name}: two rows of id {ids[person]} at t = {t[at]:g} s")
     made: dict[str, Any] = {}
     for name in ("x", "y", "vx", "vy"):
         if name in rows:

@@ -220,14 +220,14 @@ def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
     found: dict[tuple[int, int], _Way] = {}
     count: dict[int, int] = {}
     for k in np.lexsort((trips.t0, trips.agent)).tolist():
-        who, (first, end, column) = int(trips.agent[k]), parts[k]
-        count[who] = count.get(who, 0) + 1
+        person, (first, end, column) = int(trips.agent[k]), parts[k]
+        count[person] = count.get(person, 0) + 1
         if end - first < 2:
             continue
         rows, path = slice(first, end), np.empty((3, end - first))
         path[0], path[1] = x[rows, column], y[rows, column]
         np.subtract(run.t[rows], trips.t0[k], out=path[2])
-        found[who, count[who]] = _Way(
+        found[person, count[person]] = _Way(
             rows=rows,
             column=column,
             path=path,

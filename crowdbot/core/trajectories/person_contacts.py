@@ -101,11 +101,13 @@ def _ends(run: Trajectories, found: Contacts, jump_speed: float, release_gap: fl
 def _recorded(run: Trajectories, table: ContactEvents, jump_speed: float) -> PersonContacts:
     rows = np.flatnonzero(table.agent >= 0)
     rows = rows[np.lexsort((table.agent[rows], table.t0[rows]))]
-    time, who, ids = table.t0[rows], table.agent[rows], people(run).id
+    time, agent, ids = table.t0[rows], table.agent[rows], people(run).id
     order = np.argsort(ids)
-    slot = np.minimum(np.searchsorted(ids[order], who), max(len(ids) - 1, 0))
+    slot = np.minimum(np.searchsorted(ids[order], agent), max(len(ids) - 1, 0))
     column = (
-        np.where(ids[order][slot] == who, order[slot], -1) if len(ids) else np.full(len(who), -1)
+        np.where(ids[order][slot] == agent, order[slot], -1)
+        if len(ids)
+        else np.full(len(agent), -1)
     )
     before = np.searchsorted(run.t, time + TIME_TOLERANCE, side="right") - 1
     sample = np.clip(before, 0, len(run.t) - 1)
@@ -137,9 +139,9 @@ def _closing(
     if encounter(run, jump_speed).footprint is not None:
         return _closing_of_outline(run, agent, sample, bearing, jump_speed)
     vx, vy = (v[sample] for v in robot_velocities(run, jump_speed))
-    told = inf_to_nan(robot_of(run).theta)[sample] + bearing
+    recorded = inf_to_nan(robot_of(run).theta)[sample] + bearing
     towards = _direction_of(run, time, agent, sample, jump_speed)
-    angle = np.where(np.isfinite(told), told, towards)
+    angle = np.where(np.isfinite(recorded), recorded, towards)
     stands = np.hypot(vx, vy) == 0.0
     return np.where(stands, 0.0, vx * np.cos(angle) + vy * np.sin(angle))
 
@@ -151,7 +153,7 @@ def _closing_of_outline(
     bearing: Array,
     jump_speed: float,
 ) -> Array:
-    """As `_closing`, of a robot with a footprint: by the point nearest to the person.
+    """Like `_closing`, of a robot with a footprint: by the point nearest to the person.
 
     The bearing counts only if the person is not in the table of people.
     """
@@ -160,8 +162,8 @@ def _closing_of_outline(
     found[known] = touch_point(run, sample[known], agent[known], jump_speed).closing
     vx, vy = (v[sample] for v in robot_velocities(run, jump_speed))
     angle = inf_to_nan(robot_of(run).theta)[sample] + bearing
-    told = np.where(np.hypot(vx, vy) == 0.0, 0.0, vx * np.cos(angle) + vy * np.sin(angle))
-    return np.where(known & np.isfinite(found), found, told)
+    velocity = np.where(np.hypot(vx, vy) == 0.0, 0.0, vx * np.cos(angle) + vy * np.sin(angle))
+    return np.where(known & np.isfinite(found), found, velocity)
 
 
 def _direction_of(

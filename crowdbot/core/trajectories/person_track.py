@@ -27,15 +27,15 @@ from crowdbot.core.types.person_task import PersonTask, TaskPerson
 _TURNS_ABOVE = 0.1
 
 
-def members_of(agents: AgentTracks, who: TaskPerson) -> NDArray[np.int64]:
+def members_of(agents: AgentTracks, person: TaskPerson) -> NDArray[np.int64]:
     """Return columns of the recorded people that a task is about."""
-    return np.flatnonzero(np.isin(agents.id, who.id))
+    return np.flatnonzero(np.isin(agents.id, person.id))
 
 
-def person_over_time(agents: AgentTracks, who: TaskPerson) -> PersonCircle:
+def person_over_time(agents: AgentTracks, person: TaskPerson) -> PersonCircle:
     """Return the person, or the circle around the group: arrays (N,), NaN where absent."""
-    columns = members_of(agents, who)
-    start = {int(i): f for i, f in zip(who.id, who.facing.tolist(), strict=True)}
+    columns = members_of(agents, person)
+    start = {int(i): f for i, f in zip(person.id, person.facing.tolist(), strict=True)}
     first = np.array([start[int(i)] for i in agents.id[columns]])
     facing = facing_over_time(agents.vx[:, columns], agents.vy[:, columns], first)
     return together(agents.x[:, columns], agents.y[:, columns], facing, agents.radius[columns])

@@ -99,14 +99,14 @@ class Questionnaires:
     @classmethod
     def _from_cells(cls, cells: Mapping[tuple[str, str], Answer]) -> Questionnaires:
         tlx = {item: v for (sheet, item), v in cells.items() if sheet == "nasa_tlx"}
-        asked = {item for sheet, item in cells if sheet == "use"}
+        items = {item for sheet, item in cells if sheet == "use"}
         return cls(
             tlx_ratings={s: tlx[s] for s in TLX_SCALES if s in tlx},
             tlx_weights={s: tlx[f"weight_{s}"] for s in TLX_SCALES if f"weight_{s}" in tlx},
             use={
                 name: tuple(cells.get(("use", f"{name}_{i}")) for i in range(1, count + 1))
                 for name, count in USE_ITEMS.items()
-                if any(f"{name}_{i}" in asked for i in range(1, count + 1))
+                if any(f"{name}_{i}" in items for i in range(1, count + 1))
             },
         )
 
@@ -130,10 +130,10 @@ def _add_cell(cells: dict[tuple[str, str], Answer], place: str, row: Mapping[str
     cells[sheet, item] = value
 
 
-def _check_known(what: str, names: Any, known: Any) -> None:
+def _check_known(category: str, names: Any, known: Any) -> None:
     for name in names:
         if name not in known:
-            raise UnknownNameError(what, str(name), known)
+            raise UnknownNameError(category, str(name), known)
 
 
 def _mapping(name: str, data: Any) -> Mapping[str, Any]:
@@ -148,11 +148,11 @@ def _row(name: str, data: Any) -> Sequence[Any]:
     return list(data)
 
 
-def _scales(what: str, data: Any) -> dict[str, Answer]:
+def _scales(category: str, data: Any) -> dict[str, Answer]:
     if not isinstance(data, Mapping):
-        row = _row(what, data)
+        row = _row(category, data)
         if len(row) != len(TLX_SCALES):
-            raise InputError(f"questionnaires: nasa_tlx has {len(TLX_SCALES)} {what}")
+            raise InputError(f"questionnaires: nasa_tlx has {len(TLX_SCALES)} {category}")
         data = dict(zip(TLX_SCALES, row, strict=True))
     _check_known("scale of nasa_tlx", data, TLX_SCALES)
     return {name: _answer(name, value) for name, value in data.items()}

@@ -69,11 +69,12 @@ class RawTable:
         missing = [c for c in columns if c not in self.columns]
         if missing:
             has = ", ".join(self.header or self.columns) or "nothing"
-            told = ", ".join(f"'{c}': 'ITS NAME THERE'" for c in missing)
-            what = "columns {} are" if len(missing) > 1 else "column {} is"
+            renaming = ", ".join(f"'{c}': 'ITS NAME THERE'" for c in missing)
+            subject = "columns {} are" if len(missing) > 1 else "column {} is"
             raise InputError(
-                f"{self.name}:1: the {what.format(', '.join(missing))} missing; "
-                f"the table has {has}; columns={{'{role}': {{{told}}}}} says what they are called"
+                f"{self.name}:1: the {subject.format(', '.join(missing))} missing; "
+                f"the table has {has}; columns={{'{role}': {{{renaming}}}}} says what they are "
+                "called"
             )
 
     def numbers(self, column: str) -> Array:

@@ -45,15 +45,15 @@ class TaskOptions(TypedDict, total=False):
 
 
 class DataSetOptions(PeopleOptions, TaskOptions):
-    """Options for data sets of people."""
+    """Keyword options of constructors that read data sets of people."""
 
 
 class TopicOptions(PeopleOptions, TimeOptions, TaskOptions):
-    """Options for topics of a bag."""
+    """Keyword options of constructors that read topics of a bag."""
 
 
 class TableOptions(TopicOptions, total=False):
-    """Options for tables."""
+    """Keyword options of constructors that read tables."""
 
     planner_step_time: ArrayLike | None
     robot_footprint: ArrayLike | None

@@ -304,7 +304,7 @@ def _columns_of_people(table: RawTable, header: Sequence[str]) -> dict[str, dict
         if match is not None and not _NO_PERSON.match(match["who"]):
             people.setdefault(match["who"], {})[match["axis"].lower()] = column
     _refuse_halves(table.name, header, people)
-    return {who: axes for who, axes in people.items() if len(axes) == 2}
+    return {person: axes for person, axes in people.items() if len(axes) == 2}
 
 
 def _in_rows(
@@ -314,11 +314,13 @@ def _in_rows(
     unit: float,
 ) -> RawTable:
     """Return one row for each person and time."""
-    tracks = [(_number(who), cells(axes["x"]), cells(axes["y"])) for who, axes in people.items()]
+    tracks = [
+        (_number(person), cells(axes["x"]), cells(axes["y"])) for person, axes in people.items()
+    ]
     rows = [
-        (k, who, x[k], y[k])
+        (k, person, x[k], y[k])
         for k in range(len(table))
-        for who, x, y in tracks
+        for person, x, y in tracks
         if _is_there(x[k]) and _is_there(y[k])
     ]
     times = table.columns["t"]
@@ -337,19 +339,19 @@ def _in_rows(
 def _refuse_halves(
     name: str, header: Sequence[str], people: Mapping[str, Mapping[str, str]]
 ) -> None:
-    columns = [(who, axes, axis) for who, axes in people.items() for axis in axes]
+    columns = [(person, axes, axis) for person, axes in people.items() for axis in axes]
     _refuse_twins(name, header, [header.index(axes[axis]) for _, axes, axis in columns])
     if not any(len(axes) == 2 for axes in people.values()):
         return
-    for who, axes, axis in columns:
-        if len(axes) == 1 and _number(who).isdigit():
+    for person, axes, axis in columns:
+        if len(axes) == 1 and _number(person).isdigit():
             other = "y" if axis == "x" else "x"
             raise InputError(f"{name}:1: column '{axes[axis]}' has none for {other} beside it")
 
 
-def _number(who: str) -> str:
-    match = _PERSON.match(who)
-    return match[1] if match is not None else who
+def _number(person: str) -> str:
+    match = _PERSON.match(person)
+    return match[1] if match is not None else person
 
 
 def _is_there(cell: Any) -> bool:

@@ -123,9 +123,9 @@ def split(path: Path, text: str) -> TextTable:
     assumed = not header and _of_petrack(comments, len(rows[0]))
     if assumed:
         header = list((*_TRAJECTORY, *_ELLIPSE)[: len(rows[0])])
-    told = " ".join(comments)
+    comment = " ".join(comments)
     rate = _frame_rate(path, comments)
-    return TextTable(header, rows, numbers, rate, length_unit(told) or 1.0, assumed)
+    return TextTable(header, rows, numbers, rate, length_unit(comment) or 1.0, assumed)
 
 
 def _plain_viswalk(lines: list[str]) -> list[str]:
@@ -197,8 +197,10 @@ def _frame_rate(path: Path, comments: Sequence[str]) -> float | None:
     texts = (next(group for group in match.groups() if group) for match in found)
     rates = sorted({float(text.replace(",", ".")) for text in texts} - {0.0})
     if len(rates) > 1:
-        told = " and ".join(f"{rate:g}" for rate in rates)
-        raise InputError(f"{path}: its comments state {told} frames per second; keep the true one")
+        stated = " and ".join(f"{rate:g}" for rate in rates)
+        raise InputError(
+            f"{path}: its comments state {stated} frames per second; keep the true one"
+        )
     return rates[0] if rates else None
 
 

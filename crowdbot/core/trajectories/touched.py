@@ -1,4 +1,4 @@
-"""Find steps on which something touches a person, whose motion is then not its own.
+"""Find steps on which a person is touched and so does not move by its own decision.
 
 N samples, M people; world frame, SI units. Results are per step, not per sample.
 """
@@ -20,7 +20,7 @@ SLACK = 0.02
 _CHUNK = 4096
 
 
-def touched(run: Trajectories, asked: Mask, jump_speed: float) -> Mask:
+def touched(run: Trajectories, selected: Mask, jump_speed: float) -> Mask:
     """Return steps (N-1, M) among those requested on which anything touches the person.
 
     People move straight within a step and are checked along all of it; walls and the robot are
@@ -28,25 +28,25 @@ def touched(run: Trajectories, asked: Mask, jump_speed: float) -> Mask:
 
     Args:
         run: a run with a robot.
-        asked: (N-1, M) steps; the others are False in the result.
+        selected: (N-1, M) steps; the others are False in the result.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
     gap = encounter(run, jump_speed).gap
     by_robot = (np.fmin(gap[:-1], gap[1:]) < SLACK) | _in_table(run)
-    return (touched_by_others(run, asked) | by_robot) & asked
+    return (touched_by_others(run, selected) | by_robot) & selected
 
 
-def touched_by_others(run: Trajectories, asked: Mask) -> Mask:
-    """As `touched`, by people and walls alone, not by the robot."""
-    found = np.zeros(asked.shape, dtype=bool)
-    step, who = np.nonzero(asked)
-    found[step, who] = _by_people(run, step, who)
+def touched_by_others(run: Trajectories, selected: Mask) -> Mask:
+    """Like `touched`, by people and walls alone, not by the robot."""
+    found = np.zeros(selected.shape, dtype=bool)
+    step, agent = np.nonzero(selected)
+    found[step, agent] = _by_people(run, step, agent)
     if run.walls is not None and len(run.walls):
-        found[step, who] |= _by_walls(run, run.walls, step, who)
+        found[step, agent] |= _by_walls(run, run.walls, step, agent)
     return found
 
 
-def _by_people(run: Trajectories, step: Indices, who: Indices) -> Mask:
+def _by_people(run: Trajectories, step: Indices, agent: Indices) -> Mask:
     """Return True for steps (K,) on which another person comes within the tolerance."""
     every = people(run)
     x, y = inf_to_nan(every.x), inf_to_nan(every.y)
@@ -54,8 +54,8 @@ def _by_people(run: Trajectories, step: Indices, who: Indices) -> Mask:
     found = np.zeros(len(step), dtype=bool)
     for begin in range(0, len(step), _CHUNK):
         some = slice(begin, begin + _CHUNK)
-        row, other = _near(boxes, step[some], who[some])
-        at, one = step[some][row], who[some][row]
+        row, other = _near(boxes, step[some], agent[some])
+        at, one = step[some][row], agent[some][row]
         px, py = (p[at, other] - p[at, one] for p in (x, y))
         dx, dy = (q[at + 1, other] - q[at + 1, one] - p for q, p in ((x, px), (y, py)))
         square = dx**2 + dy**2
@@ -77,19 +77,19 @@ def _boxes(p: Array, radius: Array) -> tuple[Array, Array]:
 
 
 def _near(
-    boxes: Sequence[tuple[Array, Array]], step: Indices, who: Indices
+    boxes: Sequence[tuple[Array, Array]], step: Indices, agent: Indices
 ) -> tuple[Indices, Indices]:
     """Return indices of steps and people whose boxes overlap, so that they may be near."""
     near = np.ones((len(step), boxes[0][0].shape[1]), dtype=bool)
-    near[np.arange(len(who)), who] = False
+    near[np.arange(len(agent)), agent] = False
     for low, high in boxes:
-        near &= low[step] <= high[step, who][:, None]
-        near &= high[step] >= low[step, who][:, None]
+        near &= low[step] <= high[step, agent][:, None]
+        near &= high[step] >= low[step, agent][:, None]
     found = np.nonzero(near)
     return found[0], found[1]
 
 
-def _by_walls(run: Trajectories, walls: Array, step: Indices, who: Indices) -> Mask:
+def _by_walls(run: Trajectories, walls: Array, step: Indices, agent: Indices) -> Mask:
     """Return True for steps (K,) with a wall within the tolerance at either end."""
     every = people(run)
     found = np.zeros(len(step), dtype=bool)
@@ -97,10 +97,10 @@ def _by_walls(run: Trajectories, walls: Array, step: Indices, who: Indices) -> M
     ex, ey = bx - ax, by - ay
     length = np.maximum(ex**2 + ey**2, 1e-12)
     for at in (step, step + 1):
-        x, y = every.x[at, who][:, None], every.y[at, who][:, None]
+        x, y = every.x[at, agent][:, None], every.y[at, agent][:, None]
         along = np.clip(((x - ax) * ex + (y - ay) * ey) / length, 0.0, 1.0)
         away = np.hypot(x - ax - along * ex, y - ay - along * ey).min(axis=1)
-        found |= away < every.radius[who] + SLACK
+        found |= away < every.radius[agent] + SLACK
     return found
 
 

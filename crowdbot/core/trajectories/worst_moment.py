@@ -50,8 +50,8 @@ def worst_moment(run: Trajectories) -> WorstMoment | None:
     fault = at_fault(run, contacts, RULE, JUMP_SPEED)
     if fault.any():
         first = int(np.argmin(np.where(fault, contacts.time, np.inf)))
-        sample, who = int(contacts.sample[first]), int(contacts.agent[first])
-        gap = float(gaps[sample, who]) if who >= 0 else np.nan
+        sample, agent = int(contacts.sample[first]), int(contacts.agent[first])
+        gap = float(gaps[sample, agent]) if agent >= 0 else np.nan
         clearance = min(gap, 0.0) if np.isfinite(gap) else None
         return WorstMoment(float(contacts.time[first]), "contact at fault", clearance)
     if not np.isfinite(gaps).any():

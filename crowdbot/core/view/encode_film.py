@@ -67,8 +67,8 @@ def write_video(path: Path, images: Iterable[Image.Image], rate: float) -> None:
         *_VIDEO[path.suffix.removeprefix(".")], "-pix_fmt", "yuv420p",
         "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact", str(path),
     ]  # fmt: skip
-    with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said)
+    with tempfile.TemporaryFile() as output:
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=output)
         assert process.stdin is not None
         try:
             for image in itertools.chain((first,), pictures):  # a minute is gigabytes
@@ -78,8 +78,8 @@ def write_video(path: Path, images: Iterable[Image.Image], rate: float) -> None:
         finally:
             process.stdin.close()
             process.wait()
-        said.seek(0)
-        lines = said.read().decode(errors="replace").strip().splitlines()
+        output.seek(0)
+        lines = output.read().decode(errors="replace").strip().splitlines()
     if process.returncode:
         raise InputError(f"{path}: ffmpeg failed: {lines[-1] if lines else process.returncode}")
 

@@ -65,7 +65,7 @@ class RobotView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapContent:
-    """The contents of a map.
+    """Shapes on a map of a scenario: floor, people, robots, areas and paths.
 
     Attributes:
         areas: role -> name -> polygon, of spawns and goal areas.

@@ -1,4 +1,4 @@
-"""Causes: one table of what can decide a run, in the order in which they are tested."""
+"""Causes: one table of events that can decide a run, in the order in which they are tested."""
 
 from __future__ import annotations
 

@@ -58,8 +58,8 @@ def decisive_moment(run: Trajectories, ended: EndedPart) -> DecisiveMoment:
     known = CAUSES_OF_ENDINGS.get(ended.status)
     if known is not None:
         t = last if ended.toppled_time is None else ended.toppled_time
-        who = None if known == Cause.PLANNER else _last_touch(contacts, t)
-        return DecisiveMoment(cause=known, t=t, agent=who)
+        agent = None if known == Cause.PLANNER else _last_touch(contacts, t)
+        return DecisiveMoment(cause=known, t=t, agent=agent)
     return (
         _first(contacts, at_fault(run, contacts, RULE, JUMP_SPEED), Cause.RAN_INTO)
         or _wall(run)
@@ -75,8 +75,10 @@ def _first(contacts: PersonContacts, which: Mask, cause: Cause) -> DecisiveMomen
     if not which.any():
         return None
     k = int(np.argmin(np.where(which, contacts.time, np.inf)))
-    who = int(contacts.agent[k])
-    return DecisiveMoment(cause=cause, t=float(contacts.time[k]), agent=who if who >= 0 else None)
+    agent = int(contacts.agent[k])
+    return DecisiveMoment(
+        cause=cause, t=float(contacts.time[k]), agent=agent if agent >= 0 else None
+    )
 
 
 def _wall(run: Trajectories) -> DecisiveMoment | None:
@@ -91,8 +93,8 @@ def _aside(run: Trajectories) -> DecisiveMoment | None:
     times = driven_aside(run, jump_speed=JUMP_SPEED, **ASIDE)
     if not np.isfinite(times).any():
         return None
-    who = int(np.argmin(times))
-    return DecisiveMoment(cause=Cause.ASIDE, t=float(times[who]), agent=who)
+    agent = int(np.argmin(times))
+    return DecisiveMoment(cause=Cause.ASIDE, t=float(times[agent]), agent=agent)
 
 
 def late_moment(run: Trajectories) -> DecisiveMoment:
@@ -107,9 +109,9 @@ def late_moment(run: Trajectories) -> DecisiveMoment:
     if len(spans) and float(spans.sum()) > _BLOCKED * total:
         k = int(np.argmax(spans))
         first = int(starts[k])
-        who = _nearest(run, first)
+        agent = _nearest(run, first)
         return DecisiveMoment(
-            cause=Cause.BLOCKED, t=float(t[first]), agent=who, stood=float(spans[k])
+            cause=Cause.BLOCKED, t=float(t[first]), agent=agent, stood=float(spans[k])
         )
     return DecisiveMoment(cause=Cause.SLOW, t=float(t[-1]), agent=_nearest(run, len(t) - 1))
 
@@ -118,8 +120,8 @@ def _closest(run: Trajectories) -> DecisiveMoment:
     gaps = _gaps(run)
     if not np.isfinite(gaps).any():
         return DecisiveMoment(cause=Cause.ALONE, t=float(run.t[-1]))
-    sample, who = divmod(int(np.nanargmin(gaps)), gaps.shape[1])
-    return DecisiveMoment(cause=Cause.CLOSE, t=float(run.t[sample]), agent=who)
+    sample, agent = divmod(int(np.nanargmin(gaps)), gaps.shape[1])
+    return DecisiveMoment(cause=Cause.CLOSE, t=float(run.t[sample]), agent=agent)
 
 
 def _last_touch(contacts: PersonContacts, t: float) -> int | None:

@@ -21,7 +21,7 @@ from crowdbot.errors import InputError, UnknownNameError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """One explained run.
+    """A run's decisive moment, explained in sentences.
 
     Attributes:
         directory: of the run.
@@ -55,7 +55,7 @@ class Explanation:
 
     def as_json(self) -> dict[str, Any]:
         """Return plain data for JSON."""
-        who, crowd = self.moment.agent, self.run.agents
+        agent, crowd = self.moment.agent, self.run.agents
         return {
             "directory": str(self.directory),
             "scenario": self.record.scenario,
@@ -66,7 +66,7 @@ class Explanation:
             "reason": self.ended.reason,
             "cause": str(self.moment.cause),
             "t": round(self.moment.t, 4),
-            "person": None if who is None or crowd is None else int(crowd.id[who]),
+            "person": None if agent is None or crowd is None else int(crowd.id[agent]),
             "stood": round(self.moment.stood, 4),
             "sentences": list(self.sentences),
             "replay": None if self.replay is None else str(self.replay),
@@ -92,14 +92,14 @@ def explain(directory: Path, robot: str | None = None, *, sensors: bool = True) 
         if run.robot is None:
             raise InputError(f"{directory}: there is no robot in this run")
         moment = decisive_moment(run, ended)
-        said = what_happened(run, moment, ended.reason)
+        sentences = what_happened(run, moment, ended.reason)
         if ended.status == Ending.TIMEOUT and moment.cause not in (Cause.BLOCKED, Cause.SLOW):
-            said.append(why_late(run))
+            sentences.append(why_late(run))
         if sensors:
-            said += what_was_seen(run, moment, recording.scans(robot=robot))
+            sentences += what_was_seen(run, moment, recording.scans(robot=robot))
     return Explanation(
         directory=directory, record=record, robot=robot or "", ended=ended, run=run, moment=moment,
-        sentences=said,
+        sentences=sentences,
     )  # fmt: skip
 
 

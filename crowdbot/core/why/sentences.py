@@ -58,16 +58,16 @@ def what_was_seen(
 def _person(run: Trajectories, moment: DecisiveMoment, sample: int) -> Iterator[str]:
     if moment.agent is None:
         return
-    pair, crowd, who = encounter(run, JUMP_SPEED), people(run), moment.agent
-    gap = float(pair.gap[sample, who])
+    pair, crowd, agent = encounter(run, JUMP_SPEED), people(run), moment.agent
+    gap = float(pair.gap[sample, agent])
     if not math.isfinite(gap):
         return
-    bearing = math.atan2(pair.py[sample, who], pair.px[sample, who]) - float(pair.theta[sample])
-    speed = math.hypot(float(crowd.vx[sample, who]), float(crowd.vy[sample, who]))
+    bearing = math.atan2(pair.py[sample, agent], pair.px[sample, agent]) - float(pair.theta[sample])
+    speed = math.hypot(float(crowd.vx[sample, agent]), float(crowd.vy[sample, agent]))
     walks = f"walked at {speed:.2f} m/s" if speed > 0.05 else "stood"
     side = _SIDES_OF_ROBOT[body_side(bearing)]
     apart = f"{gap:.2f} m away" if gap > 0.0 else "in touch"
-    yield f"person {int(crowd.id[who])} {walks}, {side} the robot, {apart}"
+    yield f"person {int(crowd.id[agent])} {walks}, {side} the robot, {apart}"
 
 
 def _robot(run: Trajectories, sample: int) -> str:

@@ -28,19 +28,19 @@ def check_agents(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def _check_agent(facts: Facts, i: int, agent: Agent) -> Iterator[Diagnostic]:
-    path, who = ("crowd", "agents", i), f"agent {agent.id}"
-    yield from facts.outside(f"the start {{at}} of {who}", [(agent.x, agent.y)], *path, "x")
-    yield from facts.outside(f"the goal {{at}} of {who}", agent.goals, *path, "goals")
+    path, subject = ("crowd", "agents", i), f"agent {agent.id}"
+    yield from facts.outside(f"the start {{at}} of {subject}", [(agent.x, agent.y)], *path, "x")
+    yield from facts.outside(f"the goal {{at}} of {subject}", agent.goals, *path, "goals")
     if agent.portals is not None:
-        yield from facts.portals(agent.portals, who, *path, "portals")
+        yield from facts.portals(agent.portals, subject, *path, "portals")
     if bool(agent.goals) == (agent.portals is not None):
-        text = f"{who} has {'goals and portals' if agent.goals else 'no goal'}"
+        text = f"{subject} has {'goals and portals' if agent.goals else 'no goal'}"
         hint = "write goals or portals; for one who stands, goals is the start itself"
         yield Diagnostic("E141", text, facts.mark(*path), hint)
     if agent.policy and agent.policy not in facts.crowd.policies:
         yield facts.unknown("policy", agent.policy, facts.crowd.policies, *path, "policy")
     if agent.speed is None and facts.crowd.speed is None:
-        yield missing_speed(facts, who, *path)
+        yield missing_speed(facts, subject, *path)
 
 
 def _check_overlaps(facts: Facts) -> Iterator[Diagnostic]:

@@ -51,7 +51,7 @@ def _check_costs(
         yield Diagnostic("E133", text, facts.mark(*path, "costs"), hint)
 
 
-def missing_speed(facts: Facts, who: str, *path: str | int) -> Diagnostic:
+def missing_speed(facts: Facts, subject: str, *path: str | int) -> Diagnostic:
     """Return the error for people without a preferred speed, of their own or the crowd's."""
     hint = "write crowd.speed, such as {mean: 1.3 m/s, std: 0.2 m/s}"
-    return Diagnostic("E135", f"{who} has no speed, nor has the crowd", facts.mark(*path), hint)
+    return Diagnostic("E135", f"{subject} has no speed, nor has the crowd", facts.mark(*path), hint)

@@ -43,30 +43,36 @@ class Facts:
         """Return the position of a value, or of its nearest parent."""
         return mark_of(self.tree, *path)
 
-    def unknown(self, what: str, name: str, known: Iterable[str], *path: str | int) -> Diagnostic:
+    def unknown(
+        self, category: str, name: str, known: Iterable[str], *path: str | int
+    ) -> Diagnostic:
         """Return the error for a name that the environment or the crowd does not have."""
         names = sorted(known)
-        owner = "environment" if what in ("zone", "portal") else "crowd"
+        owner = "environment" if category in ("zone", "portal") else "crowd"
         hint = did_you_mean(nearest(name, names)).removeprefix("; ")
-        hint = hint or (f"known: {', '.join(names)}" if names else f"the {owner} has no {what}s")
-        return Diagnostic("E130", f"the {owner} has no {what} '{name}'", self.mark(*path), hint)
+        hint = hint or (
+            f"known: {', '.join(names)}" if names else f"the {owner} has no {category}s"
+        )
+        return Diagnostic("E130", f"the {owner} has no {category} '{name}'", self.mark(*path), hint)
 
-    def portals(self, names: tuple[str, str], who: str, *path: str | int) -> Iterator[Diagnostic]:
+    def portals(
+        self, names: tuple[str, str], subject: str, *path: str | int
+    ) -> Iterator[Diagnostic]:
         """Check that two different portals exist in the environment."""
         known = self.scenario.environment.portals
         for i, name in enumerate(names):
             if name not in known:
                 yield self.unknown("portal", name, known, *path, i)
         if names[0] == names[1]:
-            yield Diagnostic("E130", f"{who} needs two different portals", self.mark(*path))
+            yield Diagnostic("E130", f"{subject} needs two different portals", self.mark(*path))
 
     def outside(
-        self, what: str, points: Iterable[tuple[float, float]], *path: str | int
+        self, subject: str, points: Iterable[tuple[float, float]], *path: str | int
     ) -> Iterator[Diagnostic]:
         """Yield an error for the first point outside the box around all zones.
 
         Args:
-            what: name of the point; ``{at}`` is replaced by its coordinates.
+            subject: name of the point; ``{at}`` is replaced by its coordinates.
             points: x and y, m.
         """
         box = self.bounds
@@ -76,16 +82,16 @@ class Facts:
         for x, y in points:
             if not (x0 - gap <= x <= x1 + gap and y0 - gap <= y <= y1 + gap):
                 at = f"({x:g}, {y:g})"
-                text = f"{what.replace('{at}', at)} lies outside the environment's zones"
+                text = f"{subject.replace('{at}', at)} lies outside the environment's zones"
                 hint = f"they reach from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}); add a zone around it"
                 yield Diagnostic("E132", text, self.mark(*path), hint)
                 return
 
-    def area(self, place: str | Area, who: str, *path: str | int) -> Iterator[Diagnostic]:
+    def area(self, place: str | Area, subject: str, *path: str | int) -> Iterator[Diagnostic]:
         """Check that a zone exists, or that an area lies inside the environment."""
         zones = self.scenario.environment.zones
         if isinstance(place, Area):
-            yield from self.outside(f"the corner {{at}} of {who}", place.corners, *path)
+            yield from self.outside(f"the corner {{at}} of {subject}", place.corners, *path)
         elif place not in zones:
             yield self.unknown("zone", place, zones, *path)
 

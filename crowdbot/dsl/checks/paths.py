@@ -191,13 +191,15 @@ class _PathCheck:
     def _outside(self, agent: Agent, i: int, k: int, at: Point, goal: Point) -> Diagnostic | None:
         """Return the error for one end of a way that lies outside the walls around the other."""
         bounds, radius = self.facts.bounds, self._radius(agent)
-        for what, end, other, *path in (
+        for end_name, end, other, *path in (
             ("place", at, goal, *(("goals", k - 1) if k else ("x",))),
             ("goal", goal, at, "goals", k),
         ):
             ends = spot(end), spot(other)
             if bounds is not None and first_is_outside(self.place, radius, bounds, *ends):
-                text = f"the {what} ({end[0]:g}, {end[1]:g}) of agent {agent.id} lies outside the "
+                text = (
+                    f"the {end_name} ({end[0]:g}, {end[1]:g}) of agent {agent.id} lies outside the "
+                )
                 text += f"walls that enclose ({other[0]:g}, {other[1]:g})"
                 return Diagnostic("E132", text, self.facts.mark("crowd", "agents", i, *path))
         return None

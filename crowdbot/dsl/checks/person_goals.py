@@ -57,33 +57,33 @@ def _check_not_there(
 
 def _check_who(facts: Facts, goal: PersonGoal, path: Path) -> Iterator[Diagnostic]:
     """Check that the person exists, is there at the start, and does not jump."""
-    who, crowd = goal.person, facts.crowd
-    (field,) = who.written
+    person, crowd = goal.person, facts.crowd
+    (field,) = person.written
     where = (*path, "person", field)
-    for what, known in (("spawn", crowd.spawns), ("stream", crowd.streams)):
-        if field == what and getattr(who, what) not in known:
-            yield facts.unknown(what, getattr(who, what), known, *where)
+    for category, known in (("spawn", crowd.spawns), ("stream", crowd.streams)):
+        if field == category and getattr(person, category) not in known:
+            yield facts.unknown(category, getattr(person, category), known, *where)
             return
     found = agents_of(crowd, goal)
     if field in ("agent", "group") and not found:
         hint = _listed(crowd, field)
         text = "no agent belongs to group" if field == "group" else "there is no agent"
-        yield Diagnostic("E146", f"{text} {getattr(who, field)}", facts.mark(*where), hint)
+        yield Diagnostic("E146", f"{text} {getattr(person, field)}", facts.mark(*where), hint)
     late = [agent for agent in found if agent.start_time > 0.0]
     if late or _enters_later(crowd, goal):
-        text = f"{who} is not there at the start, and the robot could not be shown to it"
+        text = f"{person} is not there at the start, and the robot could not be shown to it"
         yield Diagnostic("E146", text, facts.mark(*where), "a goal has start_time 0")
     if any(agent.portals for agent in found) or _jumps(crowd, goal):
-        text = f"{who} goes through portals, and would jump away from the robot"
+        text = f"{person} goes through portals, and would jump away from the robot"
         yield Diagnostic("E147", text, facts.mark(*where), "write goals instead of portals")
 
 
 def agents_of(crowd: Crowd, goal: PersonGoal) -> list[Agent]:
     """Return the explicit agents that a goal names, if any."""
-    who = goal.person
-    if who.agent is not None:
-        return [agent for agent in crowd.agents if agent.id == who.agent]
-    return [a for a in crowd.agents if who.group is not None and a.group == who.group]
+    person = goal.person
+    if person.agent is not None:
+        return [agent for agent in crowd.agents if agent.id == person.agent]
+    return [a for a in crowd.agents if person.group is not None and a.group == person.group]
 
 
 def _listed(crowd: Crowd, field: str) -> str:
@@ -94,25 +94,25 @@ def _listed(crowd: Crowd, field: str) -> str:
 
 
 def _enters_later(crowd: Crowd, goal: PersonGoal) -> bool:
-    who = goal.person
-    if who.spawn is not None:
-        time = crowd.spawns[who.spawn].start_time
+    person = goal.person
+    if person.spawn is not None:
+        time = crowd.spawns[person.spawn].start_time
         return time.value - time.spread > 0.0
-    return who.stream is not None and crowd.streams[who.stream].entering is not None
+    return person.stream is not None and crowd.streams[person.stream].entering is not None
 
 
 def _jumps(crowd: Crowd, goal: PersonGoal) -> bool:
-    who = goal.person
-    return who.spawn is not None and crowd.spawns[who.spawn].portals is not None
+    person = goal.person
+    return person.spawn is not None and crowd.spawns[person.spawn].portals is not None
 
 
 def _check_lead(facts: Facts, goal: LeadGoal, path: Path) -> Iterator[Diagnostic]:
     """Check that the person has no other way."""
-    who = goal.person
+    person = goal.person
     found = agents_of(facts.crowd, goal)
     walks = any(a.goals and any(point != (a.x, a.y) for point in a.goals) for a in found)
-    spawn = None if who.spawn is None else facts.crowd.spawns.get(who.spawn)
-    if walks or who.stream is not None or (spawn is not None and not spawn.standing):
-        text = f"{who} has a way of its own, and would not follow the robot"
+    spawn = None if person.spawn is None else facts.crowd.spawns.get(person.spawn)
+    if walks or person.stream is not None or (spawn is not None and not spawn.standing):
+        text = f"{person} has a way of its own, and would not follow the robot"
         hint = "one who is led stands: goals is the start itself, or standing: true"
         yield Diagnostic("E147", text, facts.mark(*path, "person"), hint)

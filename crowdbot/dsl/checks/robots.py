@@ -52,13 +52,13 @@ def check_descriptions(facts: Facts) -> Iterator[Diagnostic]:
         known, path = robot.model.described(), ("robots", name)
         if not known:
             continue
-        named = [(what, own, (*path, "model", *at)) for what, own, at in robot.model.named()]
+        named = [(part, own, (*path, "model", *at)) for part, own, at in robot.model.named()]
         sensors = robot.sensors.items()
         named += [("link", s.link, (*path, "sensors", n, "link")) for n, s in sensors if s.link]
-        for what, wanted, at in named:
-            if wanted not in known[what]:
-                text = f"the description of robot '{name}' has no {what} '{wanted}'"
-                names = sorted(known[what])
+        for part, wanted, at in named:
+            if wanted not in known[part]:
+                text = f"the description of robot '{name}' has no {part} '{wanted}'"
+                names = sorted(known[part])
                 hint = did_you_mean(nearest(wanted, names)).removeprefix("; ")
                 yield Diagnostic(
                     "E130", text, facts.mark(*at), hint or f"known: {', '.join(names)}"

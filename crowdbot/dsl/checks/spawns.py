@@ -26,31 +26,31 @@ def check_spawns(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def _check_spawn(facts: Facts, name: str, spawn: Spawn) -> Iterator[Diagnostic]:
-    path, who = ("crowd", "spawns", name), f"spawn '{name}'"
-    yield from facts.area(spawn.area, who, *path, "area")
+    path, subject = ("crowd", "spawns", name), f"spawn '{name}'"
+    yield from facts.area(spawn.area, subject, *path, "area")
     area = facts.resolve(spawn.area)
     if area is not None:
         yield from _check_room(facts, spawn, area, name)
-    yield from _check_routes(facts, spawn, who, *path)
+    yield from _check_routes(facts, spawn, subject, *path)
     if spawn.groups and sum(g.frequency for g in spawn.groups) == 0:
-        text = f"the frequencies of the groups of {who} sum to 0"
+        text = f"the frequencies of the groups of {subject} sum to 0"
         yield Diagnostic("E137", text, facts.mark(*path, "groups"))
     for policy in spawn.policy:
         if policy not in facts.crowd.policies:
             yield facts.unknown("policy", policy, facts.crowd.policies, *path, "policy")
     if spawn.speed is None and facts.crowd.speed is None:
-        yield missing_speed(facts, who, *path)
+        yield missing_speed(facts, subject, *path)
 
 
-def _check_routes(facts: Facts, spawn: Spawn, who: str, *path: str) -> Iterator[Diagnostic]:
+def _check_routes(facts: Facts, spawn: Spawn, subject: str, *path: str) -> Iterator[Diagnostic]:
     """Check where people go: in one of three ways."""
     if spawn.portals is not None:
-        yield from facts.portals(spawn.portals, who, *path, "portals")
+        yield from facts.portals(spawn.portals, subject, *path, "portals")
     if spawn.goals is not None:
         yield from _check_goals(facts, spawn, spawn.goals, *path)
     given = spawn.routes
     if len(given) != 1:
-        text = f"{who} has {' and '.join(given) or 'no goal'}"
+        text = f"{subject} has {' and '.join(given) or 'no goal'}"
         hint = "write one of goals, portals and 'standing: true'"
         where = (*path, given[1]) if given else path
         yield Diagnostic("E141", text, facts.mark(*where), hint)

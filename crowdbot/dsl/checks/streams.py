@@ -17,20 +17,20 @@ def check_streams(facts: Facts) -> Iterator[Diagnostic]:
     """Check every stream by itself, and the names between it and the rest of the crowd."""
     for name, stream in facts.crowd.streams.items():
         path: Path = ("crowd", "streams", name)
-        who = f"stream '{name}'"
-        yield from _check_names(facts, stream, who, path)
+        subject = f"stream '{name}'"
+        yield from _check_names(facts, stream, subject, path)
         for field, place in stream.places():
-            yield from _check_place(facts, place, who, (*path, *field))
+            yield from _check_place(facts, place, subject, (*path, *field))
         yield from _check_number(facts, stream, name, path)
         for field, points in stream.points():
-            yield from facts.outside(f"the point {{at}} of {who}", points, *path, *field)
+            yield from facts.outside(f"the point {{at}} of {subject}", points, *path, *field)
         radius = stream.body.radius or facts.crowd.body.radius
-        for misfit in stream.misfits(who, radius, lambda place: area_of(facts, place)):
+        for misfit in stream.misfits(subject, radius, lambda place: area_of(facts, place)):
             mark = facts.mark(*path, *misfit.field)
             yield Diagnostic("E136", misfit.text, mark, misfit.hint)
 
 
-def _check_names(facts: Facts, stream: Stream, who: str, path: Path) -> Iterator[Diagnostic]:
+def _check_names(facts: Facts, stream: Stream, subject: str, path: Path) -> Iterator[Diagnostic]:
     crowd = facts.crowd
     for policy in stream.policy:
         if policy not in crowd.policies:
@@ -42,13 +42,13 @@ def _check_names(facts: Facts, stream: Stream, who: str, path: Path) -> Iterator
         if area not in crowd.goal_areas:
             yield facts.unknown("goal area", area, crowd.goal_areas, *path, *field)
     if stream.groups and sum(g.frequency for g in stream.groups) == 0:
-        text = f"the frequencies of the groups of {who} sum to 0"
+        text = f"the frequencies of the groups of {subject} sum to 0"
         yield Diagnostic("E137", text, facts.mark(*path, "groups"))
     if stream.speed is None and crowd.speed is None:
-        yield missing_speed(facts, who, *path)
+        yield missing_speed(facts, subject, *path)
 
 
-def _check_place(facts: Facts, place: Place, who: str, path: Path) -> Iterator[Diagnostic]:
+def _check_place(facts: Facts, place: Place, subject: str, path: Path) -> Iterator[Diagnostic]:
     environment = facts.scenario.environment
     if isinstance(place, str) and place in environment.portals:
         return
@@ -56,7 +56,7 @@ def _check_place(facts: Facts, place: Place, who: str, path: Path) -> Iterator[D
         known = [*environment.zones, *environment.portals]
         yield facts.unknown("zone", place, known, *path)
     elif isinstance(place, Area):
-        yield from facts.area(place, who, *path)
+        yield from facts.area(place, subject, *path)
 
 
 def area_of(facts: Facts, place: Place) -> Area | None:

@@ -28,7 +28,7 @@ LOCK = 2
 
 
 class LockedTable(Spec):
-    """A table of agents."""
+    """Hashes of a table of agents and of its inputs."""
 
     inputs: str = Field(description="Hash of everything that the drawing depends on.")
     realisation: str = Field(description="Hash of the table.")
@@ -170,10 +170,10 @@ class LockFiles:
         """
         text = self.tables.get(name, self.tables[""])
         if table_hash(text) != self.draws[name].realisation:
-            what = "was changed" if name in self.tables else "is missing"
+            problem = "was changed" if name in self.tables else "is missing"
             raise InputError(
-                f"{self.agents_path.name}: table '{name}' {what} since {self.lock_path.name} was "
-                f"written; restore the file, or run {self.command}"
+                f"{self.agents_path.name}: table '{name}' {problem} since {self.lock_path.name} "
+                f"was written; restore the file, or run {self.command}"
             )
         return text
 

@@ -75,7 +75,7 @@ class PeopleKind(Spec):
 
 @dataclass(frozen=True, slots=True)
 class UsualBody:
-    """Default body of a look; None as in `crowd.body`.
+    """Default body of people of one appearance; None: that of `crowd.body`.
 
     Attributes:
         height, mass: mean and standard deviation, m and kg.

@@ -77,7 +77,7 @@ Names = Annotated[
 
 
 class GroupSize(Spec):
-    """Frequency of groups of one size."""
+    """A size of group, and how frequent it is."""
 
     size: Annotated[int, Ge(1), Le(1000)] = Field(description="People in a group; 1: alone.")
     frequency: Annotated[float, Ge(0)] = Field(

@@ -136,7 +136,7 @@ class Stream(Spec):
                 yield (field,), place
 
     def goal_area_names(self) -> Iterator[tuple[FieldPath, str]]:
-        """All names in `crowd.goal_areas` that it uses, by field."""
+        """Return all names in `crowd.goal_areas` that it uses, by field."""
         return iter(())
 
     def points(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
@@ -182,14 +182,14 @@ class Stream(Spec):
                 yield start, goal, path
 
     # --------------------------------------------------------------------- checks
-    def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
+    def misfits(self, subject: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
         """Yield contradictions between fields that are valid one by one.
 
         Args:
-            who: names the stream in texts.
+            subject: names the stream in texts.
             radius: of its people, m.
         """
-        del who, radius, area_of
+        del subject, radius, area_of
         return iter(())
 
 
@@ -211,7 +211,7 @@ class PopulatedStream(Stream):
 
     @property
     def people_per_area(self) -> float | None:
-        """The density, 1/m^2, of a stream that is given by one."""
+        """Return the density, 1/m^2, of a stream that is given by one."""
         return self.density
 
     @property

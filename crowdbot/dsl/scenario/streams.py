@@ -106,7 +106,7 @@ class ThroughStream(PopulatedStream):
     def _between(self) -> Iterator[tuple[FieldPath, Place]]:
         return ((("via", i), place) for i, place in enumerate(self.via))
 
-    def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
+    def misfits(self, subject: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
         """Yield an error for lanes that are narrower than people."""
         if self.lanes is None:
             return
@@ -114,7 +114,7 @@ class ThroughStream(PopulatedStream):
             area = area_of(place)
             width = area.size[1] / self.lanes.of if area else math.inf
             if width < 2.0 * radius:
-                text = f"lanes of {width:.3g} m in {who} for people {2 * radius:g} m wide"
+                text = f"lanes of {width:.3g} m in {subject} for people {2 * radius:g} m wide"
                 yield Misfit(("lanes",), text)
                 return
 
@@ -152,7 +152,7 @@ class DirectionsStream(Stream):
 
     @property
     def people_per_area(self) -> float | None:
-        """The density, 1/m^2, of a stream that is given by one."""
+        """Return the density, 1/m^2, of a stream that is given by one."""
         return self.density
 
     @property
@@ -212,17 +212,17 @@ class QueueStream(Stream):
         line = [(("line", i), Area(centre=at, size=_POINT)) for i, at in enumerate(self.line)]
         yield [*reversed(line), *((field, area_of(place)) for field, place in self.onward())]
 
-    def misfits(self, who: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
+    def misfits(self, subject: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
         """Yield errors for more people than the line has room for, or wider ones than its gap."""
         del area_of
         length = sum(math.dist(a, b) for a, b in pairwise(self.line))
         room = math.floor(length / self.gap + 1e-9) + 1
         if self.count is not None and self.count > room:
-            text = f"{self.count} people of {who} cannot stand on its {length:g} m"
+            text = f"{self.count} people of {subject} cannot stand on its {length:g} m"
             hint = f"with a gap of {self.gap:g} m there is room for {room}"
             yield Misfit(("count",), text, hint)
         if self.gap < 2.0 * radius:
-            text = f"{self.gap:g} m between people of {who} who are {2 * radius:g} m wide"
+            text = f"{self.gap:g} m between people of {subject} who are {2 * radius:g} m wide"
             yield Misfit(("gap",), text)
 
 

@@ -26,7 +26,7 @@ _ELSEWHERE = "references"
 
 
 class Parts:
-    """Definitions built from models.
+    """JSON Schema definitions of models, adapted to hand-written documents.
 
     Args:
         models: the first one is the root.

@@ -194,5 +194,5 @@ def _summary(spec: type[MetricSpec], symbol: str) -> str:
     return f"{symbol}: {text}" if text else symbol  # python -OO has no docstrings
 
 
-def _wrong(spec: type[ComponentSpec], what: str) -> PluginError:
-    return PluginError(f"metric {getattr(spec, '__name__', spec)}: {what}")
+def _wrong(spec: type[ComponentSpec], problem: str) -> PluginError:
+    return PluginError(f"metric {getattr(spec, '__name__', spec)}: {problem}")

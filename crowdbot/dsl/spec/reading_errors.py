@@ -14,7 +14,7 @@ from crowdbot.dsl.spec.spec import Spec
 
 
 class _ReadingError(Spec):
-    """Fields of every error."""
+    """Fields that every error of a reading has."""
 
     entries: tuple[Annotated[int, Ge(0)], ...] | None = Field(
         default=None,

@@ -1,4 +1,4 @@
-"""Unions of models whose member is chosen by a function."""
+"""Unions of models in which a function chooses the member."""
 
 from __future__ import annotations
 

@@ -107,15 +107,15 @@ def _common(paths: Sequence[_Path]) -> _Path:
 
 def _title(base: Node, path: _Path) -> str:
     """Return the last two names of a path; one of several parts is called by its kind."""
-    told, node, above = list[str](), base, ""
+    words, node, above = list[str](), base, ""
     for name in path:
         below = node.child(name)
         node = Node(base.mark, {}) if below is None else below
         kind = kind_of(node) if above in _SEVERAL else None
         if name not in _SILENT:
-            told.append(name.replace("_", " ") if kind is None else str(kind))
+            words.append(name.replace("_", " ") if kind is None else str(kind))
         above = name
-    return " ".join(told[-2:])
+    return " ".join(words[-2:])
 
 
 def _value(label: Node, fields: dict[_Path, Node], depth: int) -> str:

@@ -57,8 +57,8 @@ class Loader:
             self.problems += [d for d in error.diagnostics if d not in self.problems]
             return Node(Mark(source), {}, implied=True)
         if not isinstance(root.value, dict):
-            what = "is empty" if root.value is None else "must be a map of fields"
-            self.problems.append(Diagnostic("E011", f"the document {what}", root.mark))
+            problem = "is empty" if root.value is None else "must be a map of fields"
+            self.problems.append(Diagnostic("E011", f"the document {problem}", root.mark))
             return Node(root.mark, {})
         here = replace(file, chain=(*file.chain, file.path.resolve()))
         return self._resolve(

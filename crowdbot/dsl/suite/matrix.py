@@ -76,9 +76,9 @@ def _too_many(axes: Sequence[Axis], problems: list[Diagnostic], mark: Mark) -> b
     count = math.prod(len(axis.labels) for axis in axes)
     if count <= MAX_COMBINATIONS and len(axes) <= MAX_AXES:
         return False
-    what = f"{count} combinations" if count > MAX_COMBINATIONS else f"{len(axes)} axes"
+    size = f"{count} combinations" if count > MAX_COMBINATIONS else f"{len(axes)} axes"
     most = MAX_COMBINATIONS if count > MAX_COMBINATIONS else MAX_AXES
-    text = f"the suite has {what}; at most {most} are allowed"
+    text = f"the suite has {size}; at most {most} are allowed"
     problems.append(Diagnostic("E207", text, mark))
     return True
 
@@ -111,10 +111,10 @@ def _read_axis(name: str, key: Mark, node: Node, problems: list[Diagnostic]) -> 
     return Axis(name, labels, {label: entry.key for label, entry in node.entries.items()})
 
 
-def _check_name(what: str, name: str, key: Mark, problems: list[Diagnostic]) -> None:
+def _check_name(category: str, name: str, key: Mark, problems: list[Diagnostic]) -> None:
     """Refuse labels that contain '-', which joins labels to ids."""
     if not _NAME.fullmatch(name):
-        text = f"{what} '{name}' may have letters, digits and '_' only"
+        text = f"{category} '{name}' may have letters, digits and '_' only"
         problems.append(Diagnostic("E010", text, key))
 
 
@@ -123,12 +123,12 @@ def _check_overlap(axes: Sequence[Axis], problems: list[Diagnostic]) -> None:
     leaves: dict[_Path, tuple[str, Mark]] = {}
     above: dict[_Path, tuple[str, Mark]] = {}  # paths with a written field below them
     for axis in axes:
-        written, told = _written(axis), set[str]()
+        written, reported = _written(axis), set[str]()
         for path, mark in written.items():
             found = [leaves[path[:n]] for n in range(len(path) + 1) if path[:n] in leaves]
             for name, place in [*found, *([above[path]] if path in above else [])]:
-                if name not in told:
-                    told.add(name)
+                if name not in reported:
+                    reported.add(name)
                     text = f"axes '{name}' and '{axis.name}' both write {'.'.join(path)}"
                     also = (("also written at", place),)
                     hint = "make them one axis"

@@ -109,7 +109,7 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One error.
+    """An error in a document, with its position and a hint.
 
     Attributes:
         code: a key of `CODES`.
@@ -166,9 +166,9 @@ def render(diagnostics: Iterable[Diagnostic]) -> str:
     alike = Counter[tuple[str, str, str]]()
     lines = []
     for one in found:
-        said = (one.mark.source.name, one.code, one.message)
-        alike[said] += 1
-        if alike[said] <= _ALIKE:
+        key = (one.mark.source.name, one.code, one.message)
+        alike[key] += 1
+        if alike[key] <= _ALIKE:
             lines.append(_render_one(one))
     lines += [
         f"{name}: error[{code}] {_shown(message)}: {number - _ALIKE} more of them"

@@ -116,10 +116,10 @@ def _explained(error: Any, shift: int) -> tuple[str, str]:
     """Return message and hint for a YAML parser's error, whose own text is hard to understand."""
     problem, context, start = error.problem or "", error.context or "", error.context_mark
     if ("flow mapping" in context or "flow sequence" in context) and start is not None:
-        what = "'{'" if "mapping" in context else "'['"
+        bracket = "'{'" if "mapping" in context else "'['"
         column = start.column + 1 + (shift if start.line == 0 else 0)
         where = f"line {start.line + 1}, column {column}"
-        return f"{problem or 'something is wrong'} after the {what} of {where}", ""
+        return f"{problem or 'something is wrong'} after the {bracket} of {where}", ""
     if "'\\t'" in problem:
         return "a tab, which YAML does not take for indentation", "use blanks"
     if "mapping values are not allowed" in problem:
@@ -206,9 +206,9 @@ class _Builder:
         return Node(mark, None)
 
     def _refuse_indirection(self, event: Any, mark: Mark) -> None:
-        what = "alias" if _kind(event) == "AliasEvent" else "anchor"
+        feature = "alias" if _kind(event) == "AliasEvent" else "anchor"
         if getattr(event, "anchor", None):
-            self._add("E004", f"{what} '{event.anchor}' is not allowed", mark, "use 'extends'")
+            self._add("E004", f"{feature} '{event.anchor}' is not allowed", mark, "use 'extends'")
         if getattr(event, "ctag", None):
             self._add("E005", f"tag '{event.tag}' is not allowed", mark)
 

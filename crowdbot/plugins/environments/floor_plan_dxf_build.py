@@ -83,7 +83,7 @@ def read_dxf(
     for (_, meaning, _), rings in outlines.items():
         found += [(shape, {"layer": layer, **_KINDS[meaning]}) for shape, layer in _nested(rings)]
     _check_layers(drawing, seen, spec, file.name)
-    listed = ", ".join(f"{count} {what}" for what, count in sorted(aside.items()))
+    listed = ", ".join(f"{count} {name}" for name, count in sorted(aside.items()))
     if aside and not found:
         raise InputError(f"{file.name}: nothing in it can be read: it has {listed}")
     if aside:

@@ -68,8 +68,8 @@ def _text(content: bytes) -> str:
     try:
         return whole.decode("utf-8-sig")
     except UnicodeDecodeError:
-        told = dxf_stream_info(io.StringIO(whole.decode("latin-1")))
-        encoding = "cp1252" if told.version >= _IN_UTF8 else told.encoding
+        info = dxf_stream_info(io.StringIO(whole.decode("latin-1")))
+        encoding = "cp1252" if info.version >= _IN_UTF8 else info.encoding
         return whole.decode(encoding, errors="replace")
 
 

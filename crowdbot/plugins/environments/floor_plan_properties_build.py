@@ -57,7 +57,9 @@ def solid_by_another_name(features: Iterable[dict[str, Any]]) -> str:
         for name, value in properties.items()
         if name in _OTHER_KINDS and _SOLID_WORDS.fullmatch(str(value).strip())
     )
-    return ", ".join(f"{count} feature(s) with '{said}'" for said, count in sorted(found.items()))
+    return ", ".join(
+        f"{count} feature(s) with '{property_}'" for property_, count in sorted(found.items())
+    )
 
 
 def levels_of(properties: dict[str, Any]) -> tuple[str, ...]:

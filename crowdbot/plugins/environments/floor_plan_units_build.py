@@ -41,7 +41,7 @@ def declared_crs(content: Any) -> str:
 
 
 def check_numbers(
-    shapes: list[Any], spec: FloorPlanFields, name: str, crs: str, told: bool
+    shapes: list[Any], spec: FloorPlanFields, name: str, crs: str, stated: bool
 ) -> None:
     """Check that the coordinates fit the unit.
 
@@ -49,7 +49,7 @@ def check_numbers(
         shapes: as read from the file.
         name: the file's name.
         crs: from `declared_crs`.
-        told: True if the document gives the unit.
+        stated: True if the document gives the unit.
 
     Raises:
         InputError: degrees are read as lengths, or lengths as degrees; or metres are stretched.
@@ -80,7 +80,7 @@ def check_numbers(
             f"{east:.3g} m × {north:.3g} m as longitude and latitude{degrees}: write "
             f"'unit: deg' and 'origin: [{middle[0]:.6f}, {middle[1]:.6f}]'"
         )
-    if _in_degrees(crs) and not told and (wide > _MOST_DEGREES or not on_earth):
+    if _in_degrees(crs) and not stated and (wide > _MOST_DEGREES or not on_earth):
         _LOG.warning(
             "%s: the file says that its numbers are degrees (%s), but %s, which would be %.0f km: "
             "they count as %s; write 'unit' to say so",

@@ -99,12 +99,16 @@ def sorted_plan(
         raise InputError(f"{name}: the plan is empty")
     found = [one for one in found if _is_of_place(*one, name, aside)]
     if aside:
-        listed = ", ".join(f"{count} feature(s) {what}" for what, count in sorted(aside.items()))
+        listed = ", ".join(
+            f"{count} feature(s) {reason}" for reason, count in sorted(aside.items())
+        )
         _LOG.warning("%s: left out: %s", name, listed)
     found = _on_one_storey([one for one in found if not one[0].is_empty], spec, name)
     check_numbers([shape for shape, _ in found], spec, name, crs, told_unit)
-    if spec.polygons == "walkable" and (said := solid_by_another_name(p for _, p in found)):
-        _LOG.warning("%s: taken for floor: %s; only the property 'kind' makes solids", name, said)
+    if spec.polygons == "walkable" and (renamed := solid_by_another_name(p for _, p in found)):
+        _LOG.warning(
+            "%s: taken for floor: %s; only the property 'kind' makes solids", name, renamed
+        )
     plan = ImportedPlan()
     for shape, properties in found:
         _sort_in(in_metres(shape, spec, name), properties, spec, plan, name)
@@ -286,12 +290,12 @@ def _check_swallowed(
     """Warn of polygons that say nothing about themselves and lie on the floor of another one."""
     if spec.polygons != "walkable" or len(walkable) < 2:
         return
-    said = [properties for _, properties in found if kind_of(properties) in _FLOOR]
+    marked_floors = [properties for _, properties in found if kind_of(properties) in _FLOOR]
     floors = [valid_shape(p) for p in walkable]
     inner, outer = shapely.STRtree(floors).query(floors, predicate="within")
     areas = shapely.area(floors)
     swallowed = {int(i) for i, o in zip(inner, outer, strict=True) if areas[i] < areas[o]}
-    if swallowed and not said:
+    if swallowed and not marked_floors:
         _LOG.warning(
             "%s: %d of its polygons lie within others and change nothing, since all are floor: "
             "obstacles have the property \"kind\": \"obstacle\", and rooms need no polygon around "

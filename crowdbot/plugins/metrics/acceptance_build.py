@@ -1,4 +1,4 @@
-"""Scoring of the opinion of people on a drive."""
+"""Scoring of acceptance: a prediction of people's opinion of a drive."""
 
 from __future__ import annotations
 

@@ -80,14 +80,14 @@ class CollisionSeverity(RobotMetric[CollisionSeveritySpec], declared=COLLISION_S
         square = np.where(np.isfinite(square), square, 0.0)
         found = events(run, self.spec)
         known = np.isfinite(found.speed) & (found.agent >= 0)
-        speed, who = found.speed[known], found.agent[known]
+        speed, agent = found.speed[known], found.agent[known]
         half_sum, reduced = self._masses(run)
         touch = touching(encounter(run, self.spec.jump_speed), self.spec.contact_tol)
         return [
             self.factory.ok("literal", (np.where(touch, square, 0.0) * half_sum).sum()),
-            self.factory.ok("per_event", half_sum[who] @ speed**2),
-            self.factory.ok("corrected", 0.5 * reduced[who] @ speed**2),
-            self.factory.ok("impulse", reduced[who] @ speed),
+            self.factory.ok("per_event", half_sum[agent] @ speed**2),
+            self.factory.ok("corrected", 0.5 * reduced[agent] @ speed**2),
+            self.factory.ok("impulse", reduced[agent] @ speed),
         ]
 
     def _masses(self, run: Trajectories) -> tuple[Array, Array]:

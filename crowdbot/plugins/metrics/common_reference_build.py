@@ -27,8 +27,8 @@ def without_task(run: Trajectories) -> str:
     """Return why the robot has no goal to reach, or "" if it has one or arrived."""
     if run.robot is None:
         return "invalid_no_robot"
-    told = run.robot.goal is not None or run.goal_zone is not None or run.person is not None
-    return "" if told or run.robot.goal_time is not None else "invalid_no_goal"
+    has_task = run.robot.goal is not None or run.goal_zone is not None or run.person is not None
+    return "" if has_task or run.robot.goal_time is not None else "invalid_no_goal"
 
 
 def missed_goal(run: Trajectories) -> bool:

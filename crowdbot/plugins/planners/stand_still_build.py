@@ -9,7 +9,7 @@ from crowdbot.plugins.planners.stand_still import StandStillSpec
 
 
 class StandStill:
-    """Commands zero velocity."""
+    """Always commands zero velocity."""
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int

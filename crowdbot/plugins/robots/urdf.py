@@ -1,4 +1,4 @@
-"""Robots whose URDF exists: no Python is needed, only a drive, wheels and an outline."""
+"""Robots from a URDF: without Python code; drive, wheels and outline are given in the document."""
 
 from __future__ import annotations
 

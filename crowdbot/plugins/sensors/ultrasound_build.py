@@ -128,7 +128,7 @@ def _nearest(distance: Array, reach: Array) -> float:
 def _nearest_by_rays(
     z: float, slope: Array, reach: Array, length: float, work: Array, filled: Indices
 ) -> float:
-    """As `_nearest`, for rays from height ``z`` and the columns of `fill_columns`."""
+    """Like `_nearest`, for rays from height ``z`` and the columns of `fill_columns`."""
     best = math.inf
     for c in range(reach.shape[1]):
         if filled[c] == 0 or work[c, 0, NEAR] >= best:

@@ -87,8 +87,8 @@ def test_a_recording_of_nobody_is_named(
     write_recording(tmp_path / "a.mcap", name.split("/")[2], header, 0.0)
     content = (tmp_path / "a.mcap").read_bytes()
     found = problems(rewrite(bundle, {name: lambda _: content}, honest=True))
-    said = "it is of another run" if header else "it does not say of which run it is"
-    assert any(said in p for p in found)
+    expected = "it is of another run" if header else "it does not say of which run it is"
+    assert any(expected in p for p in found)
     assert not any("another hash" in p for p in found)
 
 

@@ -177,10 +177,10 @@ def test_broken_bundles_are_left_out_and_told(
     (own / "good.cbz").write_bytes((folder / "one.cbz").read_bytes())
     (own / "bad.cbz").write_bytes(b"no zip")
     code, page = board(own, tmp_path / "page.html", "--json")
-    said = capsys.readouterr()
+    captured = capsys.readouterr()
     assert code == 0
-    assert "bad.cbz is left out" in said.err
-    assert list(json.loads(said.out)["left_out"]) == ["bad.cbz"]
+    assert "bad.cbz is left out" in captured.err
+    assert list(json.loads(captured.out)["left_out"]) == ["bad.cbz"]
     assert "bad.cbz" in page.words
 
 

@@ -225,8 +225,8 @@ def test_hidden_draws_only_receive(tmp_path: Path, capsys: pytest.CaptureFixture
     capsys.readouterr()
     for received in ("1 new submission", "0 new submissions"):
         assert _judge(tmp_path) == 0
-        said = capsys.readouterr().out
-        assert f"{received} received; the draws are hidden: nothing was run" in said
+        output = capsys.readouterr().out
+        assert f"{received} received; the draws are hidden: nothing was run" in output
     assert _log(tmp_path / "out") == ["received"]
     assert cli.main(["draws", "reveal", *draws]) == 0
     shutil.rmtree(tmp_path / "out")  # as if it had come after the reveal

@@ -103,10 +103,10 @@ def test_what_hangs_above_the_robot_is_not_in_the_grid(tmp_path: Path) -> None:
 def test_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     argv = ["export-map", SHED, "--out", str(tmp_path / "a" / "b"), "--json", "--resolution", "0.2"]
     assert main(argv) == 0
-    said = json.loads(capsys.readouterr().out)
-    assert [Path(f).name for f in said["files"]] == ["map.pgm", "map.yaml", "map.geojson"]
-    assert all(Path(f).is_file() for f in said["files"])
-    assert said["resolution"] == 0.2
+    document = json.loads(capsys.readouterr().out)
+    assert [Path(f).name for f in document["files"]] == ["map.pgm", "map.yaml", "map.geojson"]
+    assert all(Path(f).is_file() for f in document["files"])
+    assert document["resolution"] == 0.2
 
 
 @pytest.mark.parametrize("resolution", ["0", "-1", "nan", "1e-4"])

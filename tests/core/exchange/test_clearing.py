@@ -53,8 +53,8 @@ def test_blocks_beyond_a_border_are_cut_off() -> None:
     (block,) = scene.environment["blocks"].values()
     assert max(x for x, _ in block["corners"]) == 10
     assert scene.crowd["streams"]["in"]["origin"]["centre"] == [0.25, 2.5]
-    said = [entry.note for entry in report.entries]
-    assert len([note for note in said if "outside of the floor" in note]) == 3
+    entries = [entry.note for entry in report.entries]
+    assert len([note for note in entries if "outside of the floor" in note]) == 3
 
 
 def test_a_wall_across_the_floor_parts_it() -> None:

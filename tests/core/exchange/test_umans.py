@@ -95,8 +95,8 @@ def _as_xml(given: dict[str, Any], folder: Path) -> list[Path]:
     """A case of the original engine as its own files."""
 
     def element(tag: str, attributes: dict[str, Any], inner: str = "") -> str:
-        said = "".join(f' {name}="{value}"' for name, value in attributes.items())
-        return f"<{tag}{said}>{inner}</{tag}>"
+        expected = "".join(f' {name}="{value}"' for name, value in attributes.items())
+        return f"<{tag}{expected}>{inner}</{tag}>"
 
     agents, policies, obstacles = "", "", ""
     for number, agent in enumerate(given["agents"]):

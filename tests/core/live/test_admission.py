@@ -56,9 +56,9 @@ def test_a_refused_website_is_named_once(capsys: pytest.CaptureFixture[str]) -> 
     admission = Admission(server="test")
     for _ in range(3):
         admission.problem({"origin": ["http://evil.test\x1b[31m"]})
-    said = capsys.readouterr().err
-    assert said.count("--allow-origin") == 1
-    assert "\x1b" not in said
+    output = capsys.readouterr().err
+    assert output.count("--allow-origin") == 1
+    assert "\x1b" not in output
     for number in range(100):
         admission.problem({"origin": [f"http://{number}.test"]})
     assert capsys.readouterr().err.count("\n") < 25

@@ -32,5 +32,5 @@ def test_a_live_client_that_comes_late_gets_what_has_grown() -> None:
             assert len(heard) == (k >= first)
         found += heard[-1:]
     assert found[0].data == found[1].data
-    told = found[0].fields
-    assert told.pose.covariance[0] > 3 * LEAST
+    values = found[0].fields
+    assert values.pose.covariance[0] > 3 * LEAST

@@ -107,14 +107,14 @@ def test_who_begins_to_listen_is_told_while_a_step_waits() -> None:
     session = LiveSession()
     session.ask(0)
     session.listened()
-    told: list[int] = []
+    calls: list[int] = []
 
     def tell() -> None:
-        told.append(1)
+        calls.append(1)
         session.command("a", GO)
 
     assert session.answer(10.0, tell) == GO
-    assert told == [1]
+    assert calls == [1]
 
 
 def test_the_clock_outside_never_goes_back() -> None:

@@ -249,7 +249,7 @@ def test_garbage_is_not_a_command() -> None:
         done = threading.Event()
         threading.Timer(0.3, done.set).start()
         done.wait()
-        asked = session.robots[""].asked
+        asked = session.robots[""].pending
         assert asked is not None
         assert asked.answer is None or asked.answer == Command(0.0, 0.0)
 
@@ -284,18 +284,18 @@ def test_what_is_latched_reaches_another_implementation() -> None:
         )
     walls = np.array([[0.0, -2.0, 10.0, -2.0], [0.0, 2.0, 10.0, 2.0]])
     frame = ros.transform(0, "base_link", "front", (0.1, 0.0, 0.2), 0.0)
-    said = {
+    values = {
         "/map": scenery.occupancy_grid(1, walls),
         "/tf_static": ros.transforms([frame]),
         "/robot_description": ros.new("std_msgs/String", data="<robot name='r'/>"),
     }
-    types = {topic: message.__msgtype__ for topic, message in said.items()}
+    types = {topic: message.__msgtype__ for topic, message in values.items()}
     endpoint = _endpoint()
     host, _, port = endpoint.removeprefix("tcp/").partition(":")
     with _both(endpoint) as (connection, _, _):
         connection.open([OfferedTopic(t, kind, latched=True) for t, kind in types.items()])
         connection.publish(
-            [live_message(t, 1, message, latched=True) for t, message in said.items()]
+            [live_message(t, 1, message, latched=True) for t, message in values.items()]
         )
         request = json.dumps({"topics": types, "definitions": _definitions(types.values())})
         argv = [python, str(Path(__file__).with_name("zenoh_sdk_listener.py")), host, port]
@@ -303,7 +303,7 @@ def test_what_is_latched_reaches_another_implementation() -> None:
             argv, input=request, text=True, stdout=subprocess.PIPE, timeout=300, check=True
         )
     heard = {m.pop("topic"): m for m in map(json.loads, done.stdout.splitlines())}
-    grid = said["/map"].info
+    grid = values["/map"].info
     assert heard == {
         "/map": {"width": grid.width, "height": grid.height},
         "/tf_static": {"children": ["front"]},

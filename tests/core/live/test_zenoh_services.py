@@ -73,10 +73,10 @@ def test_attachments_have_33_bytes() -> None:
     assert read_attachment(data[:-1]) is None
 
 
-def _ask(other: Any, service: Any, name: str, data: bytes, told: bytes | None) -> Any:
+def _ask(other: Any, service: Any, name: str, data: bytes, attached: bytes | None) -> Any:
     types = service_type(service)
     key = Ros2Topic(name, service.kind, types.hash).key(0)
-    (reply,) = list(other.get(key, payload=data, attachment=told, timeout=60.0))
+    (reply,) = list(other.get(key, payload=data, attachment=attached, timeout=60.0))
     return reply
 
 

@@ -120,11 +120,11 @@ def test_wheel_odometry_errs_as_its_messages_say(
     drives = [list(_drive(sensor, speeds, rng)) for _ in range(300)]
     encode = sensor_topics({"s": sensor.info()})["s"].message
     *_, last = [encode(ns, reading) for ns, reading in drives[0]]
-    told = ros.from_cdr(last, "nav_msgs/msg/Odometry")
+    values = ros.from_cdr(last, "nav_msgs/msg/Odometry")
     sample = np.cov(np.stack([drive[-1][1] for drive in drives]).T)
-    pose = told.pose.covariance.reshape(6, 6)[_PLANE]
+    pose = values.pose.covariance.reshape(6, 6)[_PLANE]
     assert np.abs(pose - sample[:3, :3]).max() < 0.25 * np.abs(sample[:3, :3]).max()
-    twist = told.twist.covariance[[0, 35, 7]]
+    twist = values.twist.covariance[[0, 35, 7]]
     count = 2 + isinstance(spec, HolonomicOdometrySpec)
     assert twist[:count] == pytest.approx(np.diag(sample)[3:], rel=0.3)
 

@@ -75,7 +75,7 @@ def test_they_are_components_of_the_scenario(found: Registry) -> None:
 
 
 @pytest.mark.parametrize(
-    ("found", "said"),
+    ("found", "expected"),
     [
         (("CrowdPolicySpec", "terms"), "a crowd policy cannot have parts of the category 'crowd p"),
         (("SensorSpec", "terms"), "'sensor'; what it can have: cost function, metric"),
@@ -84,8 +84,8 @@ def test_they_are_components_of_the_scenario(found: Registry) -> None:
     ],
     indirect=["found"],
 )
-def test_a_plugin_whose_parts_cannot_be_is_disabled(found: Registry, said: str) -> None:
+def test_a_plugin_whose_parts_cannot_be_is_disabled(found: Registry, expected: str) -> None:
     (made,) = (p for p in found.plugins if p.name == "made")
     assert made.error.startswith("made.mix: ")
-    assert said in made.error
+    assert expected in made.error
     assert found.find("crowd policy", "velocity_space")

@@ -47,7 +47,7 @@ def handled() -> Iterator[None]:
 
 @pytest.mark.usefixtures("handled")
 @pytest.mark.parametrize(
-    ("error", "said"),
+    ("error", "expected"),
     [
         (ValueError("fog"), "ValueError: fog"),
         (SystemExit(3), "SystemExit: 3"),
@@ -59,11 +59,11 @@ def handled() -> Iterator[None]:
     ],
     ids=lambda e: type(e).__name__ if isinstance(e, BaseException) else "",
 )
-def test_whatever_else_becomes_an_error(error: BaseException, said: str) -> None:
+def test_whatever_else_becomes_an_error(error: BaseException, expected: str) -> None:
     with pytest.raises(PluginError) as caught, PluginCall(WHO)("read", 0.5):
         raise error
     text = str(caught.value)
-    assert text.startswith(f"{WHO}: read at t = 0.5 s: {said} ({__file__}:")
+    assert text.startswith(f"{WHO}: read at t = 0.5 s: {expected} ({__file__}:")
     line = int(text.rpartition(":")[2].rstrip(")"))
     assert Path(__file__).read_text().splitlines()[line - 1].strip() == "raise error"
     assert caught.value.__cause__ is error

@@ -41,13 +41,13 @@ def test_others_stay_the_same() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "code", "said"),
+    ("name", "code", "expected"),
     [("says", SAYS, "SystemExit: 4"), ("loops", AGAIN, "RecursionError: .*loops_plug")],
 )
 def test_parameters_whose_code_leaves_or_never_ends(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, code: str, said: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, code: str, expected: str
 ) -> None:
     install(tmp_path, name, editable=False, data=code)
     monkeypatch.syspath_prepend(str(tmp_path))
-    with pytest.raises(PluginError, match=f"planner '{name}.wait'.*{said}"):
+    with pytest.raises(PluginError, match=f"planner '{name}.wait'.*{expected}"):
         resolve_planner(f"{name}.wait", discover(allow=[name]))

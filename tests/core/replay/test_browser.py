@@ -205,8 +205,8 @@ def test_the_address_keeps_the_view(browser: Browser, one: Path) -> None:
 def test_plots_show_any_signal(browser: Browser, one: Path) -> None:
     fragment = "#paused&t=5&plot=clearance,signal%2Fmy%2Fsignal,signal%2Fplanner%20step%20time"
     with Visit(browser, one, fragment) as page:
-        told = [e.inner_text() for e in page.query_selector_all(".plot figcaption")]
-        assert [re.sub(r"\s+", " ", text).strip() for text in told] == [
+        entries = [e.inner_text() for e in page.query_selector_all(".plot figcaption")]
+        assert [re.sub(r"\s+", " ", text).strip() for text in entries] == [
             "distance to the nearest person, m 0.2433 m",
             f"my/signal {np.sin(5.0):.4g}".replace("-", "−"),
             "planner step time 0.001",

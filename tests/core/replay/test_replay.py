@@ -325,9 +325,9 @@ def test_contacts_name_people_by_place(page: Page) -> None:
 
 
 def test_runs_of_one_scenario_explain_its_name_once(tmp_path: Path) -> None:
-    said = "In this scenario's name, d0125: 0.125 people per m² where they start{}; slow: slow."
+    expected = "In this scenario's name, d0125: 0.125 people per m² where they start{}; slow: slow."
     densities = [", 0.1 in this run", ", 0.099 in this run"]
-    shown = [replace(passing(), words=said.format(text)) for text in densities]
+    shown = [replace(passing(), words=expected.format(text)) for text in densities]
     write_replay(tmp_path / "both.html", *shown)
     write_replay(tmp_path / "one.html", shown[1])
     texts = [(tmp_path / f"{name}.html").read_text("utf-8") for name in ("both", "one")]

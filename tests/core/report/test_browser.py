@@ -193,9 +193,11 @@ def test_what_has_no_value_is_counted_and_drawn(browser: Browser, path: Path) ->
     ]  # fmt: skip
     with Visit(browser, path, "#score=relative_time_to_goal.corrected") as page:
         text = page.inner_text('tr[data-score="relative_time_to_goal.corrected"]')
-        told = sum(int(n) for n in re.findall(r"(\d+) censored", text))
-        assert told == len(page.query_selector_all("#distribution .bound")) <= len(censored)
-        assert told == len(censored) - sum(
+        censored_count = sum(int(n) for n in re.findall(r"(\d+) censored", text))
+        assert (
+            censored_count == len(page.query_selector_all("#distribution .bound")) <= len(censored)
+        )
+        assert censored_count == len(censored) - sum(
             r.status == "planner_failed" and any(s.run_id == r.run_id for s in censored)
             for r in report.results.runs
         )
@@ -415,9 +417,9 @@ def test_pictures_are_saved_as_svg_png_and_csv(browser: Browser, path: Path) -> 
             for s in full().results.scores if (s.metric, s.variant) == ("risk", "corrected")
             for r in full().results.runs if r.run_id == s.run_id
         }  # fmt: skip
-        told = [r for r in rows if r["value"]]
-        assert len(told) > 450
-        for row in told:
+        entries = [r for r in rows if r["value"]]
+        assert len(entries) > 450
+        for row in entries:
             seen = value[row["scenario"], row["planner"]]
             assert float(row["value"]) == pytest.approx(seen, rel=1e-4)
         picture = saved["#distribution-save", "SVG"].decode()
@@ -451,10 +453,10 @@ def test_where_planners_differ_most_says_how_to_see_both(browser: Browser, path:
             command,
         )
         href = page.eval_on_selector("#differences-table tbody .pair a", "a => a.href")
-        first, _, said = href.partition("#")
-        beside = parse_qs(said)["with"][0]
+        first, _, query = href.partition("#")
+        beside = parse_qs(query)["with"][0]
         assert urljoin(first, beside) == first.replace("/dwa/", "/orca_lookahead/")
-        assert urljoin(first, parse_qs(said)["report"][0]) == path.as_uri()
+        assert urljoin(first, parse_qs(query)["report"][0]) == path.as_uri()
         numbers = page.eval_on_selector_all(
             "#differences-table tbody tr", "rows => rows.map(r => r.cells[4].innerText)"
         )

@@ -136,14 +136,14 @@ def test_every_page_says_the_same_of_every_metric(
 ) -> None:  # fmt: skip
     results = random_results(seed, planners, scenarios, draws, missing)
     report = contents(results)
-    told = in_report(report)
-    assert {metric for metric, _ in told} <= {m.kind for m in metrics()}
-    assert len(told) >= 0.8 * planners * len(metrics())
+    values = in_report(report)
+    assert {metric for metric, _ in values} <= {m.kind for m in metrics()}
+    assert len(values) >= 0.8 * planners * len(metrics())
     board = on_leaderboard(results, tmp_path_factory.mktemp("same"))
     terminal = in_terminal(results)
-    assert board == told
-    assert in_page_data(report) == told
-    assert {k: terminal[k] for k in told} == told
+    assert board == values
+    assert in_page_data(report) == values
+    assert {k: terminal[k] for k in values} == values
 
 
 @pytest.mark.slow
@@ -193,7 +193,7 @@ def test_the_script_says_it_with_the_same_letters(tmp_path: Path) -> None:
         browser = playwright.chromium.launch(executable_path=PROGRAM, args=["--no-sandbox"])
         with Visit(browser, path) as page:
             rule = "([low, centre, high]) => estimateText({ low, centre, high })"
-            said = page.evaluate(f"(rows) => rows.map({rule})", sizes.tolist())
+            scripted = page.evaluate(f"(rows) => rows.map({rule})", sizes.tolist())
             rows = page.evaluate(
                 "[...document.querySelectorAll('#scores-table tr[data-score]')].map((row) =>"
                 " [row.dataset.score, ...[...row.querySelectorAll('td.number')].map((c) =>"
@@ -207,14 +207,14 @@ def test_the_script_says_it_with_the_same_letters(tmp_path: Path) -> None:
                 " describe(s, selectedRuns(p)).centre))"
             )
         browser.close()
-    for (low, value, high), texts in zip(sizes.tolist(), said, strict=True):
+    for (low, value, high), texts in zip(sizes.tolist(), scripted, strict=True):
         assert tuple(texts) == estimate_text(Estimate(value=value, low=low, high=high))
-    told = in_report(report)
+    values = in_report(report)
     variants = dict(headlines(report))
     seen = {name.partition(".")[0]: cells for name, *cells in rows}
     for p, planner in enumerate(report.planners):
         for metric, cells in seen.items():
-            assert cells[p].strip() == told[metric, planner], (metric, variants[metric])
+            assert cells[p].strip() == values[metric, planner], (metric, variants[metric])
     scaled = replace(results, scales=report.results.scales)
     groups = by_group(scaled, "*", ["half", "part", "planner"])
     low = [s for s in groups if (s.group["half"], s.group["part"]) == ("low", "first")]

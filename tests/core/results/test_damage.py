@@ -132,9 +132,9 @@ def test_reading_writes_nothing(
     assert cli.main(["report", str(root), "--out", str(out)]) == 0
     assert "damaged: 1 run left out: tiny/" in out.read_text(encoding="utf-8")
     assert cli.main(["results", "--out", str(root)]) == 0
-    said = capsys.readouterr()
-    assert "5 runs, 0 failures, 1 damaged" in said.out
-    assert said.err.count("is left out: run.json is missing") == 2
+    captured = capsys.readouterr()
+    assert "5 runs, 0 failures, 1 damaged" in captured.out
+    assert captured.err.count("is left out: run.json is missing") == 2
     assert cli.main(["results", "export", "--out", str(root), "--csv", str(out)]) == 0
     assert state(root) == before
 

@@ -173,9 +173,9 @@ def test_results_show_them_in_one_word(
     root: Path, file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["results", "--runs", str(root), "--reference", str(file)]) == 0
-    told = capsys.readouterr().out
-    assert "goal_seek: number" in told
-    assert "(reference)" in told
+    output = capsys.readouterr().out
+    assert "goal_seek: number" in output
+    assert "(reference)" in output
 
 
 def test_other_platforms_and_changed_runs_are_told_apart(file: Path) -> None:

@@ -95,8 +95,10 @@ def test_an_arm_to_the_side_is_told_since_a_light_wheel_slips() -> None:
 
     aside = described()
     assert aside.centre_of_mass("base_link") == pytest.approx([0.0, -4.0 / 16.0, 0.2625])
-    told = "250 mm to the right of the middle between its wheels: 'left_wheel' bears little weight"
-    assert told in notes(aside)
+    expected = (
+        "250 mm to the right of the middle between its wheels: 'left_wheel' bears little weight"
+    )
+    assert expected in notes(aside)
     assert "bears little weight" not in notes(described(shoulder=QUARTER))
 
 

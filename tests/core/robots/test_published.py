@@ -53,7 +53,7 @@ def test_a_humanoid_on_three_omni_wheels() -> None:
     assert not any(joint.free for joint in described.joints.values())
     assert all(joint.kind == "fixed" for joint in described.joints.values())
     notes = "\n".join(model.notes)
-    for said in (
+    for expected in (
         "16 joints are held at zero: base_link_fixedjoint, HeadYaw, HeadPitch, HipRoll and 12 more",
         "24 joints that mimic others are held at zero: LFinger11, LFinger12, LFinger13, LFinger21",
         "3 wheels do not turn, they slide: WheelFL, WheelFR, WheelB",
@@ -63,7 +63,7 @@ def test_a_humanoid_on_three_omni_wheels() -> None:
         "2 <gazebo> elements left out",
         "43 meshes for looks left out",
     ):
-        assert said in notes
+        assert expected in notes
 
 
 def qolo_model() -> RobotModel:
@@ -144,8 +144,8 @@ def test_links_of_another_tree_are_left_out() -> None:
 def test_zero_inertia_is_replaced() -> None:
     text = qolo().replace('ixx="0.015" iyy="0.015" izz="0.015"', 'ixx="0" iyy="0" izz="0"')
     described = read_published(text, wheels=DRIVEN, shell="", base="tf_qolo")
-    said = "inertia is zero or of no body and replaced by that of a disc: bumper"
-    assert said in described.notes
+    expected = "inertia is zero or of no body and replaced by that of a disc: bumper"
+    assert expected in described.notes
 
 
 @pytest.mark.parametrize(

@@ -228,8 +228,8 @@ def test_wheels_that_would_drive_back_or_not_at_all(axis: str) -> None:
         text = text.replace("continuous", "fixed")
     found = _published(text)
     model = check_model(_model(found, found.text))
-    said = "reversed, so that it drives ahead" if "-1" in axis else "fixed is made to turn"
-    assert sum(said in note for note in model.notes) == 2
+    expected = "reversed, so that it drives ahead" if "-1" in axis else "fixed is made to turn"
+    assert sum(expected in note for note in model.notes) == 2
     assert drive(model, WHEELS, Command(0.3, 0.0), 1.0)[-1].x > 0.1
 
 
@@ -314,7 +314,7 @@ def test_descriptions_without_a_mass_or_a_name() -> None:
 def test_an_axle_beside_the_base(x: float) -> None:
     found = _published(_base(x, TWO))
     note = f"'base_link' is moved {1e3 * abs(x):.3g} mm {'ahead' if x > 0 else 'back'}"
-    assert any(note in said for said in found.notes)
+    assert any(note in text for text in found.notes)
     model = check_model(_model(found, found.text))
     described = read_description(model.description)
     assert described.pose("left_wheel", "base_link")[0, 3] == pytest.approx(0.0, abs=1e-9)
@@ -367,14 +367,14 @@ def test_four_driven_wheels_of_a_description() -> None:
 
 
 def test_damping_that_holds_a_robot_is_told() -> None:
-    told = []
+    entries = []
     for damping in (0.001, 50.0):
         found = _published(_base(0.0, TWO, damping=damping))
-        told.append("".join(check_model(_model(found, found.text)).notes))
+        entries.append("".join(check_model(_model(found, found.text)).notes))
         reached = drive(_model(found, found.text), WHEELS, Command(0.6, 0.0), 3.0)[-1].vx
         if damping > 1.0:
-            assert f"holds the robot at {reached:.2g}" in told[-1]
-    assert "damping" not in told[0]
+            assert f"holds the robot at {reached:.2g}" in entries[-1]
+    assert "damping" not in entries[0]
 
 
 @pytest.mark.parametrize(
@@ -424,15 +424,15 @@ def test_poses_of_sdf_in_any_format(version: str, pose: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("pose", "told"),
+    ("pose", "expected"),
     [
         ('<pose rotation_format="axis_angle">0 0 0 0 0 0</pose>', "known: euler_rpy, quat_xyzw"),
         ('<pose rotation_format="quat_xyzw">0 0 0 0 0 0</pose>', "has 6 numbers, not 7"),
         ('<pose rotation_format="quat_xyzw">0 0 0 0 0 0 0</pose>', "quaternion of length 0"),
     ],
 )
-def test_poses_of_sdf_that_are_none_are_refused(pose: str, told: str) -> None:
-    with pytest.raises(PluginError, match=told):
+def test_poses_of_sdf_that_are_none_are_refused(pose: str, expected: str) -> None:
+    with pytest.raises(PluginError, match=expected):
         read_description(_cart(wheel=pose + _inertial(0.5, 0.001), joint=""))
 
 
@@ -549,10 +549,10 @@ def test_shapes_below_the_floor_are_told(shape: str, depth: int | None) -> None:
     assert whole in LINKS
     text = LINKS.replace(whole, shape)
     notes = check_model(_model(read_description(text), text)).notes
-    told = [note for note in notes if "below the floor" in note]
-    assert len(told) == (depth is not None)
+    entries = [note for note in notes if "below the floor" in note]
+    assert len(entries) == (depth is not None)
     if depth is not None:
-        assert f"of 'base_link' reaches {depth} mm below the floor" in told[0]
+        assert f"of 'base_link' reaches {depth} mm below the floor" in entries[0]
 
 
 def test_wheels_that_are_not_beside_the_base_alike_are_told() -> None:

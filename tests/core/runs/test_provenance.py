@@ -96,10 +96,10 @@ def test_a_plugin_is_the_same_however_its_path_is_written(
         "    return {}\n"
     )
     monkeypatch.chdir(tmp_path / "here")
-    told = [
+    entries = [
         provenance.plugins(discover(extra=[path], entry_points=False))
         for path in (Path("../loose.py"), tmp_path / "loose.py")
     ]
-    assert told[0] == told[1]
-    (mine,) = [p for p in told[0] if p["name"] == "loose"]
+    assert entries[0] == entries[1]
+    (mine,) = [p for p in entries[0] if p["name"] == "loose"]
     assert mine["distribution"] == "loose.py"

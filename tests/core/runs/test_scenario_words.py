@@ -45,7 +45,7 @@ def test_words_are_plain(name: str) -> None:
     found = open_spec(suite, REGISTRY)
     (scenario,) = (s for s in found.scenarios if s.id == wanted)
     entry = found.entry(scenario)
-    words = {axis: list(told) for axis, told in entry.words.items()}
+    words = {axis: list(texts) for axis, texts in entry.words.items()}
     record = made_up_record(axes=dict(entry.axes), axis_words=words, density=None)
     assert scenario_words(record, scenario) == f"In this scenario's name, {TOLD[name]}."
     seen = record.model_copy(update={"density": 0.2031})

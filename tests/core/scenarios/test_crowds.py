@@ -45,11 +45,11 @@ def test_wrong_names_fields_and_files_are_told(tmp_path: Path) -> None:
         open_crowd(str(tmp_path / "nothing.yaml"), REGISTRY)
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text("crowd:\n  policy: {kind: velocity_spice}\n")
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as caught:
         open_crowd(str(wrong), REGISTRY)
-    assert told.value.diagnostics[0].mark is not None
-    assert told.value.diagnostics[0].mark.line == 1  # counted from 0
-    assert told.value.diagnostics[0].mark.source.name == str(wrong)
+    assert caught.value.diagnostics[0].mark is not None
+    assert caught.value.diagnostics[0].mark.line == 1  # counted from 0
+    assert caught.value.diagnostics[0].mark.source.name == str(wrong)
 
 
 def test_scenarios_with_other_crowds() -> None:

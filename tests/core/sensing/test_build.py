@@ -54,7 +54,7 @@ def test_sound_images_go_through() -> None:
 
 
 @pytest.mark.parametrize(
-    ("answer", "said"),
+    ("answer", "expected"),
     [
         (np.zeros((3, 2), np.uint16), r"returned uint16 \(3, 2\), not uint16 \(2, 3\)"),
         (np.zeros((2, 3)), r"returned float64 \(2, 3\)"),
@@ -65,8 +65,8 @@ def test_sound_images_go_through() -> None:
         ),
     ],
 )
-def test_others_are_an_error(answer: Any, said: str) -> None:
-    with pytest.raises(PluginError, match=said):
+def test_others_are_an_error(answer: Any, expected: str) -> None:
+    with pytest.raises(PluginError, match=expected):
         checked(answer).depth_mm(*GIVEN)
 
 
@@ -107,7 +107,7 @@ def test_sound_readings_go_through(values: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("memory", "values", "said"),
+    ("memory", "values", "expected"),
     [
         (0.0, [np.inf, np.nan], r": read returned NaN"),
         (0.0, [1.0], r": read returned shape \(1,\); info\(\) says \(2,\)"),
@@ -119,9 +119,9 @@ def test_sound_readings_go_through(values: Any) -> None:
         ),
     ],
 )
-def test_other_readings_are_an_error(memory: float, values: Any, said: str) -> None:
+def test_other_readings_are_an_error(memory: float, values: Any, expected: str) -> None:
     sensor: Any = checked_sensor(Beam((memory, values)), CALL)
-    with pytest.raises(PluginError, match=said):
+    with pytest.raises(PluginError, match=expected):
         sensor.read(*GIVEN, np.zeros(1))
 
 

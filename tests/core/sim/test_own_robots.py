@@ -49,11 +49,11 @@ class Holonomic(Drive):
 
     def __init__(self, *command: float) -> None:
         super().__init__(lambda _: (0.0, 0.0))
-        self.said = Command(*command)
+        self.command = Command(*command)
 
     def step(self, obs: Any) -> Command:
         super().step(obs)
-        return self.said
+        return self.command
 
 
 def _puck(mode: str) -> Any:

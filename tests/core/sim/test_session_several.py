@@ -53,13 +53,13 @@ def test_what_is_asked_of_the_wrong_number_of_robots_is_refused(tmp_path: Path) 
     seen = session.reset_all()
     assert [*seen] == ["a", "b"]
     assert seen["a"].pose != seen["b"].pose
-    for commands, said in (
+    for commands, expected in (
         ({"a": (0.1, 0.0)}, "robot 'b' goes on and has no command"),
         ({"a": (0.1, 0.0), "b": (0.1, 0.0), "c": (0.1, 0.0)}, "no robot 'c'; there are a, b"),
         ({"a": (0.1, 0.0), "b": "go"}, "a command is"),
         ([(0.1, 0.0)], "commands are a dict"),
     ):
-        with pytest.raises(crowdbot.CrowdbotError, match=said):
+        with pytest.raises(crowdbot.CrowdbotError, match=expected):
             session.step_all(commands)  # type: ignore[arg-type]
     assert {obs.t for obs in session.step_all({"a": (0.1, 0.0), "b": (0.2, 0.0)}).values()} == {
         0.0625

@@ -110,11 +110,16 @@ def test_points_and_arrows_have_lines_of_their_own() -> None:
 
 def test_texts_are_markers_that_face_the_reader() -> None:
     data = text_markers(2, "why", np.array([[1.0, 3.0], [2.0, 4.0]]), ["", "waits"])
-    (said,) = [ros.from_cdr(one, "visualization_msgs/msg/Marker") for one in data]
-    assert (said.type, said.ns, said.id, said.text) == (said.TEXT_VIEW_FACING, "why", 1, "waits")
-    assert (said.pose.position.x, said.pose.position.y) == (3.0, 4.0)
-    assert said.scale.z > 0.1
-    assert said.lifetime.nanosec > 0
+    (entries,) = [ros.from_cdr(one, "visualization_msgs/msg/Marker") for one in data]
+    assert (entries.type, entries.ns, entries.id, entries.text) == (
+        entries.TEXT_VIEW_FACING,
+        "why",
+        1,
+        "waits",
+    )
+    assert (entries.pose.position.x, entries.pose.position.y) == (3.0, 4.0)
+    assert entries.scale.z > 0.1
+    assert entries.lifetime.nanosec > 0
 
 
 def test_texts_without_letters_are_outlines_around_their_place() -> None:

@@ -41,8 +41,8 @@ def test_without_bundles(folder: Path, tmp_path: Path) -> None:
     assert "Nothing was handed in yet" in page
     assert '<a href="mailto:us@example.org">' in page
     assert "31 March 2027, in UTC at the end of the day" in page
-    for told in ("Lab A and Lab B", "Hall W", "A &lt;b&gt;cup&lt;/b&gt;", "<p>Second.</p>"):
-        assert told in page
+    for expected in ("Lab A and Lab B", "Hall W", "A &lt;b&gt;cup&lt;/b&gt;", "<p>Second.</p>"):
+        assert expected in page
     assert "crowdbot seal mine.py:Mine" in page
     pictures = re.findall(r'<img src="([^"]+)"', page)
     assert pictures
@@ -74,18 +74,18 @@ def test_a_copy_of_the_suite_with_other_rules_decides_nothing(
     own = suite.read_text()
     suite.write_text(own + "round: {closes: 2099-01-01}\n")  # the forger's copy
     make_bundle(tmp_path, "dwa", "dwa.cbz", team="Sly")
-    for said, told in (
+    for rule, expected in (
         ("closes: 2020-01-01", "late: the round closed on 2020-01-01"),
         ("planners: sealed", "not ranked: this round ranks sealed planners only"),
     ):
-        suite.write_text(f"{own}round: {{{said}}}\n")
+        suite.write_text(f"{own}round: {{{rule}}}\n")
         for command in (
             ["challenge-page", str(suite), str(tmp_path), "--out", str(tmp_path / "site")],
             ["leaderboard", str(tmp_path), "--suite", str(suite), "--out",
              str(tmp_path / "site" / "leaderboard.html")],
         ):  # fmt: skip
             assert cli.main(command) == 0
-            assert told in (tmp_path / "site" / "leaderboard.html").read_text()
+            assert expected in (tmp_path / "site" / "leaderboard.html").read_text()
     arguments = ["verify", str(tmp_path / "dwa.cbz"), "--suite", str(suite), "--sample", "0"]
     suite.write_text(f"{own}round: {{closes: 2020-01-01}}\n")
     capsys.readouterr()
@@ -136,13 +136,13 @@ def test_bundles_of_another_suite_are_no_site(folder: Path, tmp_path: Path) -> N
 def test_a_bundle_after_the_round_is_told(tmp_path: Path) -> None:
     bundle = tmp_path / "a.cbz"
     bundle.touch()
-    for moment, told in (
+    for moment, note in (
         (datetime(2027, 3, 31, 20, tzinfo=UTC), ""),
         (datetime(2027, 4, 1, 8, 30, tzinfo=UTC), "the file is of 2027-04-01 08:30 UTC"),
     ):
         os.utime(bundle, (moment.timestamp(), moment.timestamp()))
-        assert late(bundle, "2027-03-31").endswith(told)
-        assert bool(late(bundle, "2027-03-31")) is bool(told)
+        assert late(bundle, "2027-03-31").endswith(note)
+        assert bool(late(bundle, "2027-03-31")) is bool(note)
 
 
 def test_the_page_of_hidden_draws_asks_for_sealed_planners(tmp_path: Path) -> None:
@@ -181,10 +181,10 @@ def test_too_few_crowds_are_told_before_the_round(
     suite = write_suite(tmp_path)
     suite.with_suffix(".lock.json").unlink()
     before, out = suite.read_text(), tmp_path / "site"
-    for draws, told in ((1, True), (3, False)):
+    for draws, warned in ((1, True), (3, False)):
         suite.write_text(f"{before}draws: {draws}\n")
         capsys.readouterr()
         assert cli.main(["challenge-page", str(suite), "--out", str(out)]) == 0
-        said = "all planners will share one rank: "
-        assert (said in capsys.readouterr().err) is told
-        assert (said[1:] in (out / "index.html").read_text()) is told
+        warning = "all planners will share one rank: "
+        assert (warning in capsys.readouterr().err) is warned
+        assert (warning[1:] in (out / "index.html").read_text()) is warned

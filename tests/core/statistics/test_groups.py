@@ -36,6 +36,8 @@ def test_the_rate_is_what_is_usually_asked_for() -> None:
 def test_a_metric_that_was_not_scored_is_told_with_what_scores_it() -> None:
     one = run("a", "s0")
     results = Results(runs=(one,), scores=(score(one, 1.0),))
-    told = "metric 'speed' was not scored in these runs; 'crowdbot evaluate RUNS --metrics speed'"
-    with pytest.raises(InputError, match=told):
+    expected = (
+        "metric 'speed' was not scored in these runs; 'crowdbot evaluate RUNS --metrics speed'"
+    )
+    with pytest.raises(InputError, match=expected):
         by_group(results, "speed", ["planner"])

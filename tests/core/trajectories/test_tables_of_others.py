@@ -186,7 +186,7 @@ def test_words_for_unknown_values(tmp_path: Path, word: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "expected"),
     [
         ("t,id,x,y\n0,1,2,3\n".encode("utf-16"), "it is UTF-16, save it as UTF-8"),
         ("# Füße\nt,id,x,y\n0,1,2,3\n".encode("latin-1"), "save it as UTF-8 if it is text"),
@@ -196,14 +196,14 @@ def test_words_for_unknown_values(tmp_path: Path, word: str) -> None:
         (b"\n<!DOCTYPE html>\n<html></html>\n", "a web page, perhaps the message of a failed"),
     ],
 )
-def test_files_that_are_no_text_of_a_table(tmp_path: Path, content: bytes, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_files_that_are_no_text_of_a_table(tmp_path: Path, content: bytes, expected: str) -> None:
+    with pytest.raises(InputError, match=expected):
         _people(tmp_path / "a.csv", content)
 
 
 # ---------------------------------------------------------------- columns that say too little
 @pytest.mark.parametrize(
-    ("head", "told"),
+    ("head", "expected"),
     [
         ("t,x1,y1,x2", "column 'x2' has none for y beside it"),
         ("t,x1,y1,ped2.y", "column 'ped2.y' has none for x beside it"),
@@ -211,11 +211,11 @@ def test_files_that_are_no_text_of_a_table(tmp_path: Path, content: bytes, told:
         ("t,id,x,y,x", "two columns are called 'x'"),
     ],
 )
-def test_columns_that_are_half_or_twice_there(tmp_path: Path, head: str, told: str) -> None:
+def test_columns_that_are_half_or_twice_there(tmp_path: Path, head: str, expected: str) -> None:
     rows = "\n".join(",".join([f"{k}", *"1234"[: head.count(",")]]) for k in range(3))
     file = tmp_path / "people.csv"
     file.write_text(f"{head}\n{rows}\n", encoding="utf-8")
-    with pytest.raises(InputError, match=f"people.csv:1: {told}"):
+    with pytest.raises(InputError, match=f"people.csv:1: {expected}"):
         crowdbot.Trajectories.from_csv(agents=file)
 
 

@@ -45,10 +45,10 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("told", "message"), WRONG, ids=[m for _, m in WRONG])
-def test_what_tables_are_told(told: dict[str, Any], message: str) -> None:
+@pytest.mark.parametrize(("arguments", "message"), WRONG, ids=[m for _, m in WRONG])
+def test_what_tables_are_told(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=re.escape(message)):
-        Trajectories.from_pandas(ROWS, **{"robot_radius": 0.2, "robot_mass": 6.0, **told})
+        Trajectories.from_pandas(ROWS, **{"robot_radius": 0.2, "robot_mass": 6.0, **arguments})
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

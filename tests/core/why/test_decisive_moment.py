@@ -109,9 +109,9 @@ def test_why_time_was_up_is_told_after_a_contact() -> None:
 @pytest.mark.parametrize("cause", Cause)
 def test_words_and_pictures_of_each(cause: Cause) -> None:
     run, found = CASES[cause][0], moment(cause)
-    said = what_happened(run, found)
-    assert said[0].startswith(f"{found.t:.1f} s: ")
-    assert any(s.startswith("person 0") for s in said) == (found.agent is not None)
+    values = what_happened(run, found)
+    assert values[0].startswith(f"{found.t:.1f} s: ")
+    assert any(s.startswith("person 0") for s in values) == (found.agent is not None)
     pictures = strip(run, found)
     assert len(pictures) == sum(found.t - b >= 0.0 for b in BEFORE)
     assert all(p.shapes for p in pictures)

@@ -46,7 +46,7 @@ def opened(folder: Path, document: str, urdf: str = URDF) -> None:
 
 
 @pytest.mark.parametrize(
-    ("written", "wrong", "told"),
+    ("written", "wrong", "expected"),
     [
         ("link: laser", "link: lasers", "no link 'lasers'"),
         ("left: left_wheel", "left: left_weel", "no joint 'left_weel'"),
@@ -55,15 +55,15 @@ def opened(folder: Path, document: str, urdf: str = URDF) -> None:
         ("disc:", "base: base\n        disc:", "no link 'base'"),
     ],
 )
-def test_a_name_that_is_not_there(tmp_path: Path, written: str, wrong: str, told: str) -> None:
+def test_a_name_that_is_not_there(tmp_path: Path, written: str, wrong: str, expected: str) -> None:
     opened(tmp_path, DOCUMENT)
     document = DOCUMENT.replace(written, wrong)
     with pytest.raises(SpecError) as info:
         opened(tmp_path, document)
     (problem,) = info.value.diagnostics
     assert problem.code == "E130"
-    assert told in problem.message
-    assert told.split("'")[1] in document.splitlines()[problem.mark.line]
+    assert expected in problem.message
+    assert expected.split("'")[1] in document.splitlines()[problem.mark.line]
 
 
 def test_a_byte_order_mark_hides_nothing(tmp_path: Path) -> None:

@@ -239,7 +239,7 @@ scenario:
 
 
 @pytest.mark.parametrize(
-    ("start", "agent", "told"),
+    ("start", "agent", "expected"),
     [
         ("1 m, 8", ("1", "1", "1, 4"), ""),
         ("8 m, 8", ("1", "1", "1, 4"),
@@ -251,7 +251,7 @@ scenario:
     ],
 )  # fmt: skip
 def test_a_place_in_the_corner_that_a_floor_leaves_out_is_outside(
-    start: str, agent: tuple[str, str, str], told: str, tmp_path: Path
+    start: str, agent: tuple[str, str, str], expected: str, tmp_path: Path
 ) -> None:
     found = _errors(tmp_path, CORNER % (start, *agent))
-    assert [(d.code, d.message) for d in found] == ([("E132", told)] if told else [])
+    assert [(d.code, d.message) for d in found] == ([("E132", expected)] if expected else [])

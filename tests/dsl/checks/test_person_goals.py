@@ -142,8 +142,8 @@ def test_a_person_to_whom_no_way_leads(kind: str, tmp_path: Path) -> None:
     wall = "walls: {w: {start: [2 m, 0 m], end: [2 m, 10 m]}}\n    zones: {floor"
     walled = text.replace("zones: {floor", wall)
     found = _errors(tmp_path, walled)
-    told = "no way leads robot 'robot' from (1, 5) to agent 3"
-    (error,) = [d for d in found if d.message == told]
+    expected = "no way leads robot 'robot' from (1, 5) to agent 3"
+    (error,) = [d for d in found if d.message == expected]
     assert error.code == "E143"
     line = walled.splitlines()[error.mark.line]
     assert line[error.mark.column :].startswith("{agent")

@@ -65,6 +65,6 @@ def test_it_is_read_and_changes_no_hash(tmp_path: Path) -> None:
 def test_a_wrong_one_is_told_with_its_place(tmp_path: Path, line: str, says: str) -> None:
     with pytest.raises(SpecError) as caught:
         opened(tmp_path, line + "\n")
-    told = str(caught.value)
-    assert "suite.yaml:5:" in told
-    assert says in told
+    text = str(caught.value)
+    assert "suite.yaml:5:" in text
+    assert says in text

@@ -179,7 +179,7 @@ def _surfaces(drawn: Drawn) -> None:
     drawn.model.add_3dface([(5, 5), (7, 5), (7, 7), (5, 7)])
 
 
-@pytest.mark.parametrize(("add", "said"), [
+@pytest.mark.parametrize(("add", "expected"), [
     (_missing_block, ["1 inserted block 'NOTHERE', which is not in the file"]),
     (_other_drawing, ["1 other drawing 'OTHER', which it refers to"]),
     (_frozen, ["1 block 'DESK' on layer 'X', which is frozen"]),
@@ -193,14 +193,14 @@ def _surfaces(drawn: Drawn) -> None:
     (lambda d: d.model.add_mtext("Hall"), ["1 MTEXT entities"]),
 ])  # fmt: skip
 def test_what_is_left_out_is_named(
-    tmp_path: Path, caplog: Log, add: Callable[[Drawn], None], said: list[str]
+    tmp_path: Path, caplog: Log, add: Callable[[Drawn], None], expected: list[str]
 ) -> None:
     drawn = Drawn()
     add(drawn)
     parts = plan(drawn.saved(tmp_path))
     assert len(parts.walls) == 4
     assert not len(parts.solids)
-    for text in said:
+    for text in expected:
         assert text in caplog.text
 
 

@@ -40,11 +40,11 @@ def _size(parts: EnvironmentParts) -> list[float]:
 
 @pytest.mark.parametrize("crs", ["", CRS84, "EPSG:4326", "urn:ogc:def:crs:EPSG::25832"])
 def test_degrees_read_as_metres_are_told_what_to_write(tmp_path: Path, crs: str) -> None:
-    with pytest.raises(InputError, match=r"40\.3 m × 30\.1 m as longitude and latitude") as told:
+    with pytest.raises(InputError, match=r"40\.3 m × 30\.1 m as longitude and latitude") as caught:
         _plan(tmp_path, HERE, crs)
-    assert "(7.60115, 51.96304)" in str(told.value)
-    assert (f"names {crs}" in str(told.value)) == (crs in (CRS84, "EPSG:4326"))
-    lon, lat = map(float, re.findall(r"origin: \[([\d.]+), ([\d.]+)\]", str(told.value))[0])
+    assert "(7.60115, 51.96304)" in str(caught.value)
+    assert (f"names {crs}" in str(caught.value)) == (crs in (CRS84, "EPSG:4326"))
+    lon, lat = map(float, re.findall(r"origin: \[([\d.]+), ([\d.]+)\]", str(caught.value))[0])
     parts = _plan(tmp_path, HERE, crs, unit="deg", origin=[lon, lat])
     assert _size(parts) == pytest.approx([40.3, 30.1], abs=0.2)
     assert np.abs(parts.walls).max() < 21.0
@@ -76,9 +76,9 @@ def test_metres_in_a_file_of_degrees_are_warned_of_until_the_unit_is_written(
 
 
 def test_a_national_grid_needs_an_origin(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="5771 km from the world's") as told:
+    with pytest.raises(InputError, match="5771 km from the world's") as caught:
         _plan(tmp_path, GRID, "EPSG:25832")
-    x, y = re.findall(r"origin: \[(\S+ m), (\S+ m)\]", str(told.value))[0]
+    x, y = re.findall(r"origin: \[(\S+ m), (\S+ m)\]", str(caught.value))[0]
     parts = _plan(tmp_path, GRID, "EPSG:25832", origin=[x, y])
     assert np.abs(parts.walls).max() == pytest.approx(20.0, abs=1e-6)
 
@@ -96,9 +96,9 @@ def test_the_origin_that_is_told_brings_a_plan_to_the_middle(
     points = [((x + far[0]) / scale, (y + far[1]) / scale) for x, y in ROOM]
     wkt = f"POLYGON (({', '.join(f'{x!r} {y!r}' for x, y in points)}))"
     words = {"wkt": wkt, "unit": unit, "rotation": rotation}
-    with pytest.raises(InputError, match="km from the world's") as told:
+    with pytest.raises(InputError, match="km from the world's") as caught:
         build(FloorPlanSpec.model_validate({**words, "origin": origin}))
-    said = re.findall(r"origin: \[(\S+ m), (\S+ m)\]", str(told.value))[0]
-    parts = build(FloorPlanSpec.model_validate({**words, "origin": said}))
+    values = re.findall(r"origin: \[(\S+ m), (\S+ m)\]", str(caught.value))[0]
+    parts = build(FloorPlanSpec.model_validate({**words, "origin": values}))
     low, high = (f(parts.walls.reshape(-1, 2), axis=0) for f in (np.min, np.max))
     assert np.abs(low + high).max() < 0.1

@@ -150,10 +150,10 @@ def test_a_bounce_of_30_ms_between_two_samples_counts() -> None:
     """No sample is in contact; the table has it."""
     aside = line(T, (3, 0.6), (0, 0))
     bounce = table((3.02, 3.05, 0, 0.4))
-    samples, told = arriving(10.0, aside), arriving(10.0, aside, contacts=bounce)
+    samples, values = arriving(10.0, aside), arriving(10.0, aside, contacts=bounce)
     assert efficiency(samples) == 1.0
-    assert efficiency(told) == 0.0
-    assert scores_of("safe_efficiency", told)["corrected"].extras["contacts_at_fault"] == 1
+    assert efficiency(values) == 0.0
+    assert scores_of("safe_efficiency", values)["corrected"].extras["contacts_at_fault"] == 1
 
 
 def test_a_contact_that_is_somebody_elses_fault_costs_nothing() -> None:

@@ -18,7 +18,7 @@ TOLD = PeopleMpcSpec(tracks="truth", localisation="truth")
 
 def least_headway(spec: PeopleMpcSpec) -> float:
     """The shortest time, s, in which it would have reached the one ahead, had they stopped."""
-    world = World([[5.0, 0.0, SLOW, 0.0]], walls=ALLEY, told=True)
+    world = World([[5.0, 0.0, SLOW, 0.0]], walls=ALLEY, truth=True)
     out = world.run(build(spec), time_limit=WITHIN)
     assert not out.contacts
     times = np.linspace(0.0, out.t, len(out.path))
@@ -41,7 +41,7 @@ def test_it_leaves_time_to_a_slow_one_ahead() -> None:
 
 @pytest.mark.slow
 def test_it_arrives_all_the_same() -> None:
-    out = World([[20.0, 0.1, -1.2, 0.0]], told=True).run(build(TOLD), stop_at=20.0)
+    out = World([[20.0, 0.1, -1.2, 0.0]], truth=True).run(build(TOLD), stop_at=20.0)
     assert out.arrived
     assert not out.contacts
     assert out.t < 1.3 * math.dist((2.5, 0.0), (20.0, 0.0)) / 0.65

@@ -94,10 +94,10 @@ class World:
         walls: Array = CORRIDOR,
         seed: int = 0,
         *,
-        told: bool = False,
+        truth: bool = False,
     ) -> None:
-        """Make the world; a planner is ``told`` the truth if it is to see people as they are."""
-        self.told = told
+        """Make the world; a planner is given the ``truth`` if it is to see people as they are."""
+        self.sees_truth = truth
         self.people = np.array(people, dtype=np.float64).reshape(-1, 4)
         self.present = np.ones(len(self.people), dtype=np.bool_)
         self.scene = Scene(walls, [0.0, 2.5], np.full(len(self.people), PERSON), 1.7)
@@ -140,7 +140,7 @@ class World:
             goal_zone=GOAL_ZONE,
             readings=readings,
             log=lambda name, value: self.outcome.logged.setdefault(name, []).append(value),
-            truth=self._truth() if self.told else None,
+            truth=self._truth() if self.sees_truth else None,
         )
 
     def _truth(self) -> Truth:

@@ -137,8 +137,8 @@ def test_plain_properties_of_xacro_are_written_out(tmp_path: Path) -> None:
     fields = {"drive": {**DRIVES["trolley"], "effort": 4}, "disc": {"radius": 0.25, "height": 0.9}}
     model = _model(tmp_path, text, **fields)
     plain = _model(tmp_path, TROLLEY, **fields)
-    said = "3 of xacro's properties written out: prefix, before, mast_mass"
-    assert model.notes == (said, *plain.notes)
+    expected = "3 of xacro's properties written out: prefix, before, mast_mass"
+    assert model.notes == (expected, *plain.notes)
     assert model.mass == plain.mass
     assert (
         read_description(model.description).links.keys() == read_description(TROLLEY).links.keys()
@@ -171,11 +171,11 @@ def test_wrong_documents(tmp_path: Path) -> None:
         _scenario(tmp_path, TROLLEY, drive=drive)
     disc = {"radius": 0.25, "height": 0.9}
     wrong = {**drive, "left": "left_weel_joint"}
-    told = "no joint 'left_weel_joint'; did you mean 'left_wheel"
-    with pytest.raises(SpecError, match=told):
+    expected = "no joint 'left_weel_joint'; did you mean 'left_wheel"
+    with pytest.raises(SpecError, match=expected):
         _scenario(tmp_path, TROLLEY, drive=wrong, disc=disc)
     scenario = _scenario(tmp_path, TROLLEY + "<!-- xacro: -->", drive=wrong, disc=disc)
-    with pytest.raises(PluginError, match=told):
+    with pytest.raises(PluginError, match=expected):
         build_model(REGISTRY, scenario.robots["robot"].model)
     (tmp_path / "robot.urdf").unlink()
     with pytest.raises(SpecError, match=r"robot\.urdf"):

@@ -78,7 +78,7 @@ def bundle(
 
     Example: crowdbot bundle runs --suite challenge-2020 --planner dwa --out team.cbz --check
     """
-    from crowdbot.cli.commands.challenge.verify import Asked, print_verdict, verify_bundle
+    from crowdbot.cli.commands.challenge.verify import VerifyOptions, print_verdict, verify_bundle
     from crowdbot.core.bundle.pack import Submission, other_seeds, pack
     from crowdbot.core.planning.choice import ANYWHERE
     from crowdbot.core.registry.plugin import BUILTIN
@@ -105,8 +105,8 @@ def bundle(
     if check:
         # The team trusts its own plugins.
         own = tuple(p.name for p in registry.plugins if p.name != BUILTIN)
-        asked = Asked(size=sample, seed=seed, trusted=own)
-        verdict = verify_bundle(target, registry, suite, (source, ANYWHERE), asked)
+        options = VerifyOptions(size=sample, seed=seed, trusted=own)
+        verdict = verify_bundle(target, registry, suite, (source, ANYWHERE), options)
     if as_json:
         document = {"bundle": str(target), **manifest.model_dump(mode="json")}
         say(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))
@@ -126,10 +126,10 @@ def _usage(root: Path, suite: str | None, registry: Registry) -> UsageError:
             f"crowdbot verify {root}"
         )
     if suite is None:
-        asked = "which runs? Give --suite SPEC and --planner LABEL"
+        question = "which runs? Give --suite SPEC and --planner LABEL"
     else:
-        asked = "which planner? Give --planner LABEL"
-    return UsageError(f"{asked}; {_offer(root, registry)}")
+        question = "which planner? Give --planner LABEL"
+    return UsageError(f"{question}; {_offer(root, registry)}")
 
 
 def _print_manifest(manifest: Manifest, target: Path) -> None:

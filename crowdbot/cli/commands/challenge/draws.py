@@ -143,12 +143,12 @@ def check(
         row = {"suite": found.id, "commitment": found.commitment or None, "draws": state}
         say(json.dumps(row, indent=2))
         return
-    said = {
+    texts = {
         "open": "its draws are open; nothing was committed to",
         "hidden": f"its draws are hidden, committed to by {found.commitment}",
         "revealed": f"its draws are revealed, and are those of {found.commitment}",
     }
-    say(f"{found.id}: {said[state]}")
+    say(f"{found.id}: {texts[state]}")
 
 
 def _what(change: Change, print_only: bool) -> dict[str, object]:

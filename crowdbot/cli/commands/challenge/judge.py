@@ -84,9 +84,9 @@ def judge(
     else:
         for name, path in found.judged.items():
             say(f"{name}: {path}")
-        what = "the draws are hidden: nothing was run" if found.waits else (
+        outcome = "the draws are hidden: nothing was run" if found.waits else (
             f"{plural(len(found.judged), 'planner')} judged"
         )  # fmt: skip
-        say(f"{plural(len(found.received), 'new submission')} received; {what}")
+        say(f"{plural(len(found.received), 'new submission')} received; {outcome}")
     if found.left_out:
         raise typer.Exit(1)

@@ -22,7 +22,7 @@ from crowdbot.cli.shared.options import (
     planner_place,
 )
 from crowdbot.cli.shared.run_arguments import AsJson
-from crowdbot.cli.shared.verify_references import said_of, verify_references
+from crowdbot.cli.shared.verify_references import outcome_lines, verify_references
 
 if TYPE_CHECKING:
     from crowdbot.core.bundle.archive import Archive
@@ -114,13 +114,13 @@ def verify(
     registry = installed(plugin, no_plugins)
     size = None if everything else sample
     if (document := verify_references(str(bundle), registry, size, seed)) is not None:
-        say(json.dumps(document, indent=2) if as_json else "\n".join(said_of(document)))
+        say(json.dumps(document, indent=2) if as_json else "\n".join(outcome_lines(document)))
         raise typer.Exit(0 if document["ok"] else 1)
-    asked = Asked(
+    options = VerifyOptions(
         size=None if everything else sample, seed=seed, trusted=tuple(trust or ()),
         fresh=fresh_draws,
     )  # fmt: skip
-    document = verify_bundle(bundle, registry, suite, (source or planner, place), asked)
+    document = verify_bundle(bundle, registry, suite, (source or planner, place), options)
     if save:
         save_verification(bundle, document)
     if as_json:
@@ -133,7 +133,7 @@ def verify(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
+class VerifyOptions:
     """The extent of a verification.
 
     Attributes:
@@ -154,7 +154,7 @@ def verify_bundle(
     registry: Registry,
     suite: str | None,
     planner: tuple[str | None, PlannerPlace],
-    asked: Asked,
+    options: VerifyOptions,
 ) -> dict[str, Any]:
     """Return the verdict on a bundle as a document, also used by `crowdbot bundle --check`.
 
@@ -163,7 +163,7 @@ def verify_bundle(
         registry: the installed components.
         suite: value of the option ``--suite``.
         planner: value of the option ``--source``, and where it runs.
-        asked: the extent of the verification.
+        options: the extent of the verification.
     """
     from crowdbot.core.bundle.archive import open_archive
     from crowdbot.core.bundle.check_edition import late
@@ -171,17 +171,17 @@ def verify_bundle(
     from crowdbot.core.bundle.verification import content_hash
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
-    seed = secrets.randbelow(2**32) if asked.seed is None else asked.seed
-    asked = replace(asked, seed=seed)
+    seed = secrets.randbelow(2**32) if options.seed is None else options.seed
+    options = replace(options, seed=seed)
     with open_archive(bundle) as archive, stdout_to_stderr():
         digest = content_hash(bundle)
         expansion = _suite(archive, registry, suite)
-        verdict = _verify(archive, registry, (suite, expansion), planner, asked, digest)
+        verdict = _verify(archive, registry, (suite, expansion), planner, options, digest)
         manifest = archive.manifest
     names = {"planner": manifest.label, "edition": manifest.edition_name}
     odds = odds_of_finding(len(manifest.runs), len(verdict.relations))
     return names | _document(verdict, seed, digest) | {
-        "odds": {str(k): round(p, 4) for k, p in odds.items()}, "trusted": list(asked.trusted),
+        "odds": {str(k): round(p, 4) for k, p in odds.items()}, "trusted": list(options.trusted),
         "late": late(bundle, (expansion.round and expansion.round.closes) or ""),
     }  # fmt: skip
 
@@ -191,7 +191,7 @@ def _verify(
     registry: Registry,
     suite: tuple[str | None, Expansion],
     planner: tuple[str | None, PlannerPlace],
-    asked: Asked,
+    options: VerifyOptions,
     digest: str,
 ) -> RerunVerdict:
     from crowdbot.core.bundle.check import problems_of
@@ -201,10 +201,10 @@ def _verify(
     runs, problems = problems_of(archive, expansion, registry)
     if problems:
         return RerunVerdict(outcome="invalid", findings=tuple(problems))
-    if asked.size == 0 and not asked.fresh:
+    if options.size == 0 and not options.fresh:
         return RerunVerdict(outcome="not re-run")
-    verdict = _make_reruns(archive, expansion, registry, planner, given, runs, asked, digest)
-    return _trusting(archive, registry, verdict, asked.trusted)
+    verdict = _make_reruns(archive, expansion, registry, planner, given, runs, options, digest)
+    return _trusting(archive, registry, verdict, options.trusted)
 
 
 def _trusting(
@@ -250,7 +250,7 @@ def _make_reruns(
     planner: tuple[str | None, PlannerPlace],
     suite: str | None,
     runs: Sequence[ClaimedRun],
-    asked: Asked,
+    options: VerifyOptions,
     digest: str,
 ) -> RerunVerdict:
     from crowdbot.cli.shared.one_run import end_hung_process, import_simulate, interruptible
@@ -285,13 +285,13 @@ def _make_reruns(
             expansion=expansion, registry=registry, choice=choice, progress=progress, stop=stop,
             on_hang=end_hung_process,
         )  # fmt: skip
-        numbers = draw_sample(runs, asked.size, asked.seed or 0, digest)
+        numbers = draw_sample(runs, options.size, options.seed or 0, digest)
         reruns = make_reruns(setup, [runs[number] for number in numbers])
         verdict = verdict_of(reruns) if reruns else RerunVerdict(outcome="not re-run")
-        if not asked.fresh:
+        if not options.fresh:
             return verdict
         name = suite or archive.manifest.edition.suite
-        return with_fresh(verdict, make_fresh(setup, name, runs, asked.fresh, asked.seed or 0))
+        return with_fresh(verdict, make_fresh(setup, name, runs, options.fresh, options.seed or 0))
 
 
 def _document(verdict: RerunVerdict, seed: int, digest: str) -> dict[str, Any]:

@@ -221,14 +221,14 @@ def _of_floors(checks: Sequence[FloorCheck]) -> list[str]:
 def _tell_of(contents: Contents) -> None:
     """Print the page's main findings on stderr."""
     counts = contents.counts()
-    said = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
-    say(f"{', '.join(contents.planners)}: {said}", err=True)
+    counted = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
+    say(f"{', '.join(contents.planners)}: {counted}", err=True)
     ranks = contents.ranks.verdicts if contents.ranks else ()
-    told = [
+    lines = [
         *(f"crowd: {line}" for line in contents.crowds),
         contents.suspicion,
         contents.sample.text if contents.sample else "",
         *_of_floors(contents.floors),
         *(verdict.text for verdict in ranks),
     ]
-    say("\n".join(text for text in told if text), err=True)
+    say("\n".join(text for text in lines if text), err=True)

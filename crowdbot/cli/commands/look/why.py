@@ -85,8 +85,8 @@ def _watched(directories: Sequence[Path]) -> Iterable[Path]:
     console = Console(stderr=True)
     if not console.is_terminal:
         return directories
-    what = f"reading {plural(len(directories), 'run')}"
-    return track(directories, what, console=console, transient=True)
+    title = f"reading {plural(len(directories), 'run')}"
+    return track(directories, title, console=console, transient=True)
 
 
 def _count(found: CauseCount) -> dict[str, object]:

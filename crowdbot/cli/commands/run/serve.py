@@ -112,19 +112,19 @@ def serve(
     )  # fmt: skip
     with stdout_to_stderr():
         registry = installed(plugin, no_plugins)
-        what = _what(registry, spec, scenario, overrides)
+        served = _served(registry, spec, scenario, overrides)
         how = _Serving(
             out=out, record=record, references=references, name=name, seed=seed, stay=stay,
             meshcat=meshcat,
         )  # fmt: skip
-        run = _serve(what, how, policy, listen)
+        run = _serve(served, how, policy, listen)
     print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
 
 
 @dataclass(frozen=True, kw_only=True)
-class _What:
+class _Served:
     """The suite, and the index of the first scenario."""
 
     registry: Registry
@@ -145,9 +145,9 @@ class _Serving:
     meshcat: int | None
 
 
-def _what(
+def _served(
     registry: Registry, spec: str, scenario: str | None, overrides: list[str] | None
-) -> _What:
+) -> _Served:
     from crowdbot.core.scenarios.library import open_spec, pick
 
     expansion = open_spec(spec, registry, overrides or ())
@@ -156,10 +156,10 @@ def _what(
     if not chosen.robots:  # before anyone is asked to connect
         raise InputError(f"{chosen.id} has no robot, and 'crowdbot serve' drives robots")
     first = expansion.scenarios.index(chosen)
-    return _What(registry=registry, expansion=expansion, first=first)
+    return _Served(registry=registry, expansion=expansion, first=first)
 
 
-def _serve(what: _What, how: _Serving, policy: StepPolicy, listen: Listen) -> Run:
+def _serve(served: _Served, how: _Serving, policy: StepPolicy, listen: Listen) -> Run:
     from crowdbot.cli.serving.serve_options import listening, report, watchers_of
     from crowdbot.cli.shared.one_run import import_simulate, interruptible
 
@@ -168,15 +168,15 @@ def _serve(what: _What, how: _Serving, policy: StepPolicy, listen: Listen) -> Ru
     from crowdbot.core.live.session import LiveSession
 
     with interruptible() as stop:
-        session = LiveSession(interrupted=stop, robots=live_robots(what.expansion.scenarios))
+        session = LiveSession(interrupted=stop, robots=live_robots(served.expansion.scenarios))
         with listening(session, policy, listen) as connections:
             service = LiveServe(
                 session=session,
                 connections=connections,
                 policy=policy,
-                scenarios=what.expansion.scenarios,
-                first=what.first,
-                request=lambda *asked: _request(what, how, *asked),
+                scenarios=served.expansion.scenarios,
+                first=served.first,
+                request=lambda *asked: _request(served, how, *asked),
                 name=how.name,
                 seed=how.seed,
                 stay=how.stay,
@@ -187,16 +187,16 @@ def _serve(what: _What, how: _Serving, policy: StepPolicy, listen: Listen) -> Ru
 
 
 def _request(
-    what: _What, how: _Serving, scenario: Scenario, choice: PlannerChoice, seed: int
+    served: _Served, how: _Serving, scenario: Scenario, choice: PlannerChoice, seed: int
 ) -> Request:
     from crowdbot.core.runs.run import Request
     from crowdbot.core.runs.run_options import RunOptions
 
-    expansion = what.expansion
+    expansion = served.expansion
     return Request(
         scenario=scenario,
         choice=choice,
-        registry=what.registry,
+        registry=served.registry,
         seed=seed,
         out=how.out,
         entry=expansion.entry(scenario),

@@ -25,7 +25,7 @@ _MOST = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterAxis:
-    """One varied parameter.
+    """A planner's parameter that a sweep varies: its values or its range.
 
     Attributes:
         name: key of the planner's parameter.
@@ -165,14 +165,14 @@ def _by_optuna(
     direction = "maximize" if better == "higher" else "minimize"
     study = optuna.create_study(direction=direction, sampler=sampler)
     for _ in range(count):
-        asked = study.ask()
+        drawn = study.ask()
         trial = {
-            a.name: str(asked.suggest_categorical(a.name, a.values))
+            a.name: str(drawn.suggest_categorical(a.name, a.values))
             if a.values
-            else a.at(asked.suggest_float(a.name, 0.0, 1.0))
+            else a.at(drawn.suggest_float(a.name, 0.0, 1.0))
             for a in axes
         }
         yield trial
         value = score(trial)
         state = optuna.trial.TrialState.FAIL if value is None else None
-        study.tell(asked, value, state=state)
+        study.tell(drawn, value, state=state)

@@ -31,7 +31,7 @@ _SEARCH, _CHECK = "search", "check"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SweepRequest:
-    """The request for a sweep.
+    """Arguments of a sweep: suite, planner, varied parameters, search method.
 
     Attributes:
         suite: file or name; its conditions are used, not its people.
@@ -204,13 +204,13 @@ class _Round:
 
     def run(self, trial: Trial, title: str) -> Tried:
         """Return the score of a trial, after running what is missing."""
-        asked = self._request
-        settings = [*asked.settings, *(f"{k}={v}" for k, v in trial.items())]
+        request = self._request
+        settings = [*request.settings, *(f"{k}={v}" for k, v in trial.items())]
         plan = make_plan(
             CampaignRequest(
-                suites=[str(self._suite)], planners=[asked.planner], only=asked.only,
-                sample=asked.sample, out=self._root, planner_settings=settings,
-                plugins=asked.plugins,
+                suites=[str(self._suite)], planners=[request.planner], only=request.only,
+                sample=request.sample, out=self._root, planner_settings=settings,
+                plugins=request.plugins,
             ),
             self._registry,
         )  # fmt: skip
@@ -224,7 +224,7 @@ class _Round:
             Results(runs=kept, scores=results.scores, failures=results.failures,
                     scales=self._scales)
         )  # fmt: skip
-        name = (asked.metric, asked.variant)
+        name = (request.metric, request.variant)
         known = name in table.names and label in table.planners
         score = planner_mean(table, name, label) if known else Estimate(reason="not scored")
         motions = frozenset(run.trajectory_hash for run in kept)

@@ -38,7 +38,7 @@ class FreeSpace:
 
     @classmethod
     def of(cls, walls: Array, pillars: Array, radius: float, points: Array) -> FreeSpace:
-        """The space that a body of a radius can reach.
+        """Return the space that a body of a radius can reach.
 
         Args:
             walls: (S, 4) segments, m.

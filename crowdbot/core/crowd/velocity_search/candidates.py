@@ -25,7 +25,7 @@ PREFERRED_SPEED, MAXIMUM_SPEED, MAXIMUM_ACCELERATION = range(3)  # radius
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampling:
-    """The candidates to try.
+    """Candidate velocities of one search: a regular fan or random points.
 
     Attributes:
         speeds, angles: numbers of the regular fan.

@@ -82,7 +82,7 @@ def work_rows(others: int) -> int:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompiledCost:
-    """One cost function, compiled.
+    """A cost function as numba functions, with its parameters and weight.
 
     Attributes:
         base, prepare, excess: numba functions of the signatures above.

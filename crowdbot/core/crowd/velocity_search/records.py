@@ -9,7 +9,7 @@ from crowdbot.core.support.records import record_type
 
 
 class AgentRecord:
-    """The agent that decides.
+    """The agent whose velocity is searched.
 
     Attributes:
         px, py, vx, vy, radius: position, velocity, radius.

@@ -224,8 +224,8 @@ class WeightedCosts:
         """Return the speed at which most decisions look for walls at most, m/s."""
         walked = _HURRIED * float(np.max(self.agents.preferred_speed, initial=0.0))
         fastest = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
-        asked = min(fastest, walked + self.around) if self.around > 0.0 else fastest
-        return math.hypot(asked, walked) if own else asked
+        fastest_asked = min(fastest, walked + self.around) if self.around > 0.0 else fastest
+        return math.hypot(fastest_asked, walked) if own else fastest_asked
 
     def _walls_matter(self, largest: float) -> tuple[float, float]:
         """Return the centre distance (m) of walls that may change a result: a part, and seconds."""

@@ -113,12 +113,12 @@ def _straight_routes(found: RobotSfMap, report: Report) -> list[RobotSfRoute]:
 
 def _unused(found: RobotSfMap, report: Report) -> None:
     """Record zones that no route begins or ends in."""
-    for who, routes in (("robot", found.robot_routes), ("ped", found.ped_routes)):
+    for owner, routes in (("robot", found.robot_routes), ("ped", found.ped_routes)):
         for kind in ("spawn", "goal"):
             named = {route.spawn if kind == "spawn" else route.goal for route in routes}
-            for number, (item, _) in found.zones.get(f"{who}_{kind}_zone", {}).items():
+            for number, (item, _) in found.zones.get(f"{owner}_{kind}_zone", {}).items():
                 if number not in named:
-                    report.left_out(item, f"no route of {_NAMES[who]} has {kind}_id {number}")
+                    report.left_out(item, f"no route of {_NAMES[owner]} has {kind}_id {number}")
 
 
 _NAMES = {"robot": "the robot", "ped": "people"}

@@ -32,7 +32,7 @@ assert set(_MESHES) == set(KINDS.values())
 
 @dataclass(frozen=True, slots=True)
 class TrialDocument:
-    """An exported scenario.
+    """A scenario exported as a trial: XML, policies and report.
 
     Attributes:
         text: the trial XML.

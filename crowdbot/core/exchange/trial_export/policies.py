@@ -97,15 +97,15 @@ def _holds(whole: Mapping[str, Any], part: Mapping[str, Any]) -> bool:
 
 def _policy(root: Xml.Element, ident: int, data: Data, report: Report) -> None:
     policy = data["policy"]
-    said = {"id": str(ident), "OptimizationMethod": policy["method"],
+    attributes = {"id": str(ident), "OptimizationMethod": policy["method"],
             "RelaxationTime": number(policy["relaxation_time"]),
             "ContactForceScale": number(policy["contact_stiffness"])}  # fmt: skip
     if policy["method"] != "gradient":
-        said |= {theirs: policy[ours].replace("_", " ") for ours, theirs in _SAMPLING.items()}
-        said |= {theirs: str(policy[ours]) for ours, theirs in _COUNTS.items()}
-        said["SamplingAngle"] = number(math.degrees(policy["angle"]))
-        said["IncludeBaseAsSample"] = "true" if policy["include_base"] else "false"
-    element = add(root, "Policy", **said)
+        attributes |= {theirs: policy[ours].replace("_", " ") for ours, theirs in _SAMPLING.items()}
+        attributes |= {theirs: str(policy[ours]) for ours, theirs in _COUNTS.items()}
+        attributes["SamplingAngle"] = number(math.degrees(policy["angle"]))
+        attributes["IncludeBaseAsSample"] = "true" if policy["include_base"] else "false"
+    element = add(root, "Policy", **attributes)
     for name, cost in data["costs"].items():
         _cost(element, name, cost, report)
 
@@ -120,8 +120,8 @@ def _cost(parent: Xml.Element, name: str, cost: Data, report: Report) -> None:
         reach += _BODIES
         note = f"measured between centres there: {_BODIES} m more"
         report.added(f"costs.{name}.range", note)
-    said = {"name": theirs, "coeff": number(cost["weight"]), "range": number(reach)}
-    said |= {names[k]: number(v) for k, v in cost.items() if k in names}
+    attributes = {"name": theirs, "coeff": number(cost["weight"]), "range": number(reach)}
+    attributes |= {names[k]: number(v) for k, v in cost.items() if k in names}
     for key in set(cost) - {*names, "kind", "weight", "range"}:
         report.added(f"costs.{name}.{key}", "left out: no parameter of UMANS")
-    add(parent, "costfunction", **said)
+    add(parent, "costfunction", **attributes)

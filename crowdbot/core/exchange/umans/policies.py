@@ -125,10 +125,10 @@ def read_policy(item: Item, report: Report) -> Data:
         costs[free_name(cost["kind"], costs)] = cost
     table = RowTable(POLICY.element, [r for r in POLICY.rows if r.theirs != "costfunction"])
     fields = {**DEFAULTS, **report.take(item, table)}
-    return {"policy": {"kind": "velocity_space", **_said(fields)}, "costs": costs}
+    return {"policy": {"kind": "velocity_space", **_written_fields(fields)}, "costs": costs}
 
 
-def _said(fields: Mapping[str, Any]) -> Data:
+def _written_fields(fields: Mapping[str, Any]) -> Data:
     """Return the fields that matter to the method; it always says method and relaxation."""
     if fields["method"] == "gradient":
         return {name: value for name, value in fields.items() if name not in _OF_SAMPLES}

@@ -1,4 +1,4 @@
-"""The page of a person in a run, in one file."""
+"""Build the web page, one file, on which a person drives or walks."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class PageClient:
             "sit": lambda _: self.say_role(seat.sit(self)),
             "begin": lambda _: seat.begin(self),
             "pause": self._pause,
-            "ping": lambda said: self.say("pong", at=_finite(said, "at")),
+            "ping": lambda message: self.say("pong", at=_finite(message, "at")),
             "latency": self._latency,
         }
         self.say_role(seat.sit(self))
@@ -42,11 +42,11 @@ class PageClient:
         if not self._may():
             return
         try:
-            said = json.loads(frame)
-            op = self._ops.get(said.get("op", "")) if isinstance(said, dict) else None
+            message = json.loads(frame)
+            op = self._ops.get(message.get("op", "")) if isinstance(message, dict) else None
             if op is None:
                 raise InputError("the page sent a message of an unknown kind")
-            op(said)
+            op(message)
         except InputError as error:
             self.say("error", text=str(error))
         except (ValueError, TypeError, RecursionError) as error:
@@ -79,30 +79,30 @@ class PageClient:
         """Return True if messages are queued."""
         return self.sending or len(self.outbox) > 0
 
-    def _stick(self, said: Mapping[str, Any]) -> None:
-        if not self._seat.move(self, stick_of(said)):
+    def _stick(self, message: Mapping[str, Any]) -> None:
+        if not self._seat.move(self, stick_of(message)):
             self.say_role(drives=False)
 
-    def _here(self, said: Mapping[str, Any]) -> None:
-        away = said.get("away", "")
+    def _here(self, message: Mapping[str, Any]) -> None:
+        away = message.get("away", "")
         if away not in get_args(Away):
             raise InputError("'away' says why no hand is on the stick")
         self._seat.attend(self, away)
 
-    def _pause(self, said: Mapping[str, Any]) -> None:
+    def _pause(self, message: Mapping[str, Any]) -> None:
         if self._seat.drives(self):
-            self._seat.session.pause(said.get("on") is True)
+            self._seat.session.pause(message.get("on") is True)
 
-    def _latency(self, said: Mapping[str, Any]) -> None:
-        given = said.get("ms")
+    def _latency(self, message: Mapping[str, Any]) -> None:
+        given = message.get("ms")
         if not isinstance(given, list) or len(given) > _MOST_LATENCIES:
             raise InputError("'ms' is a short list of numbers")
         for ms in given:
             self._seat.latency(self, _finite({"ms": ms}, "ms"))
 
 
-def _finite(said: Mapping[str, Any], name: str) -> float:
-    value = said.get(name)
+def _finite(message: Mapping[str, Any], name: str) -> float:
+    value = message.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > 1e15:
         raise InputError(f"'{name}' is a number")
     return float(value)

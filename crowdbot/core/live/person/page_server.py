@@ -147,10 +147,10 @@ class PageServer:
         problem = self._problem(request)
         if problem is not None:
             return connection.respond(*problem)
-        asked = urlsplit(request.path).path
-        if asked == "/socket":
+        path = urlsplit(request.path).path
+        if path == "/socket":
             return None
-        if asked != "/":
+        if path != "/":
             return connection.respond(HTTPStatus.NOT_FOUND, "there is one page\n")
         headers = Headers(
             {

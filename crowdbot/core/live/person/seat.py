@@ -79,21 +79,21 @@ class Seat:
         self._outside = -HOLD
 
     # ---------------------------------------------------------------------------- pages tell
-    def sit(self, who: Hashable) -> bool:
+    def sit(self, page: Hashable) -> bool:
         """Return True if a page drives: the first one does until it leaves."""
-        if not self.session.drive(who, self._robot):
+        if not self.session.drive(page, self._robot):
             return False
         with self._lock:
-            if self._page != who:
-                self._page, self._stick, self._used = who, CENTRED, 0
+            if self._page != page:
+                self._page, self._stick, self._used = page, CENTRED, 0
                 self._leave_stick("not in focus")
             self._heard = time.monotonic()
         return True
 
-    def attend(self, who: Hashable, away: Away) -> None:
+    def attend(self, page: Hashable, away: Away) -> None:
         """Store if the driving page is attended, and why not."""
         with self._lock:
-            if self._page != who:
+            if self._page != page:
                 return
             self._heard = time.monotonic()
             if away:
@@ -101,10 +101,10 @@ class Seat:
             else:
                 self._away = ""
 
-    def move(self, who: Hashable, stick: Stick) -> bool:
+    def move(self, page: Hashable, stick: Stick) -> bool:
         """Store a position of the stick; return False if the page does not drive."""
         with self._lock:
-            if self._page != who:
+            if self._page != page:
                 self.session.refuse()
                 return False
             self._heard = time.monotonic()
@@ -112,29 +112,29 @@ class Seat:
                 self._stick = stick
         return True
 
-    def begin(self, who: Hashable) -> None:
+    def begin(self, page: Hashable) -> None:
         """Start the waiting run, because the driving page asks for it."""
         with self._lock:
-            if self._page == who and self.why_waiting == "not begun":
+            if self._page == page and self.why_waiting == "not begun":
                 self._begun = True
 
-    def leave(self, who: Hashable) -> None:
+    def leave(self, page: Hashable) -> None:
         """Handle a page that is gone."""
         with self._lock:
-            if self._page == who:
+            if self._page == page:
                 self._leave_stick("disconnected")
                 self._page = None
-        self.session.leave(who)
+        self.session.leave(page)
 
-    def latency(self, who: Hashable, ms: float) -> None:
+    def latency(self, page: Hashable, ms: float) -> None:
         """Record a latency that the driving page measured, ms."""
         with self._lock:
-            if self._page == who and 0.0 <= ms < 1e5:
+            if self._page == page and 0.0 <= ms < 1e5:
                 self.log.latencies.append(ms)
 
-    def drives(self, who: Hashable) -> bool:
+    def drives(self, page: Hashable) -> bool:
         """Return True if this page drives."""
-        return self._page == who
+        return self._page == page
 
     @property
     def taken(self) -> bool:

@@ -17,7 +17,7 @@ _MOST_NUMBER = 2**53
 
 @dataclass(frozen=True, slots=True)
 class Stick:
-    """One position of the stick.
+    """Deflection of the stick on a person's page.
 
     Attributes:
         number: counts the positions of a page; 0: none yet.

@@ -76,9 +76,9 @@ def controls_of(
     if not names:
         raise InputError(f"{scenario.id} has no robot, and 'crowdbot teleop' drives one")
     driven = names[0] if robot is None else robot
-    for asked in (driven, *given):
-        if asked not in names:
-            raise InputError(f"{scenario.id} has no robot '{asked}', but {', '.join(names)}")
+    for robot_name in (driven, *given):
+        if robot_name not in names:
+            raise InputError(f"{scenario.id} has no robot '{robot_name}', but {', '.join(names)}")
     if driven in given:
         raise InputError(f"robot '{driven}' has a person at its stick, and no planner of its own")
     chosen = None if assist is None else choose_planner(assist, registry, settings)

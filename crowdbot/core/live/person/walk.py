@@ -77,8 +77,8 @@ def recorded_steps(folder: Path) -> Callable[[float], tuple[float, float]]:
     columns = [run.signals.get(name) for name in SIGNALS]
     if columns[0] is None or columns[1] is None:
         raise InputError(f"{folder}: no person walks in it: 'crowdbot walk' records that")
-    asked = {t: (x, y) for (t, x), (_, y) in zip(*(c.tolist() for c in columns), strict=True)}  # type: ignore[union-attr]
-    return lambda t: asked.get(t, (0.0, 0.0))
+    velocities = {t: (x, y) for (t, x), (_, y) in zip(*(c.tolist() for c in columns), strict=True)}  # type: ignore[union-attr]
+    return lambda t: velocities.get(t, (0.0, 0.0))
 
 
 def _prepared(request: Request, without: Scenario) -> Prepared:

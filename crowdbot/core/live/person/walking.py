@@ -168,12 +168,12 @@ def led_by(source: Callable[[float], tuple[float, float]]) -> Callable[[Any, Any
     def on_crowd(engine: Any, signal: Callable[[float, str, float], None]) -> None:
         walker = next(p for p in engine.policies if getattr(p, "commanded", False))
 
-        def asked(t: float) -> tuple[float, float]:
+        def recorded_velocity(t: float) -> tuple[float, float]:
             velocity = source(t)
             for name, value in zip(SIGNALS, velocity, strict=True):
                 signal(t, name, value)
             return velocity
 
-        walker.lead(asked)
+        walker.lead(recorded_velocity)
 
     return on_crowd

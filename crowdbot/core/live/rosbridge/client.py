@@ -83,9 +83,9 @@ class RosbridgeClient:
         self._soon(self._end)
         self._thread.join(5.0)
 
-    def _soon(self, what: Any, *given: object) -> None:
+    def _soon(self, callback: Any, *given: object) -> None:
         with suppress(RuntimeError):
-            self._loop.call_soon_threadsafe(what, *given)
+            self._loop.call_soon_threadsafe(callback, *given)
 
     # ------------------------------------------------------------------ the connection's thread
     def _run(self) -> None:

@@ -18,7 +18,7 @@ _MOST_IDS, _MOST_QUEUED = 64, 10_000
 
 @dataclass(frozen=True, slots=True)
 class SubscriptionOptions:
-    """Options of one subscription.
+    """Rate, queue and format that a client requested for one topic.
 
     Attributes:
         throttle: smallest time between two messages, s.

@@ -18,7 +18,7 @@ TWIST, JOY = "geometry_msgs/msg/Twist", "sensor_msgs/msg/Joy"
 
 @dataclass
 class RosapiWorld:
-    """Data for clients' queries.
+    """Topics, services and parameters that clients can query.
 
     Attributes:
         offers: the topics that are published.

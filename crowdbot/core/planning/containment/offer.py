@@ -102,11 +102,11 @@ class Needs:
 def contained_request(needs: Needs) -> dict[str, Any]:
     """Return the argument of `enforce` for a planner."""
     offer, libraries = kernel_offer(), python_libraries(tuple(sys.path))
-    asked = Readable(tuple(needs.files), tuple(needs.folders))
+    readable = Readable(tuple(needs.files), tuple(needs.folders))
     return {
         "landlock": offer.landlock,
         "filter": offer.filter,
         "network": needs.network,
-        "read": [*libraries.files, str(used_folder()), *asked.files],
-        "list": [*libraries.folders, *asked.folders],
+        "read": [*libraries.files, str(used_folder()), *readable.files],
+        "list": [*libraries.folders, *readable.folders],
     }

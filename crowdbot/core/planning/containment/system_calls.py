@@ -156,8 +156,8 @@ def _program(*, network: bool, signals: bool) -> list[bytes]:
         program += only(name, [_do(_RETURN, _DENY)])
     for name in _OF_A_PROCESS:
         program += only(name, _one_of(0, (0, me)))
-    for name, what in zip(_OF_SOME, (_PRIO_PROCESS, _IOPRIO_PROCESS), strict=True):
-        program += only(name, [*_unless(0, what), *_one_of(1, (0, me))])
+    for name, target in zip(_OF_SOME, (_PRIO_PROCESS, _IOPRIO_PROCESS), strict=True):
+        program += only(name, [*_unless(0, target), *_one_of(1, (0, me))])
     for name in _SIGNALS if signals else ():
         program += only(name, _one_of(0, (0, me)))
     for name in ("tkill", "pidfd_send_signal") if signals else ():

@@ -53,9 +53,9 @@ def _session(path: Path) -> Any:
         raise InputError(f"{path}: onnxruntime cannot load it: {error}") from None
 
 
-def _check_shape(path: Path, what: str, shape: Any, size: int) -> None:
+def _check_shape(path: Path, tensor: str, shape: Any, size: int) -> None:
     """Check that a tensor is (any number, size)."""
     any_number = len(shape) == 2 and (isinstance(shape[0], str) or shape[0] in (1, None))
     if not any_number or shape[1] != size:
         given = ", ".join("any" if isinstance(n, str) or n is None else str(n) for n in shape)
-        raise InputError(f"{path}: its {what} has shape ({given}), not (any, {size})")
+        raise InputError(f"{path}: its {tensor} has shape ({given}), not (any, {size})")

@@ -63,8 +63,8 @@ def describe(
         died = str(error) if isinstance(error, ProcessDiedError) else ""
         return PlannerDescription(needs=()), NotLoaded(str(error), died)
     planner.close()
-    said = planner.description
-    if plan.beside is not None and said.data:
-        plan = replace(plan, needs=with_data(plan.needs, plan.beside, said.data))
+    description = planner.description
+    if plan.beside is not None and description.data:
+        plan = replace(plan, needs=with_data(plan.needs, plan.beside, description.data))
         check_sealed(plan)
-    return said, partial(ProcessPlanner, plan)
+    return description, partial(ProcessPlanner, plan)

@@ -122,7 +122,7 @@ class ForeignSide:
         signals, self._signals = self._signals, []
         if self._doing == "step" and type(error).__name__ == "NoValidCommand":
             return {"type": "stop", "signals": signals}
-        text = f"{self._doing}: {_told(error)}{self._where(error)}"
+        text = f"{self._doing}: {_error_text(error)}{self._where(error)}"
         return {"type": "error", "text": text, "signals": signals}
 
     def _class(self) -> Any:
@@ -187,7 +187,7 @@ def _command(answer: Any) -> dict[str, float]:
     )
 
 
-def _told(error: BaseException) -> str:
+def _error_text(error: BaseException) -> str:
     try:
         text = str(error)
     except BaseException as another:

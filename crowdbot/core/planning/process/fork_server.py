@@ -355,7 +355,7 @@ def _limit(memory: int | None) -> None:
         _lower(resource.RLIMIT_AS, memory)
 
 
-def _lower(what: int, limit: int) -> None:
-    _, hard = resource.getrlimit(what)
+def _lower(kind: int, limit: int) -> None:
+    _, hard = resource.getrlimit(kind)
     least = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
-    resource.setrlimit(what, (least, least))
+    resource.setrlimit(kind, (least, least))

@@ -65,8 +65,8 @@ class OwnSide:
             plugins are found; ``parameters``.
     """
 
-    def __init__(self, what: Mapping[str, Any]) -> None:
-        self._what = what
+    def __init__(self, order: Mapping[str, Any]) -> None:
+        self._order = order
         self._decoder = serving.Decoder(_TYPES, serving.numpy_array)
         self._build: Callable[[], Planner] | None = None
         self._guarded: GuardedPlanner | None = None
@@ -76,26 +76,26 @@ class OwnSide:
     def hello(self, sent: Mapping[str, Any]) -> dict[str, Any]:
         """Find the planner and return its description."""
         del sent
-        find = self._file if "file" in self._what else self._kind
+        find = self._file if "file" in self._order else self._kind
         with collected_old_names() as old_names:
             holder, call, self._build = find()
         with call("what it says of itself"):
-            said = serving.described(holder)
+            description = serving.described(holder)
         return {
             "type": "hello",
             "protocol": serving.PROTOCOL,
             "arrays": "shared",
             "old_names": old_names,
-            **said,
+            **description,
         }
 
     def reset(self, sent: Mapping[str, Any]) -> dict[str, Any]:
         """Build the planner and reset it."""
         assert self._build is not None
         self._decoder.open_memory(sent["memory"])
-        who = planner_title(self._what["name"], self._what["origin"])
+        title = planner_title(self._order["name"], self._order["origin"])
         with collected_old_names() as old_names:
-            self._guarded = GuardedPlanner(self._build(), who)
+            self._guarded = GuardedPlanner(self._build(), title)
         decode = self._decoder
         self._guarded.reset(
             decode.task(sent["task"]),
@@ -136,12 +136,12 @@ class OwnSide:
 
     def _draw(self, name: str, rows: ArrayLike, /, text: str | Sequence[str] | None = None) -> None:
         name, table, texts = named_drawing(name, rows, text)
-        told = () if texts is None else (list(texts),)
-        self._drawings.append([name, table.tolist(), *told])
+        labels = () if texts is None else (list(texts),)
+        self._drawings.append([name, table.tolist(), *labels])
 
     def _file(self) -> _Found:
-        path, name = Path(self._what["file"]), self._what["class"]
-        parameters = self._what["parameters"]
+        path, name = Path(self._order["file"]), self._order["class"]
+        parameters = self._order["parameters"]
         kind = planner_class(path, name)
         check_parameters(kind, parameters, f"{path}:{name}")
         build = partial(build_of_class, kind, parameters, path, name)
@@ -152,19 +152,19 @@ class OwnSide:
         from crowdbot.core.registry.registry import discover
         from crowdbot.core.registry.registry_source import RegistrySource
 
-        where: RegistrySource = self._what["plugins"]
+        where: RegistrySource = self._order["plugins"]
         registry = discover(extra=where.extra, allow=where.allow, entry_points=where.entry_points)
-        spec = load_kind(self._what["kind"], self._what["parameters"], registry)
+        spec = load_kind(self._order["kind"], self._order["parameters"], registry)
         return type(spec), registry.plugin_call(spec), partial(build_of_kind, spec, registry)
 
 
-def main(what: Mapping[str, Any]) -> None:
+def main(order: Mapping[str, Any]) -> None:
     """Serve one planner until the simulator closes the connection."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stdout = sys.__stdout__ = _stream(1)  # type: ignore[misc]
     sys.stderr = sys.__stderr__ = _stream(2)  # type: ignore[misc]
     faulthandler.enable()
-    serving.serve(serving.Line(msgpack.packb, msgpack.unpackb), OwnSide(what))
+    serving.serve(serving.Line(msgpack.packb, msgpack.unpackb), OwnSide(order))
 
 
 def _stream(descriptor: int) -> io.TextIOWrapper:

@@ -76,17 +76,17 @@ class ProcessPlanner:
             self._line = self._start()
         except OSError as error:
             raise InputError(f"{plan.who}: its process cannot be started: {error}") from None
-        said = self._ask("load", self._hello(), RESET_LIMIT, "hello")
+        hello = self._ask("load", self._hello(), RESET_LIMIT, "hello")
         try:
-            if said.get("protocol") != PROTOCOL:
+            if hello.get("protocol") != PROTOCOL:
                 self._fail(
-                    f"hello: it speaks protocol {said.get('protocol')!r:.40}, not {PROTOCOL}"
+                    f"hello: it speaks protocol {hello.get('protocol')!r:.40}, not {PROTOCOL}"
                 )
-            self.description = read_description(said, plan.who)
+            self.description = read_description(hello, plan.who)
         except InputError:
             self.close()
             raise
-        self._shares = said.get("arrays") == "shared" and self._memory is not None
+        self._shares = hello.get("arrays") == "shared" and self._memory is not None
         self._write = ObservationWriter(self._memory if self._shares else None)
 
     def reset(
@@ -104,7 +104,7 @@ class ProcessPlanner:
         self._ask("return from reset", message, RESET_LIMIT, "ready")
 
     def step(self, obs: Observation) -> Command:
-        """As `Planner.step`.
+        """Like `Planner.step`.
 
         Raises:
             NoValidCommand: it has no valid command.
@@ -112,11 +112,11 @@ class ProcessPlanner:
         """
         self._step += 1
         message = self._write.message(self._step, obs)
-        said = self._ask("return from step", message, Watchdog().limit, "command", "stop")
-        self._pass_on(said, obs)
-        if said["type"] == "stop":
+        answer = self._ask("return from step", message, Watchdog().limit, "command", "stop")
+        self._pass_on(answer, obs)
+        if answer["type"] == "stop":
             raise NoValidCommand
-        return self._command(said)
+        return self._command(answer)
 
     def close(self) -> None:
         """End the planner's process, which gets a second to exit, and all its children."""
@@ -125,7 +125,7 @@ class ProcessPlanner:
             self._end(grace=_LEAVES)
 
     def __del__(self) -> None:
-        """As `close`, for a planner that was not closed."""
+        """Like `close`, for a planner that was not closed."""
         if getattr(self, "_server", None) is not None:
             self.close()
 
@@ -183,7 +183,7 @@ class ProcessPlanner:
         Anything else ends the process.
         """
         try:
-            said = self._line.ask(message, limit)
+            answer = self._line.ask(message, limit)
         except LineTimeout:
             where = self._end(ask=True)[1]
             self._raise(f"did not {doing} within {limit:g} s; its process was ended{where}")
@@ -195,17 +195,17 @@ class ProcessPlanner:
             self.close()
             raise
         if self._plan.what is not None:
-            say_old_names(said.get("old_names", ()))
-        if said.get("type") == "error":
-            self._failed(said)
-        if said.get("type") not in wanted or said.get("step", 0) != message.get("step", 0):
-            self._fail(f"answered {said.get('type')!r:.40} to '{message['type']}'")
-        return said
+            say_old_names(answer.get("old_names", ()))
+        if answer.get("type") == "error":
+            self._failed(answer)
+        if answer.get("type") not in wanted or answer.get("step", 0) != message.get("step", 0):
+            self._fail(f"answered {answer.get('type')!r:.40} to '{message['type']}'")
+        return answer
 
-    def _failed(self, said: Mapping[str, Any]) -> NoReturn:
+    def _failed(self, answer: Mapping[str, Any]) -> NoReturn:
         """Raise the planner's own error, as reported by it."""
         self.close()
-        text = printable(str(said.get("text", ""))[:_LONGEST_REASON])
+        text = printable(str(answer.get("text", ""))[:_LONGEST_REASON])
         if "MemoryError" in text and self._plan.memory is not None:
             text += f"; the limit of its memory is {self._plan.memory / _GIB:g} GiB"
         if "PermissionError" in text and kernel_offer().contained:
@@ -215,8 +215,8 @@ class ProcessPlanner:
             )
         if "BdbQuit" in text:
             text += "; to use a debugger, let the planner run --in-process"
-        error = InputError if said.get("kind") == "input" else PlannerError
-        raise error(text if said.get("whole") is True else f"{self._plan.who}: {text}")
+        error = InputError if answer.get("kind") == "input" else PlannerError
+        raise error(text if answer.get("whole") is True else f"{self._plan.who}: {text}")
 
     def _gone(self, doing: str) -> str:
         """Describe how a process without a reply ended."""
@@ -238,9 +238,9 @@ class ProcessPlanner:
         server, self._server = self._server, None
         assert server is not None
         try:
-            said = server.end(grace=grace, ask=ask)
-            status: int | None = said["status"]
-            self._why = str(said["why"])
+            report = server.end(grace=grace, ask=ask)
+            status: int | None = report["status"]
+            self._why = str(report["why"])
             POOL.give_back(server)
         except ServerGone:
             status = _KILLED_ALL
@@ -253,7 +253,7 @@ class ProcessPlanner:
             memory.close()
         return status, f" ({words})" if words else ""
 
-    def _fail(self, what: str) -> NoReturn:
+    def _fail(self, problem: str) -> NoReturn:
         """End the process and raise an error.
 
         Raises:
@@ -261,20 +261,20 @@ class ProcessPlanner:
         """
         if self._server is not None:
             self._end()
-        self._raise(what)
+        self._raise(problem)
 
-    def _raise(self, what: str) -> NoReturn:
-        raise ProcessLostError(printable(f"{self._plan.who}: {what}"))
+    def _raise(self, problem: str) -> NoReturn:
+        raise ProcessLostError(printable(f"{self._plan.who}: {problem}"))
 
     # --------------------------------------------------------------------- answers
-    def _pass_on(self, said: Mapping[str, Any], obs: Observation) -> None:
-        signals = said.get("signals") or ()
+    def _pass_on(self, answer: Mapping[str, Any], obs: Observation) -> None:
+        signals = answer.get("signals") or ()
         try:
             for name, value in signals:
                 obs.log(name, value)
         except (TypeError, ValueError):
             self._fail(f"step: 'signals' are pairs of a name and a number, not {signals!r:.80}")
-        drawings = said.get("drawings") or ()
+        drawings = answer.get("drawings") or ()
         try:
             for name, rows, *text in drawings:
                 obs.draw(name, rows, *text)
@@ -284,8 +284,8 @@ class ProcessPlanner:
                 f"{drawings!r:.80}: {error}"
             )
 
-    def _command(self, said: Mapping[str, Any]) -> Command:
-        numbers = [said.get("v"), said.get("w"), said.get("vy", 0.0)]
+    def _command(self, answer: Mapping[str, Any]) -> Command:
+        numbers = [answer.get("v"), answer.get("w"), answer.get("vy", 0.0)]
         fine = all(isinstance(x, int | float) and not isinstance(x, bool) for x in numbers)
         if not fine or not all(math.isfinite(x) for x in numbers if x is not None):
             self._fail(f"step: v, w and vy are finite numbers, not {numbers!r:.80}")

@@ -68,8 +68,8 @@ class SharedMemory:
     def _view(self, at: int, array: NDArray[Any]) -> tuple[NDArray[Any], dict[str, Any]]:
         """Return a writable view of an array's place, and its entry in a message."""
         view = np.frombuffer(self._block, array.dtype, array.size, at).reshape(array.shape)
-        told = {"dtype": array.dtype.str, "shape": list(array.shape), "offset": at}
-        return view, {**told, "bytes": array.nbytes}
+        layout = {"dtype": array.dtype.str, "shape": list(array.shape), "offset": at}
+        return view, {**layout, "bytes": array.nbytes}
 
     def close(self) -> None:
         """Free the block."""

@@ -25,7 +25,7 @@ _RESOLUTION = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Similarity:
-    """Similarity of people's responses.
+    """Similarity between two sets of people's responses to robots, from 0 to 1.
 
     Attributes:
         score: mean over cells, weighted by their recorded encounters.

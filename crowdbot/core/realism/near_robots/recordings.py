@@ -125,8 +125,8 @@ def _archive(path: Path) -> list[Clip]:
             index = json.loads(str(data["index"]))
             return [_clip(path, data, entry) for entry in index]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        told = f"it has no {error}" if isinstance(error, KeyError) else str(error)
-        raise InputError(f"{path}: not an archive of clips: {told}") from error
+        reason = f"it has no {error}" if isinstance(error, KeyError) else str(error)
+        raise InputError(f"{path}: not an archive of clips: {reason}") from error
 
 
 def _clip(path: Path, data: Mapping[str, Any], entry: Mapping[str, Any]) -> Clip:

@@ -34,7 +34,7 @@ _HALVINGS = 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotReference:
-    """Recorded responses to robots.
+    """Recorded responses to robots that simulated people are compared with.
 
     Attributes:
         whole: cell -> distributions of all recordings; only cells that are compared.

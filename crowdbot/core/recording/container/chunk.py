@@ -47,7 +47,7 @@ def serialised(records: Iterable[McapRecord]) -> bytes:
 
 
 class OpenChunk:
-    """Collects records in order.
+    """Collects records in order until the chunk is compressed and written.
 
     Attributes:
         size: bytes so far, uncompressed.

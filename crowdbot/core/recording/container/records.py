@@ -66,7 +66,7 @@ class Opened(NamedTuple):
 
 
 class Record(NamedTuple):
-    """One serialised message."""
+    """A serialised message as read from the file."""
 
     topic: str
     msgtype: str
@@ -229,7 +229,7 @@ def _mapped(fileno: int) -> mmap.mmap:
 
 
 def _framed(data: mmap.mmap) -> Iterator[McapRecord]:
-    """The records of a file that are used, from magic to magic; indices are skipped.
+    """Return the records of a file that are used, from magic to magic; indices are skipped.
 
     Raises:
         ValueError, McapError, struct.error: it ends early or is damaged.

@@ -39,7 +39,7 @@ _LATCHED = (
 
 @dataclass(frozen=True, kw_only=True)
 class BagOptions:
-    """Options of a bag.
+    """Options of an exported bag: times, transforms, names and extras.
 
     Attributes:
         offset: ns added to all times.

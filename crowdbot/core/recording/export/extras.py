@@ -110,7 +110,7 @@ def _path(run: Trajectories, robot: RobotTrack) -> RobotPath:
 
 
 def _contacts(run: Trajectories, path: RobotPath) -> Iterator[Extra]:
-    """A ball where each contact began, from its beginning on."""
+    """Return a ball where each contact began, from its beginning on."""
     events = run.contacts
     if events is None:
         return

@@ -136,8 +136,12 @@ def _ways(run: Trajectories) -> Iterator[dict[str, Any]]:
         jumps = None if people.jump is None else people.jump[:, i]
         for rows in _pieces(people.x[:, i], jumps):
             path = np.column_stack((people.x[rows, i], people.y[rows, i])).tolist()
-            who = {"what": "person", "id": int(people.id[i]), "radius": float(people.radius[i])}
-            yield _feature("LineString", path, **who, t=run.t[rows].tolist())
+            fields = {
+                "what": "person",
+                "id": int(people.id[i]),
+                "radius": float(people.radius[i]),
+            }
+            yield _feature("LineString", path, **fields, t=run.t[rows].tolist())
 
 
 def _pieces(x: Array, jumps: Any) -> list[Any]:
@@ -156,18 +160,25 @@ def trajnet(runs: Iterable[tuple[Trajectories, str]]) -> str:
     Raises:
         InputError: a recording has no second sample at that rate.
     """
-    scenes, tracks, frame, who = [], [], 0, ROBOT_ID
+    scenes, tracks, frame, first = [], [], 0, ROBOT_ID
     for number, (run, name) in enumerate(runs):
-        rows = [_row(frame + f, who + p, x, y) for f, p, x, y in _trajnet_rows(run)]
+        rows = [_row(frame + f, first + p, x, y) for f, p, x, y in _trajnet_rows(run)]
         if not rows:
             raise InputError(
                 f"{name}: is too short for trajnet, which needs two frames 0.4 s apart"
             )
         last = max(row["track"]["f"] for row in rows)
-        scene = {"id": number, "p": who, "s": frame, "e": last, "fps": TRAJNET_RATE, "tag": name}
+        scene = {
+            "id": number,
+            "p": first,
+            "s": frame,
+            "e": last,
+            "fps": TRAJNET_RATE,
+            "tag": name,
+        }
         scenes.append({"scene": scene})
         tracks += rows
-        frame, who = last + 1, max(row["track"]["p"] for row in rows) + 1
+        frame, first = last + 1, max(row["track"]["p"] for row in rows) + 1
     return "".join(json.dumps(line) + "\n" for line in (*scenes, *tracks))
 
 
@@ -185,5 +196,5 @@ def _trajnet_rows(run: Trajectories) -> Iterator[tuple[int, int, float, float]]:
                 yield frame, number, run.agents.x[k, i], run.agents.y[k, i]
 
 
-def _row(frame: int, who: int, x: float, y: float) -> dict[str, Any]:
-    return {"track": {"f": frame, "p": who, "x": round(float(x), 4), "y": round(float(y), 4)}}
+def _row(frame: int, person: int, x: float, y: float) -> dict[str, Any]:
+    return {"track": {"f": frame, "p": person, "x": round(float(x), 4), "y": round(float(y), 4)}}

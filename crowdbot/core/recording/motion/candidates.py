@@ -163,7 +163,7 @@ class GoalsReader:
         for k in range(count):
             here = self._changes.get(first + k)
             if here is not None:
-                who = self._person[here]
-                found[k:, 0, who], found[k:, 1, who] = self._x[here], self._y[here]
+                person = self._person[here]
+                found[k:, 0, person], found[k:, 1, person] = self._x[here], self._y[here]
                 self._now = found[-1].copy()
         return found

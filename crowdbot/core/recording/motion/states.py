@@ -182,7 +182,7 @@ def series(messages: Iterable[Any]) -> dict[str, Array]:
 
 
 def _codec(people: int, choosers: Sequence[Choosers]) -> MotionCodec:
-    """The codec; its module imports numba, which a search for runs does without."""
+    """Return the codec; its module imports numba, which a search for runs does without."""
     from crowdbot.core.recording.motion.codec import MotionCodec
 
     return MotionCodec(people, choosers)

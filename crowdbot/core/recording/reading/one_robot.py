@@ -213,7 +213,7 @@ class RobotRecords:
 
     # ------------------------------------------------------------------------ decoding
     def _messages(self, topic: str) -> list[Any]:
-        """The messages of one of `TOPICS`.
+        """Return the messages of one of `TOPICS`.
 
         Raises:
             InputError: one is of another type than crowdbot writes there, or damaged.

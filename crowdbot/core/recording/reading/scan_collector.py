@@ -77,7 +77,7 @@ class ScanCollector:
 
 
 def _sensor_of(topic: str) -> str:
-    """The sensor of a topic, which is its root."""
+    """Return the sensor of a topic, which is its root."""
     return topic.rpartition("/")[0].removeprefix("/")
 
 

@@ -8,23 +8,23 @@ const fragment = () => new URLSearchParams(location.hash.slice(1));
 
 /** Restores the view from the address. */
 function readAddress() {
-  const said = fragment();
-  if (said.has("t")) state.time = clamp(Number(said.get("t")) || shown.first, shown.first, shown.last);
-  const span = Number(said.get("span"));
+  const fields = fragment();
+  if (fields.has("t")) state.time = clamp(Number(fields.get("t")) || shown.first, shown.first, shown.last);
+  const span = Number(fields.get("span"));
   if (span > 0) state.span = clamp(span, 2, widest());
-  for (const name of SWITCHES) if (said.has(name)) state[name] = said.get(name) !== "0";
-  state.plots = new Set((said.get("plot") ?? "").split(",").filter(Boolean).map(decodeURIComponent));
-  if (VIEWS.includes(said.get("view"))) state.view = said.get("view");
-  if (said.has("follow")) state.follow = said.get("follow") === "0" ? "" : said.get("follow");
-  const [x, y] = ["x", "y"].map((name) => Number.parseFloat(said.get(name)));
+  for (const name of SWITCHES) if (fields.has(name)) state[name] = fields.get(name) !== "0";
+  state.plots = new Set((fields.get("plot") ?? "").split(",").filter(Boolean).map(decodeURIComponent));
+  if (VIEWS.includes(fields.get("view"))) state.view = fields.get("view");
+  if (fields.has("follow")) state.follow = fields.get("follow") === "0" ? "" : fields.get("follow");
+  const [x, y] = ["x", "y"].map((name) => Number.parseFloat(fields.get(name)));
   if (Number.isFinite(x) && Number.isFinite(y)) state.middle = { x, y };
-  setTheme(["light", "dark"].includes(said.get("theme")) ? said.get("theme") : "");
+  setTheme(["light", "dark"].includes(fields.get("theme")) ? fields.get("theme") : "");
 }
 
 /** Returns the address of the current view. */
 function addressNow() {
-  const said = fragment();
-  const put = (name, value) => (value === null ? said.delete(name) : said.set(name, value));
+  const fields = fragment();
+  const put = (name, value) => (value === null ? fields.delete(name) : fields.set(name, value));
   put("t", state.time.toFixed(2));
   put("span", Math.abs(state.span - SPAN_AT_FIRST) < 1e-9 ? null : state.span.toFixed(2));
   for (const name of SWITCHES) put(name, state[name] === ON_AT_FIRST[name] ? null : String(Number(state[name])));
@@ -35,7 +35,7 @@ function addressNow() {
   put("x", state.follow ? null : state.middle.x.toFixed(2));
   put("y", state.follow ? null : state.middle.y.toFixed(2));
   put("theme", document.documentElement.dataset.theme ?? null);
-  return `#${said.toString().replaceAll("%2F", "/")}`;
+  return `#${fields.toString().replaceAll("%2F", "/")}`;
 }
 
 /** Updates the address after a delay: browsers limit the changes per second. */
@@ -64,8 +64,8 @@ async function copyLink() {
 
 /** Shows a link back to the report that opened this page, if it has the same origin. */
 function offerReport() {
-  const said = fragment().get("report");
-  const url = said ? new URL(said, location.href) : null;
+  const fields = fragment().get("report");
+  const url = fields ? new URL(fields, location.href) : null;
   const safe = url && url.protocol === location.protocol && url.host === location.host;
   byId("report").hidden = !safe;
   if (safe) byId("report").href = url.href;

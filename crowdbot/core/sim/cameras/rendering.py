@@ -72,7 +72,7 @@ _PROBE = "from crowdbot.core.sim.cameras.rendering import probe; probe()"
 
 
 class Renderer:
-    """Draws one camera's view."""
+    """Draws the colour images of one camera."""
 
     def __init__(
         self,

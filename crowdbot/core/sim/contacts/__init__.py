@@ -1,1 +1,1 @@
-"""Contacts of robots with walls and with each other, and what pushes a robot."""
+"""Contacts of robots with walls and each other, and the forces that push a robot."""

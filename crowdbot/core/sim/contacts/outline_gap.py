@@ -52,7 +52,7 @@ def outline_gap(
 def _gap(
     walls: Array, pillars: Array, outline: Array, x: float, y: float, c: float, s: float
 ) -> float:
-    """As `outline_gap`, of an outline with corners; c, s: cosine and sine of the heading."""
+    """Like `outline_gap`, of an outline with corners; c, s: cosine and sine of the heading."""
     nearest, extent = math.inf, extent_of(outline)
     for i in range(walls.shape[0]):
         dx, dy = _from_wall(walls, i, x, y)

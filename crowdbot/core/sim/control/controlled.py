@@ -38,7 +38,7 @@ class Push:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlledRobot:
-    """A robot in a diagram.
+    """A robot and its controller in a Drake diagram.
 
     Attributes:
         state: the system with the port ``robot_state``, read by everything downstream.

@@ -23,7 +23,7 @@ from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunLogs:
-    """The logs of a run.
+    """The logs of people and of each robot in one run.
 
     Attributes:
         people: takes what is recorded of people; the only robot's own log where there is one.
@@ -132,7 +132,7 @@ def _close_shared(writer: RecordingWriter, endings: Mapping[str, RobotEnding]) -
 
 
 def header_of(setup: RunSetup, built: BuiltRun) -> RecordingHeader:
-    """The constants of a robot's run, without people."""
+    """Return the constants of a robot's run, without people."""
     model, task, target = built.model, built.task, built.target
     return RecordingHeader(
         scenario=built.scenario.id,
@@ -155,7 +155,7 @@ def header_of(setup: RunSetup, built: BuiltRun) -> RecordingHeader:
 
 
 def description_of(setup: RunSetup, built: BuiltRun) -> str:
-    """The robot's URDF, where it is recorded."""
+    """Return the robot's URDF, where it is recorded."""
     return to_urdf(built.model, built.infos, built.name) if setup.options.record != "none" else ""
 
 

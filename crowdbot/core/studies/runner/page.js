@@ -6,8 +6,8 @@ if (heading) heading.focus({ preventScroll: true });
 if (state.startsWith("drive:")) {
   const ask = async () => {
     try {
-      const said = await fetch("state", { cache: "no-store" });
-      if (said.ok && (await said.text()) !== state) return location.reload();
+      const reply = await fetch("state", { cache: "no-store" });
+      if (reply.ok && (await reply.text()) !== state) return location.reload();
     } catch {
       document.querySelector(".status").textContent = "The runner does not answer; nothing is lost.";
     }

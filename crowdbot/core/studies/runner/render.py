@@ -119,9 +119,9 @@ def _of_step(study: Study, step: Step, drive: DriveState) -> dict[str, Any]:
 
 def _of_drive(step: Step, drive: DriveState) -> dict[str, Any]:
     """Return the parts of the page of a drive."""
-    what = f"Drive {step.index}" if step.kind == "trial" else "Practice"
+    title = f"Drive {step.index}" if step.kind == "trial" else "Practice"
     parts: dict[str, Any] = {
-        "heading": f"{what}, mode {step.shown}",
+        "heading": f"{title}, mode {step.shown}",
         "state": drive.text(step),
         "command": drive.command if drive.problem else "",  # it names the condition
     }

@@ -62,9 +62,9 @@ class _Handler(BaseHTTPRequestHandler):
         if path is None:
             return
         if path == "":
-            self._send(200, self._said(self.server.session.page), "text/html")
+            self._send(200, self._reply(self.server.session.page), "text/html")
         elif path == "state":
-            self._send(200, self._said(self.server.session.state), "text/plain")
+            self._send(200, self._reply(self.server.session.state), "text/plain")
         else:
             self._send(404, "no such page", "text/plain")
 
@@ -77,13 +77,13 @@ class _Handler(BaseHTTPRequestHandler):
         if path != "" or fields is None:
             self._send(400, "not an answer of the page", "text/plain")
             return
-        self._said(lambda: self.server.session.answer(fields))
+        self._reply(lambda: self.server.session.answer(fields))
         self._send(303, "", "text/plain", Location="./")
 
     def log_message(self, format: str, *args: Any) -> None:
         """Say nothing: addresses hold the token."""
 
-    def _said(self, ask: Callable[[], object]) -> str:
+    def _reply(self, ask: Callable[[], object]) -> str:
         try:
             return str(ask())
         except CrowdbotError as error:  # damaged or unwritable data

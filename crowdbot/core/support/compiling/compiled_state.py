@@ -59,10 +59,10 @@ def state_of(function: types.FunctionType) -> str:
     """Return the hash of everything that affects a function's compiled code but its arguments."""
     if function not in _STATES:
         _STATES[function] = "itself"  # for recursive functions
-        told = hashlib.sha256(_VERSIONS.encode())
+        digest = hashlib.sha256(_VERSIONS.encode())
         for part in _function(function):
-            told.update(part.encode() + b"\0")
-        _STATES[function] = told.hexdigest()
+            digest.update(part.encode() + b"\0")
+        _STATES[function] = digest.hexdigest()
     return _STATES[function]
 
 

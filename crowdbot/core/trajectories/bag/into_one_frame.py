@@ -41,8 +41,8 @@ def into_one_frame(
     target = _target(tree, robot, people, frames)
     if frames == [target]:
         return robot, people
-    told = ", ".join(f"'{frame}'" for frame in frames if frame != target)
-    notes.append(f"positions in {told} are transformed into '{target}', by the bag's transforms")
+    listed = ", ".join(f"'{frame}'" for frame in frames if frame != target)
+    notes.append(f"positions in {listed} are transformed into '{target}', by the bag's transforms")
     made = [None if c is None else _moved(path, tree, c, target, notes) for c in (robot, people)]
     return made[0], made[1]
 

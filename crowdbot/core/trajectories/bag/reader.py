@@ -164,7 +164,7 @@ _REMEDIES = {
 
 
 def _remedy(text: str) -> str:
-    return next((f" ({told})" for part, told in _REMEDIES.items() if part in text), "")
+    return next((f" ({remedy})" for part, remedy in _REMEDIES.items() if part in text), "")
 
 
 def _check_layout(path: Path, reader: Any, connection: Any) -> None:

@@ -142,8 +142,8 @@ class _Reading:
         is_shape = bool(rows) and rows[0].group not in ("", "table")
         rows = without_parts(rows) if is_shape else rows
         if not rows:
-            told = f" ({'; '.join(self._notes)})" if self._notes else ""
-            raise InputError(f"{self._path}: {topic} contains no people{told}")
+            notes = f" ({'; '.join(self._notes)})" if self._notes else ""
+            raise InputError(f"{self._path}: {topic} contains no people{notes}")
         return rows
 
     def _rows(self, people: Columns) -> list[Seen]:
@@ -249,8 +249,8 @@ class _Reading:
         }
         chosen = np.array(sorted(once.values()), np.int64)  # a repeated message adds nothing
         if not len(chosen):
-            told = "; ".join(self._notes)
-            raise InputError(f"{self._path}: {self._people} contains no people ({told})")
+            notes = "; ".join(self._notes)
+            raise InputError(f"{self._path}: {self._people} contains no people ({notes})")
         chosen = chosen[np.argsort(people.stamp[chosen], kind="stable")]
         people, names = people.only(chosen), names[chosen]
         return self._table(

@@ -111,7 +111,7 @@ def _foreseen(run: Trajectories, margin: float, jump_speed: float) -> Array:
 
 
 def _braked(t: Array, speed: Array, ahead: Array, onset: float, last: int, rule: FaultRule) -> bool:
-    """As `braked_in_time`, for the contact after sample ``last`` with one person."""
+    """Like `braked_in_time`, for the contact after sample ``last`` with one person."""
     time = t[: last + 1] - onset
     fastest = float(np.max(speed[: last + 1][time >= -rule.reaction], initial=speed[last]))
     needs = rule.reaction + fastest / rule.braking

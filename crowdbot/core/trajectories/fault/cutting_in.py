@@ -1,4 +1,4 @@
-"""Contacts with people in whose path the robot moved too late for them to stop."""
+"""Contacts of people with a robot that cut into their path too late for them to stop."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from crowdbot.core.types.arrays import Array, Indices
 
 
 def regained(
-    run: Trajectories, found: Evasion, who: Indices, within: float, jump_speed: float
+    run: Trajectories, found: Evasion, agents: Indices, within: float, jump_speed: float
 ) -> Array:
     """Return by how much accelerations away from the robot only regain speed (N-1, M), m/s².
 
@@ -22,16 +22,16 @@ def regained(
     Args:
         run: with a robot.
         found: accelerations of the same run.
-        who: (K,) columns of the people who are asked for; 0 elsewhere.
+        agents: (K,) columns of the people who are asked for; 0 elsewhere.
         within: this long after the touch, s.
         jump_speed: a faster step is a teleport where none are recorded, m/s.
     """
-    asked = np.zeros(found.near.shape, dtype=bool)
-    asked[:, who] = True
-    struck = touched_by_others(run, asked)
+    selected = np.zeros(found.near.shape, dtype=bool)
+    selected[:, agents] = True
+    struck = touched_by_others(run, selected)
     vx, vy = people_velocities(run, jump_speed)
     back = np.zeros(found.away.shape)
-    for m in who.tolist():
+    for m in agents.tolist():
         before, until = np.full(2, np.nan), -np.inf
         for k in range(len(found.dt)):
             if struck[k, m]:

@@ -45,10 +45,10 @@ def implausible(run: Trajectories) -> list[str]:
     if run.agents is not None:
         tracks.append(("people", run.agents.x, run.agents.y, PERSON_SPEED))
     found = list(_times(run.t, tracks))
-    for who, x, y, limit in tracks:
-        found += _speeds(who, run.t, x, y, limit)
+    for name, x, y, limit in tracks:
+        found += _speeds(name, run.t, x, y, limit)
     if not found:
-        found += [said for who, x, y, _ in tracks for said in units.creeping(run.t, who, x, y)]
+        found += [f for name, x, y, _ in tracks for f in units.creeping(run.t, name, x, y)]
     found += [*units.bodies(run), *units.turning(run)]
     found += _headings(run)
     found += _placeholders(run)
@@ -60,25 +60,25 @@ def implausible(run: Trajectories) -> list[str]:
 def _times(t: Array, tracks: list[tuple[str, Array, Array, float]]) -> Iterator[str]:
     if len(t) < _FEW:
         return
-    medians = {who: _median_speed(t, x, y) for who, x, y, _ in tracks}
+    medians = {name: _median_speed(t, x, y) for name, x, y, _ in tracks}
     yield from times.findings(t, {w: v for w, v in medians.items() if v is not None})
 
 
-def _speeds(who: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[str]:
+def _speeds(name: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[str]:
     median = _median_speed(t, x, y)
     if median is None or median <= limit:
         return
     nearest = _speed_by_nearness(t, x, y) if x.ndim > 1 and x.shape[1] > 1 else None
     if nearest is not None and nearest <= limit:
         yield (
-            f"{who}: median speed {median:.3g} m/s, but {nearest:.3g} m/s if each is the one "
+            f"{name}: median speed {median:.3g} m/s, but {nearest:.3g} m/s if each is the one "
             "nearest to the place of the sample before: ids that change from sample to sample?"
         )
         return
     units = {**_UNITS, **(_MINUTES if np.median(np.diff(t)) < _FASTEST else {})}
     unit, factor = min(units.items(), key=lambda item: abs(np.log(median / item[1] / USUAL)))
     yield (
-        f"{who}: median speed {median:.3g} m/s: {unit}? "
+        f"{name}: median speed {median:.3g} m/s: {unit}? "
         f"Divided by {factor} it would be {median / factor:.3g} m/s"
     )
 
@@ -200,7 +200,7 @@ def _agreement(motion: Array, theta: Array) -> float:
 
 def _recorded_velocities(run: Trajectories) -> Iterator[str]:
     """Check that velocities agree with the change of positions."""
-    for who, track in (("the robot", run.robot), ("people", run.agents)):
+    for subject, track in (("the robot", run.robot), ("people", run.agents)):
         velocity = None if track is None else _velocity(track)
         if velocity is None or len(run.t) < _FEW:
             continue
@@ -213,10 +213,12 @@ def _recorded_velocities(run: Trajectories) -> Iterator[str]:
         speed, off = float(np.median(np.hypot(x, y))), _off(x, y, vx, vy)
         if off <= 0.5 * speed:
             continue
-        seen = f"{who}: velocities differ from the change of positions by {off:.3g} m/s (median)"
+        seen = (
+            f"{subject}: velocities differ from the change of positions by {off:.3g} m/s (median)"
+        )
         if track.vx is not None and (swapped := _off(x, y, vy, vx)) < 0.25 * off:
             yield f"{seen}; with x and y exchanged by {swapped:.3g} m/s"
-        elif who == "the robot" and run.robot is not None:
+        elif subject == "the robot" and run.robot is not None:
             c, s = np.cos(run.robot.theta[known]), np.sin(run.robot.theta[known])
             turned = {
                 "the robot's own frame": _off(x, y, c * vx - s * vy, s * vx + c * vy),
@@ -243,7 +245,7 @@ def _recorded_speeds(run: Trajectories) -> Iterator[str]:
     """Check that speeds agree with the way of a second: missing velocities, km/h, mm/s."""
     if len(run.t) < _FEW:
         return
-    for who, track in (("the robot", run.robot), ("people", run.agents)):
+    for name, track in (("the robot", run.robot), ("people", run.agents)):
         velocity = None if track is None else _velocity(track)
         if velocity is None:
             continue
@@ -251,13 +253,15 @@ def _recorded_speeds(run: Trajectories) -> Iterator[str]:
         known = np.isfinite(ways + recorded) & (ways > 2.0 * _MOVING)
         if np.count_nonzero(known) < _FEW:
             continue
-        way, said = float(np.median(ways[known])), float(np.median(recorded[known]))
-        if not _TOO_SLOW * way <= said <= _TOO_FAST * way:
-            unit = next((u for u, f in _SPEEDS.items() if abs(said / way / f - 1.0) < 0.1), "")
+        way, recorded_speed = float(np.median(ways[known])), float(np.median(recorded[known]))
+        if not _TOO_SLOW * way <= recorded_speed <= _TOO_FAST * way:
+            unit = next(
+                (u for u, f in _SPEEDS.items() if abs(recorded_speed / way / f - 1.0) < 0.1), ""
+            )
             yield (
-                f"{who}: the recorded speed is {said:.3g} m/s (median), the way of a second "
-                f"{way:.3g} m{f': {unit}?' if unit else ''}; velocities that are left out are "
-                "derived from positions"
+                f"{name}: the recorded speed is {recorded_speed:.3g} m/s (median), the way of a "
+                f"second {way:.3g} m{f': {unit}?' if unit else ''}; velocities that are left out "
+                "are derived from positions"
             )
 
 

@@ -17,11 +17,13 @@ _FEW = 5
 _TELEPORT = 10.0
 
 
-def findings(who: str, t: Array, x: Array, y: Array, recorded: Mask | None = None) -> Iterator[str]:
+def findings(
+    name: str, t: Array, x: Array, y: Array, recorded: Mask | None = None
+) -> Iterator[str]:
     """Yield a sentence on the steps in which bodies jump.
 
     Args:
-        who: the robot or people, for the sentence.
+        name: the robot or people, for the sentence.
         t: times (N,), s.
         x, y: places (N,) or (N, M), m; NaN where absent.
         recorded: steps (N-1, M) that were recorded as teleports, which are none of these.
@@ -42,9 +44,9 @@ def findings(who: str, t: Array, x: Array, y: Array, recorded: Mask | None = Non
         return
     k = np.unravel_index(np.argmax(np.where(jumps, steps, 0.0)), jumps.shape)
     count = np.count_nonzero(jumps)
-    seen = f"{who}: {count} jump{'s' if count > 1 else ''}"
+    seen = f"{name}: {count} jump{'s' if count > 1 else ''}"
     where = f"{'the longest ' if count > 1 else ''}of {steps[k]:.3g} m at t = {t[k[0] + 1]:.6g} s"
-    yield f"{seen}, {where}: {_meaning(who)} {_scored(speeds[jumps])}"
+    yield f"{seen}, {where}: {_meaning(name)} {_scored(speeds[jumps])}"
 
 
 def nowhere(x: Array, y: Array) -> Mask:
@@ -62,8 +64,8 @@ def _second(moving: Array) -> float:
     return float(np.sort(moving)[-2])
 
 
-def _meaning(who: str) -> str:
-    return "a corrected place?" if who == "the robot" else "an id that was used again?"
+def _meaning(name: str) -> str:
+    return "a corrected place?" if name == "the robot" else "an id that was used again?"
 
 
 def _scored(speeds: Array) -> str:
@@ -71,8 +73,8 @@ def _scored(speeds: Array) -> str:
     slow = np.count_nonzero(speeds <= _TELEPORT)
     if not slow:
         return "Metrics take steps faster than 10 m/s (jump_speed) for teleports and leave them out"
-    told = "Metrics count it" if len(speeds) == 1 else f"Metrics count {slow} of them"
+    counted = "Metrics count it" if len(speeds) == 1 else f"Metrics count {slow} of them"
     return (
-        f"{told} as motion, since only steps faster than 10 m/s (jump_speed) are teleports: "
+        f"{counted} as motion, since only steps faster than 10 m/s (jump_speed) are teleports: "
         "a smaller jump_speed leaves out more"
     )

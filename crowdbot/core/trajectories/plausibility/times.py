@@ -33,19 +33,19 @@ def findings(t: Array, speeds: dict[str, float]) -> Iterator[str]:
     if step < STEPS[0]:
         yield f"median time between samples {step:.3g} s: minutes or hours? Times are in seconds"
     elif step > STEPS[1]:
-        yield f"median time between samples {step:.3g} s: {_told(step, fastest)}"
+        yield f"median time between samples {step:.3g} s: {_advice(step, fastest)}"
     elif fastest is not None and fastest < _CREEPING and np.all(t == np.round(t)):
-        who = max(speeds, key=lambda name: speeds[name])
+        fastest_name = max(speeds, key=lambda name: speeds[name])
         yield (
-            f"{who}: median speed {fastest:.3g} m/s, and all times are whole numbers: "
-            f"{_told(step, fastest)}"
+            f"{fastest_name}: median speed {fastest:.3g} m/s, and all times are whole numbers: "
+            f"{_advice(step, fastest)}"
         )
 
 
-def _told(step: float, speed: float | None) -> str:
+def _advice(step: float, speed: float | None) -> str:
     unit, rate = _ticks(step, speed)
-    told = f"{unit}? Times are in seconds; frame_rate={rate:.0f} reads these"
-    return told if speed is None else f"{told}, with a median speed of {speed * rate:.3g} m/s"
+    text = f"{unit}? Times are in seconds; frame_rate={rate:.0f} reads these"
+    return text if speed is None else f"{text}, with a median speed of {speed * rate:.3g} m/s"
 
 
 def _ticks(step: float, speed: float | None) -> tuple[str, float]:

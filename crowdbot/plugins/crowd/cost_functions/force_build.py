@@ -26,7 +26,7 @@ _LARGEST = 1e9
 
 
 class _Target:
-    """``work``: the target velocity."""
+    """Record in ``work``: the target velocity, m/s."""
 
     vx: float
     vy: float

@@ -30,7 +30,7 @@ _BRAKING = 0.5  # s within which the gap to a wall may be used up
 
 
 class _Params(CostParams):
-    """Parameters.
+    """Parameters of ORCA, as a record.
 
     Attributes:
         horizon: time for which discs apart are kept apart, s.

@@ -1,4 +1,4 @@
-"""A policy whose agents obey commands."""
+"""A crowd policy for people who follow velocity commands."""
 
 from __future__ import annotations
 

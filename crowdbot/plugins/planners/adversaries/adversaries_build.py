@@ -1,4 +1,4 @@
-"""The adversaries: variations of one blind driver with a look ahead."""
+"""The adversaries: variants of one blind driver that looks some way ahead."""
 
 from __future__ import annotations
 

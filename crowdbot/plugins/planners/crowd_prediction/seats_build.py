@@ -1,4 +1,4 @@
-"""Compiled parts of `CrowdForecast`: who takes which seat of the imagined crowd, and back again."""
+"""Compiled parts of `CrowdForecast`: assign people to imagined ones, and read results back."""
 
 from __future__ import annotations
 

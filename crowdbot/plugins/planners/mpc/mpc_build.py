@@ -1,4 +1,4 @@
-"""MPC: perceive, predict, improve the last plan or one on another side, drive its beginning.
+"""MPC: predicts people, improves the last plan and plans on other sides, drives the best one.
 
 After Brito, Floor, Ferranti, Alonso-Mora, "Model predictive contouring control for collision
 avoidance in unstructured dynamic environments", RA-L 4(4), 2019: people are discs that keep their
@@ -118,12 +118,12 @@ class Mpc:
     ) -> Array | None:
         """Return the plan that costs least after the solver had it; None if it always fails."""
         assert self._problem is not None
-        problem, told = self._problem, self._state_of(state, waypoint, top)
+        problem, values = self._problem, self._state_of(state, waypoint, top)
         others = starts(state, waypoint, problem.limits, self._plan.shape, problem.dt, top)
-        given = [self._given(world, plan, told) for plan in others]
+        given = [self._given(world, plan, values) for plan in others]
         costs = [problem.cost(p, g) for p, g in zip(others, given, strict=True)]
         best = int(np.argmin(costs))
-        kept = problem.solve(self._plan, self._given(world, self._plan, told))
+        kept = problem.solve(self._plan, self._given(world, self._plan, values))
         new = problem.solve(others[best], given[best])
         if kept is None or new is None:
             one = kept or new
@@ -133,14 +133,14 @@ class Mpc:
     def _state_of(self, state: MotionState, waypoint: tuple[float, float], top: float) -> Array:
         return np.array([*state, *waypoint, top])
 
-    def _given(self, world: AroundRobot, plan: Array, told: Array) -> Array:
+    def _given(self, world: AroundRobot, plan: Array, values: Array) -> Array:
         """Return the optimiser's parameters: the state, and constraints along the last plan."""
         assert self._problem is not None
         spec = self._spec
-        poses = poses_of(tuple(told[:3].tolist()), plan, self._problem.dt)
+        poses = poses_of(tuple(values[:3].tolist()), plan, self._problem.dt)
         margins = spec.margin, spec.margin_growth
         rows = constrain(world, poses, self._problem.dt, margins, spec.neighbours, spec.planes)
-        return np.concatenate([told, rows.ravel()])
+        return np.concatenate([values, rows.ravel()])
 
 
 def build(spec: MpcSpec) -> Mpc:

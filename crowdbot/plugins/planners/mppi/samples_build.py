@@ -41,7 +41,7 @@ COUNTS = 9.0
 
 
 class Samples(NamedTuple):
-    """Arrays of the sampler.
+    """The sampler's arrays: plan, noise and costs.
 
     Attributes:
         plan: (T, 3) v, w, vy of the current plan.

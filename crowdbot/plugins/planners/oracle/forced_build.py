@@ -1,4 +1,4 @@
-"""Work of a robot against people who evade it, so far and on a path, as in the primary score."""
+"""Work that people do to evade a robot, until now and on a path, as in the primary score."""
 
 from __future__ import annotations
 

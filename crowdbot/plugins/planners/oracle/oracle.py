@@ -1,4 +1,4 @@
-"""Oracle: plans with the ground truth, among people who respond like those of the crowd."""
+"""Oracle: plans with the ground truth, and with the responses of the crowd's people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Oracle: the people MPC with the truth, whose people give way in each plan."""
+"""Oracle: the people MPC with the ground truth; people give way in each plan."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _FAR = 0.8
 
 
 class TriedPath(NamedTuple):
-    """A path that is tried for a plan.
+    """A path that the robot simulates beside the crowd before driving it.
 
     Attributes:
         number: of the plan.

@@ -1,4 +1,4 @@
-"""WholeForecast: as `CrowdForecast`, of all who are near, for the whole of a plan.
+"""WholeForecast: `CrowdForecast` for all people nearby and the whole plan.
 
 It takes twice the time; `CrowdForecast` predicts the 20 nearest for two seconds. The reference
 scores of `oracle` are with this one. Its sums are kept in numpy's order: the compiled ones of

@@ -1,4 +1,4 @@
-"""The surroundings of a plan: people, who may give way, and static obstacles; compiled."""
+"""Surroundings of a plan: people, some of whom give way, and static obstacles; compiled."""
 
 from __future__ import annotations
 

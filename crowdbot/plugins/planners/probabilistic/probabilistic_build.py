@@ -82,9 +82,9 @@ class Probabilistic:
         spec, limits = self._spec, self._limits
         v, w, _ = twist
         dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
-        asked = (0.0, float(user[0]), float(planner[0]))  # no flight that no one asks for
-        low = min(max(v - dv, limits.v_min, min(asked)), limits.v_max)
-        high = max(min(v + dv, limits.v_max, max(asked)), low)
+        speeds = (0.0, float(user[0]), float(planner[0]))  # no flight that no one asks for
+        low = min(max(v - dv, limits.v_min, min(speeds)), limits.v_max)
+        high = max(min(v + dv, limits.v_max, max(speeds)), low)
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)
         grid = candidates(
             low, high, spec.speeds, left, right, spec.yaw_rates, min(max(user[1], left), right)

@@ -15,7 +15,7 @@ _STILL, _FASTEST = 0.3, 2.5
 
 
 class PeopleMotion:
-    """Remembers people's earlier positions.
+    """Estimates people's velocities from their earlier positions.
 
     Args:
         look_back: age of the scan to compare with, s; 0: everyone counts as standing.

@@ -34,7 +34,7 @@ class Perceptron:
         if not numbers or not all(n.isdecimal() for n in numbers):
             raise InputError(f"{where}: the layers of '{part}' are not numbered")
         for number in sorted({int(n) for n in numbers}):
-            w, b = (weights.get(f"{part}.{number}.{what}") for what in ("weight", "bias"))
+            w, b = (weights.get(f"{part}.{number}.{tensor}") for tensor in ("weight", "bias"))
             if w is None or b is None:
                 raise InputError(f"{where}: layer {number} of '{part}' lacks its weight or bias")
             before = self._layers[-1][0].shape[1] if self._layers else w.shape[-1]

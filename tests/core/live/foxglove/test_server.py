@@ -114,8 +114,8 @@ def test_what_a_planner_draws_is_a_marker_of_lines_or_a_text() -> None:
         assert (marker.ns, marker.type) == ("tracks", marker.LINE_LIST)
         assert [(p.x, p.y) for p in marker.points] == [(1.0, 2.0), (1.5, 2.0)]
         connection.drawing(2.1, "robot", "why", np.array([[1.0], [2.0]]), ["waits"])
-        said = ros.from_cdr(_data(socket, 1)[13:], "visualization_msgs/msg/Marker")
-        assert (said.ns, said.type, said.text) == ("why", said.TEXT_VIEW_FACING, "waits")
+        values = ros.from_cdr(_data(socket, 1)[13:], "visualization_msgs/msg/Marker")
+        assert (values.ns, values.type, values.text) == ("why", values.TEXT_VIEW_FACING, "waits")
 
 
 def test_what_clients_send_does_not_reach_the_terminal_without_end(

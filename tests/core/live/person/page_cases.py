@@ -47,9 +47,9 @@ def hear(socket: ClientConnection, op: str) -> dict[str, Any]:
     """The next message of a kind."""
     end = time.monotonic() + AT_MOST
     while time.monotonic() < end:
-        said = json.loads(socket.recv(timeout=AT_MOST))
-        if said["op"] == op:
-            return dict(said)
+        document = json.loads(socket.recv(timeout=AT_MOST))
+        if document["op"] == op:
+            return dict(document)
     raise AssertionError(f"no '{op}' came")
 
 

@@ -95,14 +95,14 @@ def test_one_page_drives_and_the_seat_can_be_taken_when_free() -> None:
 
 
 def test_used_positions_are_told_once() -> None:
-    told = []
+    entries = []
     seat = held(Stick(1, 1.0))
-    seat.on_taken = lambda number, t: told.append((number, t))
+    seat.on_taken = lambda number, t: entries.append((number, t))
     for k in range(3):
         seat.take(0.1 * k)
     seat.move("page", Stick(4, 0.0))
     seat.take(0.3)
-    assert told == [(1, 0.0), (4, 0.3)]
+    assert entries == [(1, 0.0), (4, 0.3)]
 
 
 def test_the_run_begins_when_the_person_says_so_and_waits_while_gone(

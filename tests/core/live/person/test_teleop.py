@@ -59,23 +59,23 @@ class Hand(threading.Thread):
             except ConnectionClosed:
                 pass
 
-    def _hear(self, page: ClientConnection, said: dict[str, Any]) -> None:
-        match said["op"]:
+    def _hear(self, page: ClientConnection, message: dict[str, Any]) -> None:
+        match message["op"]:
             case "scene":
-                self.scene = said["scene"]
-            case "state" if said["waits"] == "not begun":
+                self.scene = message["scene"]
+            case "state" if message["waits"] == "not begun":
                 say(page, "begin")
             case "frame":
-                self.frames.append(said)
+                self.frames.append(message)
                 say(page, "here", away="")
                 for n, (since, (ahead, left)) in enumerate(HAND.items(), 1):
-                    if said["t"] >= since and n > max(self.used.values(), default=0):
+                    if message["t"] >= since and n > max(self.used.values(), default=0):
                         say(page, "stick", n=n, ahead=ahead, left=left)
                         break
             case "taken":
-                self.used[said["t"]] = said["n"]
+                self.used[message["t"]] = message["n"]
             case "end":
-                self.end = said
+                self.end = message
 
 
 def _commands(run: Path, topic: str) -> dict[float, tuple[float, float]]:
@@ -135,7 +135,7 @@ def _limits(run: Path) -> RobotLimits:
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
+    ("more", "expected"),
     [
         (["--robot", "x"], "has no robot 'x', but robot"),
         (["--planner", "dwa"], "reads no joystick"),
@@ -146,8 +146,8 @@ def _limits(run: Path) -> RobotLimits:
     ],
 )
 def test_what_cannot_be_driven_is_said(
-    more: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    more: list[str], expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["teleop", *SHORT, "--out", str(tmp_path), *more]) != 0
-    assert said in capsys.readouterr().err
+    assert expected in capsys.readouterr().err
     assert not any(tmp_path.iterdir())

@@ -176,7 +176,7 @@ def replace_id(scenario: Scenario) -> Scenario:
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
+    ("more", "expected"),
     [
         (["--at", "1"], "a place is X,Y"),
         (["--at", "nan,0"], "write two numbers"),
@@ -186,8 +186,8 @@ def replace_id(scenario: Scenario) -> Scenario:
     ],
 )
 def test_what_cannot_be_walked_is_said(
-    more: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    more: list[str], expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["walk", SHORT, "--out", str(tmp_path), "--no-references", *more]) != 0
-    assert said in capsys.readouterr().err
+    assert expected in capsys.readouterr().err
     assert not any(tmp_path.iterdir())

@@ -315,10 +315,10 @@ def test_a_server_that_stays_stopped_is_ended(
 def test_reasons_can_be_shown_and_written(step: str, reason: str, tmp_path: Path) -> None:
     with hosted(choose(tmp_path, planner_text(step))) as host, pytest.raises(PlannerError) as e:
         host.step(observation())
-    said = str(e.value)
-    assert reason in said
-    assert hidden_character(said, allowed="\n") == ""
-    assert len(said) < 3000
+    text = str(e.value)
+    assert reason in text
+    assert hidden_character(text, allowed="\n") == ""
+    assert len(text) < 3000
 
 
 def test_a_flood_of_output_is_cut(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -87,7 +87,7 @@ def _memo(index: int) -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "expected"),
     [
         (b"", "neither numpy's"),
         (b"\x93NUMPY", "neither numpy's"),
@@ -102,9 +102,9 @@ def _memo(index: int) -> bytes:
     ids=range(9),
 )  # fmt: skip
 def test_damaged_and_hostile_files_end_as_one_line(
-    content: bytes, told: str, tmp_path: Path
+    content: bytes, expected: str, tmp_path: Path
 ) -> None:
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=expected) as caught:
         _read(tmp_path, content)
     assert "\n" not in str(caught.value)
 

@@ -44,7 +44,7 @@ def test_plain_numba_leaves_compile_parts_out(tmp_path: Path, plain: bool) -> No
         **os.environ, "CROWDBOT_PLAIN_NUMBA": str(int(plain)),
         "NUMBA_CACHE_DIR": str(tmp_path / "kernels"),
     }  # fmt: skip
-    said = subprocess.run(
+    done = subprocess.run(
         [sys.executable, str(file)], env=environment, capture_output=True, text=True, check=True
     )
-    assert said.stdout.split() == ["0.0", "5.0", "10.0", "1.5", str(not plain)]
+    assert done.stdout.split() == ["0.0", "5.0", "10.0", "1.5", str(not plain)]

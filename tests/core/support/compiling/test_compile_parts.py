@@ -204,8 +204,8 @@ def test_reading_leaves_out_what_only_compiling_needs(tmp_path: Path) -> None:
     assert _ended(_started(tmp_path, "outer"))[1] == [4.0]
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
     command = [sys.executable, "-c", LOADED, str(tmp_path)]
-    said = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
-    assert said.stdout.split() == ["None", "False"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    assert done.stdout.split() == ["None", "False"]
 
 
 @pytest.mark.slow

@@ -85,7 +85,7 @@ def _none(bag: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("plugin", "damage", "told"),
+    ("plugin", "damage", "expected"),
     [
         (StoragePlugin.MCAP, _cut, "mcap recover FILE"),
         (StoragePlugin.SQLITE3, _cut, r"cut off: .* 'sqlite3 FILE .recover"),
@@ -100,11 +100,11 @@ def _none(bag: Path) -> None:
     ],
 )
 def test_what_cannot_be_read_is_refused_with_what_helps(
-    tmp_path: Path, plugin: StoragePlugin, damage: Callable[[Path], None], told: str
+    tmp_path: Path, plugin: StoragePlugin, damage: Callable[[Path], None], expected: str
 ) -> None:
     bag = _bag(tmp_path, plugin)
     damage(bag)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=expected):
         read(bag)
 
 

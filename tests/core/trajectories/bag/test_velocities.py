@@ -43,7 +43,7 @@ def test_a_twist_that_is_never_filled_in_is_unknown(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("yaw", "vx", "vy", "told"),
+    ("yaw", "vx", "vy", "expected"),
     [
         (math.pi / 2, 0.0, 0.5, "taken in the world's frame"),
         (math.pi, -0.5, 0.0, "taken in the world's frame"),
@@ -53,12 +53,12 @@ def test_a_twist_that_is_never_filled_in_is_unknown(tmp_path: Path) -> None:
     ],
 )
 def test_what_positions_contradict_is_told(
-    tmp_path: Path, yaw: float, vx: float, vy: float, told: str
+    tmp_path: Path, yaw: float, vx: float, vy: float, expected: str
 ) -> None:
     with pytest.warns(RecordingWarning) as found:
         read(write(tmp_path / "bag", _odometry(yaw, vx, vy)), people=None)
     (warning,) = found
-    assert told in str(warning.message)
+    assert expected in str(warning.message)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.0, math.pi])

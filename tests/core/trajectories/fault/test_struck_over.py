@@ -53,7 +53,7 @@ def test_a_robot_that_drove_on_is_excused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "facts"),
     [
         ("brakes before the person", {"speed": np.where(TOUCH - 0.5 < T, 0.15, 0.6)}),
         ("brakes and goes on", {"speed": np.where(np.abs(T - TOUCH + 1.0) < 0.3, 0.1, 0.6)}),
@@ -64,8 +64,8 @@ def test_a_robot_that_drove_on_is_excused() -> None:
         ("has touched another person at fault", {"speed": STEADY, "early": True}),
     ],
 )  # fmt: skip
-def test_a_planner_cannot_have_a_bad_draw_replaced(name: str, told: dict[str, object]) -> None:
-    assert not excused(**told), name  # type: ignore[arg-type]
+def test_a_planner_cannot_have_a_bad_draw_replaced(name: str, facts: dict[str, object]) -> None:
+    assert not excused(**facts), name  # type: ignore[arg-type]
 
 
 def test_nobody_touched_it() -> None:

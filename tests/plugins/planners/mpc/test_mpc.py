@@ -60,7 +60,7 @@ def test_it_turns_round_on_the_spot_to_a_goal_behind_it() -> None:
 
 @pytest.mark.parametrize("person", [[5.5, -3.6, 0.0, 0.8], [8.0, 0.05, -0.8, 0.0]])
 def test_people_who_cross_and_who_come_are_let_past(person: list[float]) -> None:
-    world = World([person], goal=(9.0, 0.0), told=True)
+    world = World([person], goal=(9.0, 0.0), truth=True)
     out = world.run(_mpc(**TOLD), time_limit=14.0, stop_at=8.0)
     assert out.arrived
     assert out.contacts == []

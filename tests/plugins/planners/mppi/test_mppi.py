@@ -38,7 +38,7 @@ def test_a_wall_ahead_stops_it() -> None:
 
 @pytest.mark.parametrize("person", [[5.5, -3.6, 0.0, 0.8], [8.0, 0.05, -0.8, 0.0]])
 def test_people_who_cross_and_who_come_are_let_past(person: list[float]) -> None:
-    world = World([person], goal=(9.0, 0.0), told=True)
+    world = World([person], goal=(9.0, 0.0), truth=True)
     out = world.run(_mppi(**TOLD), time_limit=14.0, stop_at=8.0)
     assert out.arrived
     assert out.contacts == []
@@ -46,7 +46,7 @@ def test_people_who_cross_and_who_come_are_let_past(person: list[float]) -> None
 
 def test_who_stands_in_the_way_is_driven_around_on_one_side() -> None:
     """The mean of plans on both sides would lead into the person."""
-    world = World([[5.0, 0.0, 0.0, 0.0]], goal=(9.0, 0.0), told=True)
+    world = World([[5.0, 0.0, 0.0, 0.0]], goal=(9.0, 0.0), truth=True)
     out = world.run(_mppi(**TOLD), time_limit=12.0, stop_at=7.5)
     assert out.arrived
     assert out.contacts == []

@@ -81,7 +81,7 @@ def test_its_behaviours_let_a_person_pass_who_crosses(behavior: str) -> None:
     spec = NavgroundSpec.model_validate(
         {"kind": "navground", "behavior": behavior, "person_radius": PERSON, **TOLD}
     )
-    world = World([[5.5, -3.6, 0.0, 0.8]], goal=(9.0, 0.0), told=True)
+    world = World([[5.5, -3.6, 0.0, 0.8]], goal=(9.0, 0.0), truth=True)
     out = world.run(build(spec), time_limit=14.0, stop_at=8.0)
     assert out.arrived
     assert out.contacts == []
@@ -92,7 +92,7 @@ def test_dummy_looks_at_nothing_and_settings_reach_the_library() -> None:
     from crowdbot.plugins.planners.navground.navground_build import build, made
 
     core = importlib.import_module("navground.core")
-    world = World([[5.0, 0.0, 0.0, 0.0]], goal=(9.0, 0.0), told=True)
+    world = World([[5.0, 0.0, 0.0, 0.0]], goal=(9.0, 0.0), truth=True)
     spec = NavgroundSpec.model_validate({"kind": "navground", "behavior": "Dummy", **TOLD})
     assert len(world.run(build(spec), time_limit=6.0, stop_at=5.5).contacts) == 1
     hl = NavgroundSpec(behavior="HL", settings={"eta": 0.25})

@@ -112,7 +112,7 @@ def test_the_look_ahead_turns_to_the_goal_and_rewards() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "told"),
+    ("changed", "expected"),
     [
         ({"lstm.0.weight": np.zeros((1, 1))}, "those of this planner are attention, mlp1"),
         ({"mlp1.0.weight": np.zeros((12, 61))}, "takes 61 numbers, not 13"),
@@ -123,8 +123,8 @@ def test_the_look_ahead_turns_to_the_goal_and_rewards() -> None:
         ({"mlp3.4.bias": np.zeros(2)}, "lacks its weight or bias"),
     ],
 )
-def test_other_networks_are_refused(changed: Weights, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_other_networks_are_refused(changed: Weights, expected: str) -> None:
+    with pytest.raises(InputError, match=expected):
         SarlNetwork({**sarl_weights(), **changed}, "w.npz")
 
 

@@ -51,9 +51,9 @@ def off(a: float, b: float) -> float:
 @example(0.0, 0.5, 20.0, 0.0)
 def test_a_turn_that_nobody_told_is_noticed(yaw: float, push: float, x: float, y: float) -> None:
     heading = HeadingByWalls()
-    told = Pose(x, y, yaw)
-    assert off(heading.pose(told, seen_from(told)).yaw, yaw) == 0.0
-    found = heading.pose(told, seen_from(Pose(x, y, yaw + push)))
+    odometry = Pose(x, y, yaw)
+    assert off(heading.pose(odometry, seen_from(odometry)).yaw, yaw) == 0.0
+    found = heading.pose(odometry, seen_from(Pose(x, y, yaw + push)))
     near = 0.5 if abs(push) > 0.03 else 1.7  # up to 0.02 rad odometry is believed
     assert off(found.yaw, yaw + push) < math.radians(near)
 
@@ -61,21 +61,21 @@ def test_a_turn_that_nobody_told_is_noticed(yaw: float, push: float, x: float, y
 def test_nobody_touches_it_and_it_heads_as_odometry_says() -> None:
     heading = HeadingByWalls()
     for k in range(50):
-        told = Pose(5.0 + 0.04 * k, 0.0, 0.01 * k)
-        assert heading.pose(told, seen_from(told)) == pytest.approx(told)
+        odometry = Pose(5.0 + 0.04 * k, 0.0, 0.01 * k)
+        assert heading.pose(odometry, seen_from(odometry)) == pytest.approx(odometry)
 
 
 def test_many_bumps_among_people() -> None:
     """Thirty bumps of up to 30 degrees: odometry is lost, the walls are not."""
     rng = np.random.default_rng(3)
-    heading, yaw, told = HeadingByWalls(), 0.0, 0.0
+    heading, yaw, values = HeadingByWalls(), 0.0, 0.0
     worst = 0.0
     for k in range(300):
         x = 5.0 + 0.04 * k
         if k % 10 == 9:
             yaw += rng.uniform(-0.5, 0.5)  # a bump; wheels slip
         people = crowd(k // 40, 60, (0.0, 1.0), (1,))
-        found = heading.pose(Pose(x, 0.0, told), seen_from(Pose(x, 0.0, yaw), people))
+        found = heading.pose(Pose(x, 0.0, values), seen_from(Pose(x, 0.0, yaw), people))
         worst = max(worst, off(found.yaw, yaw))
     assert abs(yaw) > 0.5
     assert worst < math.radians(2.0)
@@ -85,8 +85,8 @@ def test_where_no_wall_is_seen_odometry_is_believed() -> None:
     heading = HeadingByWalls()
     nothing = np.empty((0, 2))
     for k in range(5):
-        told = Pose(0.1 * k, 0.0, 0.3 * k)
-        assert heading.pose(told, nothing) == pytest.approx(told)
+        odometry = Pose(0.1 * k, 0.0, 0.3 * k)
+        assert heading.pose(odometry, nothing) == pytest.approx(odometry)
 
 
 def test_legs_are_no_walls() -> None:
@@ -125,7 +125,7 @@ def line(angle: float, points: int) -> Array:
 
 @pytest.mark.parametrize(("points", "noticed"), [(24, False), (200, True)])
 def test_a_table_at_an_angle_is_no_turn_and_a_wall_is(points: int, noticed: bool) -> None:
-    heading, told = HeadingByWalls(), Pose(0.0, 0.0, 0.0)
-    heading.pose(told, line(0.0, 200))
-    found = heading.pose(told, line(0.5, points))
+    heading, values = HeadingByWalls(), Pose(0.0, 0.0, 0.0)
+    heading.pose(values, line(0.0, 200))
+    found = heading.pose(values, line(0.5, points))
     assert (off(found.yaw, 0.0) > 0.4) is noticed

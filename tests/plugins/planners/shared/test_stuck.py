@@ -33,7 +33,7 @@ def _observation(
 
 
 def _drive(
-    stuck: Stuck, seconds: float, *, wheels: float = 0.6, real: float = 0.6, told: float = 0.6,
+    stuck: Stuck, seconds: float, *, wheels: float = 0.6, real: float = 0.6, commanded: float = 0.6,
     ahead: Array | None = None, readings: dict[str, Reading] | None = None,
 ) -> tuple[Pose, Command | None]:  # fmt: skip
     """Drive along x and return the corrected pose and the command after the last step."""
@@ -44,7 +44,7 @@ def _drive(
         obs = _observation(t, odometry, wheels, readings)
         corrected, points = stuck.see(obs, odometry, _scan(true, ahead))
         command = stuck.way_back(obs, corrected, points)
-        stuck.commanded(Command(told, 0.0), _PERIOD)
+        stuck.commanded(Command(commanded, 0.0), _PERIOD)
         if command is not None:
             break
     return corrected, command
@@ -96,7 +96,7 @@ def test_stalled_wheels_are_noticed() -> None:
     assert stuck.count == 1
     assert command is not None
     standing = Stuck(_RADIUS)
-    _drive(standing, 3.0, wheels=0.0, real=0.0, told=0.0)
+    _drive(standing, 3.0, wheels=0.0, real=0.0, commanded=0.0)
     assert standing.count == 0
 
 
@@ -127,7 +127,7 @@ def test_a_pressed_bumper_is_enough() -> None:
     )
     pressed = {"bumper": Reading(0.0, np.array([0.0, 1.0, 0.0]))}
     stuck = Stuck(_RADIUS, None, {"bumper": info})
-    _drive(stuck, 0.5, wheels=0.05, real=0.0, told=0.1, readings=pressed)
+    _drive(stuck, 0.5, wheels=0.05, real=0.0, commanded=0.1, readings=pressed)
     assert stuck.count == 1
 
 

@@ -17,9 +17,9 @@ function noteTaken(number, at) {
   const stamp = latency.sent.get(number);
   for (const earlier of [...latency.sent.keys()]) if (earlier <= number) latency.sent.delete(earlier);
   if (stamp === undefined) return;
-  const heard = performance.now() - stamp;
-  const told = at - performance.timeOrigin - stamp;
-  const ms = told >= 0 && told <= heard ? told : heard;
+  const roundTrip = performance.now() - stamp;
+  const byClock = at - performance.timeOrigin - stamp;
+  const ms = byClock >= 0 && byClock <= roundTrip ? byClock : roundTrip;
   if (ms < 0 || ms > 10000) return;
   latency.times.push(ms);
   latency.unsaid.push(Math.round(100 * ms) / 100);

@@ -23,8 +23,8 @@ function connect(on) {
     on.open();
   };
   socket.onmessage = ({ data }) => {
-    const said = JSON.parse(data);
-    on[said.op]?.(said);
+    const message = JSON.parse(data);
+    on[message.op]?.(message);
   };
   socket.onclose = () => {
     link.open = false;

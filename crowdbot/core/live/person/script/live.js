@@ -1,6 +1,6 @@
-// The run as it comes: what stands is told once, what moves sixteen times a second.
+// The run as it comes: static parts are sent once, moving ones sixteen times a second.
 
-const shown = { topSpeed: 1.6, run: null, frame: null, earlier: null, driven: 0, told: null, wrote: 0 };
+const shown = { topSpeed: 1.6, run: null, frame: null, earlier: null, driven: 0, latest: null, wrote: 0 };
 
 /** Prepares a run of which nothing is known yet but the scene. */
 function takeScene(scene) {
@@ -12,7 +12,7 @@ function takeScene(scene) {
   };
   shown.driven = scene.driven;
   shown.walker = scene.walker;
-  shown.frame = shown.earlier = shown.told = null;
+  shown.frame = shown.earlier = shown.latest = null;
   if (scene.walker >= 0 && scene.yaw !== undefined && !shown.yawSet) {
     hand.yaw = scene.yaw;
     shown.yawSet = true;
@@ -30,8 +30,8 @@ function takeFrame({ t, robots, people, scans, drawings }) {
     ["x", "y", "theta", "v", "w"].forEach((name, c) => robot[name].push(row[c] === null ? NaN : row[c] / 1000));
   });
   drawings.forEach(takeDrawing);
-  shown.earlier = shown.told;
-  shown.told = { t, at: performance.now(), people, scans };
+  shown.earlier = shown.latest;
+  shown.latest = { t, at: performance.now(), people, scans };
 }
 
 /** Keeps the latest drawing of each name of a planner, as the replay page has them. */
@@ -45,20 +45,20 @@ function takeDrawing({ robot, name, t, tracks, columns, texts }) {
 
 /** The picture at a moment: between the last two samples. */
 function frameNow(now) {
-  const { run, told, earlier } = shown;
-  if (!run || !told) return null;
-  const every = earlier ? told.t - earlier.t : 0;
-  const f = every ? clamp((now - told.at) / 1000 / every, 0, 1) : 1;
+  const { run, latest, earlier } = shown;
+  if (!run || !latest) return null;
+  const every = earlier ? latest.t - earlier.t : 0;
+  const f = every ? clamp((now - latest.at) / 1000 / every, 0, 1) : 1;
   const k = run.n - 1;
-  const time = every ? earlier.t + f * every : told.t;
+  const time = every ? earlier.t + f * every : latest.t;
   const robots = run.robots.map((robot) => robotAt(run, robot, time));
-  return { time: told.t, k, robots, people: peopleBetween(f), scans: scansNow(), cones: [] };
+  return { time: latest.t, k, robots, people: peopleBetween(f), scans: scansNow(), cones: [] };
 }
 
 function peopleBetween(f) {
-  const { told, earlier, run: { buffer } } = shown;
+  const { latest, earlier, run: { buffer } } = shown;
   buffer.size = 0;
-  const [x, y, vx, vy] = told.people;
+  const [x, y, vx, vy] = latest.people;
   for (let p = 0; p < (x?.length ?? 0); p++) {
     if (x[p] === null) continue;
     const i = buffer.size++;
@@ -76,7 +76,7 @@ function peopleBetween(f) {
 
 /** Latest points of flat lidars. */
 function scansNow() {
-  return shown.told.scans.map(({ x, y, z, hits }) => {
+  return shown.latest.scans.map(({ x, y, z, hits }) => {
     const rim = [];
     for (let i = 0; i < hits.length; i += 2) rim.push({ x: hits[i], y: hits[i + 1], hit: true });
     return { x, y, z, rim };

@@ -10,7 +10,7 @@ from crowdbot.plugin import (
 
 
 class Params(CostParams):
-    """Parameters.
+    """Parameters of TtcaDca, as a record.
 
     Attributes:
         inv_ttca2, inv_dca2: one over the squared spreads in time (1/s^2) and distance (1/m^2).
