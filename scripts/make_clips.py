@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import crowdbot
-from crowdbot.core.view.film import Filmed
+from crowdbot.core.view.film import FilmedRun
 
 ROOT = Path(__file__).parent.parent
 FOLDER = ROOT / "docs" / "images" / "clips"
@@ -107,7 +107,7 @@ def film(clip: Clip) -> None:
             scenario, planner=clip.planner, references=False, replay=False, record="none",
             metrics="success", out=folder, suite=clip.suite,
         )  # fmt: skip
-        filmed = Filmed(tracks=(run.trajectories,), title="", width=WIDTH, legend=False)
+        filmed = FilmedRun(tracks=(run.trajectories,), title="", width=WIDTH, legend=False)
         images = [*filmed.images(filmed.times(clip.start, None, RATE, SPEED))]
     first, *rest = images
     first.save(

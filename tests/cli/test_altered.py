@@ -12,7 +12,7 @@ import pytest
 
 import crowdbot
 from crowdbot import cli
-from crowdbot.core.campaign.job import Done, Job, SuiteSource
+from crowdbot.core.campaign.job import Job, JobOutcome, SuiteSource
 from crowdbot.core.campaign.run import _failure
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow
@@ -178,5 +178,7 @@ def test_a_failure_of_an_altered_scenario_counts_there() -> None:
         spec_hash="", planner_digest="", planner="dwa", settings=(), label="dwa", seed=0, out="o",
         directory="d", options=RunOptions(), altered=(SHORT,),
     )  # fmt: skip
-    assert _failure(job, Done(key="k", error="boom"), {}).suite.startswith("s+time_limit=0.25_s-")
-    assert _failure(replace(job, altered=()), Done(key="k"), {}).suite == "s"
+    assert _failure(job, JobOutcome(key="k", error="boom"), {}).suite.startswith(
+        "s+time_limit=0.25_s-"
+    )
+    assert _failure(replace(job, altered=()), JobOutcome(key="k"), {}).suite == "s"

@@ -163,9 +163,9 @@ def test_the_doctor_is_quick_unless_asked(
 
     asked: list[int] = []
 
-    def self_test() -> doctor.Examined:
+    def self_test() -> doctor.DoctorFinding:
         asked.append(1)
-        return doctor.Examined("self-test", "ok", "")
+        return doctor.DoctorFinding("self-test", "ok", "")
 
     monkeypatch.setattr(doctor, "self_test", self_test)
     assert cli.main(["doctor"]) == 0

@@ -23,7 +23,7 @@ _NEEDED = ("crowdbot", "drake", "numba", "numpy", "mcap", "pydantic", "rosbags",
 _DISK = 2 * 10**9
 
 
-class Examined(NamedTuple):
+class DoctorFinding(NamedTuple):
     """One finding: ``ok``, ``note`` (a feature is unavailable) or ``missing``."""
 
     what: str
@@ -31,13 +31,15 @@ class Examined(NamedTuple):
     found: str
 
 
-def machine(out: Path) -> Iterator[Examined]:
+def machine(out: Path) -> Iterator[DoctorFinding]:
     """Yield all checks except the self-test; quick.
 
     Args:
         out: folder for runs.
     """
-    yield Examined("system", "ok", f"{platform.platform()}, Python {platform.python_version()}")
+    yield DoctorFinding(
+        "system", "ok", f"{platform.platform()}, Python {platform.python_version()}"
+    )
     yield from _packages()
     yield _drake()
     yield _egl()
@@ -47,14 +49,14 @@ def machine(out: Path) -> Iterator[Examined]:
     yield _disk(out)
 
 
-def _packages() -> Iterator[Examined]:
+def _packages() -> Iterator[DoctorFinding]:
     for name in _NEEDED:
         found = _version(name)
-        yield Examined(name, "ok" if found else "missing", found or "not installed")
+        yield DoctorFinding(name, "ok" if found else "missing", found or "not installed")
     for name, extra in _extras().items():
         found = _version(name)
         hint = f"not installed; pip install 'crowdbot[{extra}]' brings it"
-        yield Examined(name, "ok" if found else "note", found or hint)
+        yield DoctorFinding(name, "ok" if found else "note", found or hint)
 
 
 def _extras() -> dict[str, str]:
@@ -75,57 +77,61 @@ def _version(name: str) -> str:
         return ""
 
 
-def _drake() -> Examined:
+def _drake() -> DoctorFinding:
     try:
         importlib.import_module("crowdbot.core.sim.simulate")
     except ImportError as error:
-        return Examined("Drake", "missing", f"cannot be imported: {error}")
-    return Examined("Drake", "ok", "can be imported")
+        return DoctorFinding("Drake", "missing", f"cannot be imported: {error}")
+    return DoctorFinding("Drake", "ok", "can be imported")
 
 
-def _egl() -> Examined:
+def _egl() -> DoctorFinding:
     """Check EGL, which only colour images of cameras need."""
     for name in ("libEGL.so.1", "libEGL.so"):
         try:
             ctypes.CDLL(name)
         except OSError:
             continue
-        return Examined("EGL", "ok", name)
-    return Examined("EGL", "note", "no libEGL: cameras have depth, but no colour images")
+        return DoctorFinding("EGL", "ok", name)
+    return DoctorFinding("EGL", "note", "no libEGL: cameras have depth, but no colour images")
 
 
-def _kernels() -> Examined:
+def _kernels() -> DoctorFinding:
     from crowdbot.core.support.compile_cache import kernel_folder, nothing_compiled
 
     folder = os.environ.get("NUMBA_CACHE_DIR") or str(kernel_folder())
     if nothing_compiled():
-        return Examined("kernels", "note", f"not compiled yet: the first run does it, in {folder}")
-    return Examined("kernels", "ok", f"compiled, in {folder}")
+        return DoctorFinding(
+            "kernels", "note", f"not compiled yet: the first run does it, in {folder}"
+        )
+    return DoctorFinding("kernels", "ok", f"compiled, in {folder}")
 
 
-def _containment() -> Examined:
+def _containment() -> DoctorFinding:
     from crowdbot.core.planning.containment.offer import kernel_offer
 
     if missing := kernel_offer().missing:
-        return Examined("containment", "note", f"planners are not contained: {missing}")
-    return Examined("containment", "ok", "files, network, signals, processes of planners")
+        return DoctorFinding("containment", "note", f"planners are not contained: {missing}")
+    return DoctorFinding("containment", "ok", "files, network, signals, processes of planners")
 
 
-def _cores() -> Examined:
+def _cores() -> DoctorFinding:
     usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    return Examined("cores", "ok", f"{usable} usable; a campaign runs as many scenarios at a time")
+    return DoctorFinding(
+        "cores", "ok", f"{usable} usable; a campaign runs as many scenarios at a time"
+    )
 
 
-def _disk(out: Path) -> Examined:
+def _disk(out: Path) -> DoctorFinding:
     folder = next(p for p in (out.absolute(), *out.absolute().parents) if p.is_dir())
     free = shutil.disk_usage(folder).free
     text = f"{free / 1e9:.1f} GB free at {folder}"
     if not os.access(folder, os.W_OK):
-        return Examined("disk", "missing", f"{folder} cannot be written")
-    return Examined("disk", "ok" if free > _DISK else "note", text)
+        return DoctorFinding("disk", "missing", f"{folder} cannot be written")
+    return DoctorFinding("disk", "ok" if free > _DISK else "note", text)
 
 
-def self_test() -> Examined:
+def self_test() -> DoctorFinding:
     """Simulate, record and score one second among people, in a temporary folder."""
     import crowdbot.api as api
 
@@ -140,7 +146,7 @@ def self_test() -> Examined:
             run = api.simulate(scenario, planner="dwa", out=folder)
             good = run.status == "timeout" and len(api.evaluate(run, "speed")) > 0
     except (CrowdbotError, ImportError) as error:
-        return Examined("self-test", "missing", f"failed: {error}")
+        return DoctorFinding("self-test", "missing", f"failed: {error}")
     seconds = time.perf_counter() - begin
     text = f"simulated, recorded and scored in {seconds:.1f} s"
-    return Examined("self-test", "ok" if good else "missing", text)
+    return DoctorFinding("self-test", "ok" if good else "missing", text)

@@ -12,7 +12,7 @@ from crowdbot.errors import InputError, UsageError
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from crowdbot.core.view.film import Filmed
+    from crowdbot.core.view.film import FilmedRun
 
 #: Formats of films, and of one picture.
 FILMS, PICTURE = ("gif", "mp4", "webm"), "png"
@@ -81,10 +81,10 @@ def write_film(to: str, recording: Path, out: Path, options: FilmOptions) -> Non
     write(out, _watched(filmed, times), rate)
 
 
-def _filmed(recording: Path, options: FilmOptions, to: str) -> Filmed:
+def _filmed(recording: Path, options: FilmOptions, to: str) -> FilmedRun:
     from crowdbot.core.recording.placed_drawings import placed_drawings
     from crowdbot.core.recording.recording import Recording
-    from crowdbot.core.view.film import Filmed
+    from crowdbot.core.view.film import FilmedRun
     from crowdbot.core.view.shapes import DARK, LIGHT
 
     with Recording(recording) as opened:
@@ -95,7 +95,7 @@ def _filmed(recording: Path, options: FilmOptions, to: str) -> Filmed:
             for run, name in zip(tracks, names or (None,), strict=True)
         ]
         title = opened.header.scenario
-    return Filmed(
+    return FilmedRun(
         tracks=tracks,
         title=title,
         width=options.width or _WIDTH.get(to, 960),
@@ -105,7 +105,7 @@ def _filmed(recording: Path, options: FilmOptions, to: str) -> Filmed:
     )
 
 
-def _decisive(recording: Path, filmed: Filmed) -> float:
+def _decisive(recording: Path, filmed: FilmedRun) -> float:
     """Return the decisive moment of a run, s; of a lone recording its middle."""
     from crowdbot.core.why.explain import explain
 
@@ -115,7 +115,7 @@ def _decisive(recording: Path, filmed: Filmed) -> float:
         return filmed.end / 2
 
 
-def _watched(filmed: Filmed, times: Sequence[float]) -> Iterator[Image]:
+def _watched(filmed: FilmedRun, times: Sequence[float]) -> Iterator[Image]:
     from rich.console import Console
     from rich.progress import track
 

@@ -17,7 +17,7 @@ from crowdbot.core.types.ending import has_failed, shown
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from crowdbot.core.campaign.job import Done, Job
+    from crowdbot.core.campaign.job import Job, JobOutcome
     from crowdbot.core.campaign.plan import Plan
     from crowdbot.core.campaign.run import Listener, State
 
@@ -49,7 +49,7 @@ def show(plan: Plan) -> Iterator[Listener]:
         _summary(lines.state)
 
 
-def _only_failures(state: State, job: Job | None, done: Done | None) -> None:
+def _only_failures(state: State, job: Job | None, done: JobOutcome | None) -> None:
     """Print failures only, for ``--quiet``."""
     if job is not None and done is not None and (done.error or has_failed(done.status)):
         _say(_line(state, job, done))
@@ -62,7 +62,7 @@ class _Lines:
         self.state: State | None = None
         self._own_first = OwnFirst()
 
-    def __call__(self, state: State, job: Job | None, done: Done | None) -> None:
+    def __call__(self, state: State, job: Job | None, done: JobOutcome | None) -> None:
         self.state = state
         if job is not None and done is not None:
             _say(_line(state, job, done))
@@ -87,7 +87,7 @@ class _Table:
         self.state: State | None = None
         self._own_first = OwnFirst()
 
-    def __call__(self, state: State, job: Job | None, done: Done | None) -> None:
+    def __call__(self, state: State, job: Job | None, done: JobOutcome | None) -> None:
         self.state = state
         if job is not None and done is not None and done.error:
             self._print(f"{job.title}: {_first(done.error)}")
@@ -131,7 +131,7 @@ def _rate(state: State) -> str:
     return f"{ended} of {len(state.plan.jobs)} jobs, about {rough_time(state.remaining)} left"
 
 
-def _line(state: State, job: Job, done: Done) -> str:
+def _line(state: State, job: Job, done: JobOutcome) -> str:
     ended = len(state.plan.jobs) - len(state.left)
     ended_as = "done" if job.kind == "crowd_alone" else done.status  # people cannot be too late
     how = f"failed: {_first(done.error)}" if done.error else ended_as

@@ -62,7 +62,7 @@ class Submission:
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
+class _CompleteRun:
     """One complete run: name of its folder below the root, its record, and the suite's axes."""
 
     folder: PurePosixPath
@@ -114,7 +114,7 @@ def pack(
 
 
 # ------------------------------------------------------------------------ finding
-def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
+def _runs(submission: Submission, expansion: Expansion) -> list[_CompleteRun]:
     """Return complete runs of the planner, in the suite's order."""
     base = submission.root / expansion.suite
     labels = {p.parent.name for p in base.glob("*/*/seed-*") if p.is_dir()}
@@ -131,7 +131,7 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_Found]:
             if record is not None:
                 name = PurePosixPath(place.relative_to(submission.root).as_posix())
                 axes = expansion.axes.get(scenario.id, {})
-                found.append(_Found(name, record, axes))
+                found.append(_CompleteRun(name, record, axes))
     if not found:
         seeds = other_seeds(submission, expansion)
         if seeds:
@@ -172,7 +172,7 @@ def _record(place: Path) -> RunRecord | None:
 
 
 # ----------------------------------------------------------------------- checking
-def _check_fits(found: Sequence[_Found], expansion: Expansion, registry: Registry) -> None:
+def _check_fits(found: Sequence[_CompleteRun], expansion: Expansion, registry: Registry) -> None:
     specs = {s.id: spec_of(s, registry) for s in expansion.scenarios}
     for run in found:
         if run.record.hashes.spec != specs[run.record.scenario]:
@@ -182,7 +182,7 @@ def _check_fits(found: Sequence[_Found], expansion: Expansion, registry: Registr
             )
 
 
-def _check_alike(found: Sequence[_Found]) -> None:
+def _check_alike(found: Sequence[_CompleteRun]) -> None:
     """Refuse a bundle of runs that cannot be compared with each other."""
     first = found[0]
     for name in ("planner", "versions", "pinned"):
@@ -194,7 +194,7 @@ def _check_alike(found: Sequence[_Found]) -> None:
                 )
 
 
-def _check_driven(submission: Submission, found: Sequence[_Found]) -> None:
+def _check_driven(submission: Submission, found: Sequence[_CompleteRun]) -> None:
     """Refuse a bundle of a planner that failed in every run."""
     record, allowed = found[0].record, submission.partial or submission.failing
     if not allowed and all(run.record.status == Ending.PLANNER_FAILED for run in found):
@@ -205,7 +205,7 @@ def _check_driven(submission: Submission, found: Sequence[_Found]) -> None:
 
 
 # ------------------------------------------------------------------------ packing
-def _members(submission: Submission, found: Sequence[_Found]) -> dict[str, Path | bytes]:
+def _members(submission: Submission, found: Sequence[_CompleteRun]) -> dict[str, Path | bytes]:
     members: dict[str, Path | bytes] = {}
     for run in found:
         folder = submission.root / run.folder
@@ -234,7 +234,7 @@ def _planner_files(root: Path, planner: Mapping[str, Any]) -> Iterator[tuple[str
         yield PLANNER_FILES + file.name, file
 
 
-def _references(root: Path, folder: Path, run: _Found) -> Iterator[tuple[str, Path]]:
+def _references(root: Path, folder: Path, run: _CompleteRun) -> Iterator[tuple[str, Path]]:
     """Yield the recordings of the run's references."""
     for path in run.record.references.values():
         place = (folder / path).resolve()
@@ -250,7 +250,7 @@ def _references(root: Path, folder: Path, run: _Found) -> Iterator[tuple[str, Pa
 def _manifest(
     submission: Submission,
     expansion: Expansion,
-    found: Sequence[_Found],
+    found: Sequence[_CompleteRun],
     missing: Sequence[str],
     members: Mapping[str, Path | bytes],
 ) -> Manifest:

@@ -18,8 +18,8 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.campaign.job import Done, Job
-from crowdbot.core.campaign.worker_pool import Busy
+from crowdbot.core.campaign.job import Job, JobOutcome
+from crowdbot.core.campaign.worker_pool import RunningJob
 from crowdbot.core.campaign.worker_process import WorkerProcess
 from crowdbot.core.runs import provenance
 from crowdbot.errors import InputError, MissingLibraryError, SimulationError
@@ -34,7 +34,7 @@ _ADDRESS = re.compile(
 _own = threading.local()
 
 
-def execute_job(job: Job, versions: dict[str, str]) -> Done:
+def execute_job(job: Job, versions: dict[str, str]) -> JobOutcome:
     """Execute a job in a Dask worker."""
     if (found := provenance.versions()) != versions:
         return _refused(job, _difference(versions, found))
@@ -124,7 +124,7 @@ class DaskWorkerPool:
         self._futures[job.key] = (job, future)
         future.add_done_callback(lambda f, k=job.key: self._ended.put((k, f)))
 
-    def finished(self, timeout: float) -> list[Done]:
+    def finished(self, timeout: float) -> list[JobOutcome]:
         """Return finished jobs.
 
         Raises:
@@ -141,24 +141,26 @@ class DaskWorkerPool:
             pass
         return [self._done(key, future) for key, future in ended if key in self._futures]
 
-    def busy(self) -> list[Busy]:
+    def busy(self) -> list[RunningJob]:
         """Return submitted jobs; the scheduler does not report their progress."""
-        return [Busy(job, None) for job, _ in self._futures.values()]
+        return [RunningJob(job, None) for job, _ in self._futures.values()]
 
     def close(self) -> None:
         """Cancel submitted jobs, and leave the scheduler running."""
         self._client.cancel([future for _, future in self._futures.values()], force=True)
         self._client.close()
 
-    def _done(self, key: str, future: Any) -> Done:
+    def _done(self, key: str, future: Any) -> JobOutcome:
         job, _ = self._futures.pop(key)
         if future.status in ("cancelled", "lost"):
             self._lost()
         if future.status == "error":
             error = future.exception()
             text = f"{type(error).__name__}: {error}"
-            return Done(key=key, error=text, exit_code=SimulationError.exit_code, traceback=text)
-        done: Done = future.result()
+            return JobOutcome(
+                key=key, error=text, exit_code=SimulationError.exit_code, traceback=text
+            )
+        done: JobOutcome = future.result()
         return replace(done, key=job.key)
 
     def _lost(self) -> None:
@@ -203,5 +205,5 @@ def _difference(ours: dict[str, str], theirs: dict[str, str]) -> str:
     return f"the worker has {', '.join(found)}; runs would not be comparable"
 
 
-def _refused(job: Job, why: str) -> Done:
-    return Done(key=job.key, error=f"InputError: {why}", exit_code=1, traceback=why)
+def _refused(job: Job, why: str) -> JobOutcome:
+    return JobOutcome(key=job.key, error=f"InputError: {why}", exit_code=1, traceback=why)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from crowdbot.core.campaign.job import Done, Job, SuiteSource
+from crowdbot.core.campaign.job import Job, JobOutcome, SuiteSource
 from crowdbot.core.campaign.population_cache import cached_population
 from crowdbot.core.planning.choice import PlannerPlace
 from crowdbot.core.planning.resolve import PlannerChoice, resolve_planner
@@ -32,7 +32,7 @@ def execute(
     job: Job,
     progress: Callable[[Progress], None] | None = None,
     on_hang: Callable[[], object] | None = None,
-) -> Done:
+) -> JobOutcome:
     """Execute one job; any error is part of the result.
 
     Args:
@@ -44,13 +44,13 @@ def execute(
         status = _execute(job, progress, on_hang)
     except Exception as error:
         return failed_job(job, error, time.perf_counter() - begin)
-    return Done(key=job.key, status=status, wall_time=time.perf_counter() - begin)
+    return JobOutcome(key=job.key, status=status, wall_time=time.perf_counter() - begin)
 
 
-def failed_job(job: Job, error: Exception, wall_time: float = 0.0) -> Done:
+def failed_job(job: Job, error: Exception, wall_time: float = 0.0) -> JobOutcome:
     """Return a job that ended with an exception."""
     known = isinstance(error, CrowdbotError)
-    return Done(
+    return JobOutcome(
         key=job.key,
         error=f"{type(error).__name__}: {error}",
         exit_code=error.exit_code if known else SimulationError.exit_code,  # type: ignore[attr-defined]

@@ -77,7 +77,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Done:
+class JobOutcome:
     """The outcome of a job.
 
     Attributes:

@@ -9,9 +9,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 
 from crowdbot.core.campaign.estimate import CostEstimate
-from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.campaign.job import Job, JobOutcome
 from crowdbot.core.campaign.plan import Plan
-from crowdbot.core.campaign.worker_pool import Busy, WorkerPool
+from crowdbot.core.campaign.worker_pool import RunningJob, WorkerPool
 from crowdbot.core.results.failure import Failure, forget_failure, write_failure
 from crowdbot.core.results.store import Store, index
 from crowdbot.core.types.ending import Ending, has_failed
@@ -41,8 +41,8 @@ class State:
     labels: dict[str, str]
     left: dict[str, Job]
     size: int
-    busy: Sequence[Busy] = ()
-    failures: dict[str, Done] = field(default_factory=dict)
+    busy: Sequence[RunningJob] = ()
+    failures: dict[str, JobOutcome] = field(default_factory=dict)
     began: float = field(default_factory=time.monotonic)
     made: int = 0
 
@@ -67,7 +67,7 @@ class State:
         return PluginError.exit_code if failed else 0
 
 
-Listener = Callable[[State, Job | None, Done | None], None]
+Listener = Callable[[State, Job | None, JobOutcome | None], None]
 
 
 def run_campaign(plan: Plan, pool: WorkerPool, size: int, listener: Listener) -> State:
@@ -128,7 +128,7 @@ class _Campaign:
             self._queue.remove(job)
             self._pool.submit(job)
 
-    def take(self) -> list[tuple[Job, Done]]:
+    def take(self) -> list[tuple[Job, JobOutcome]]:
         """Return finished jobs, and jobs that became impossible."""
         ended = []
         for done in self._pool.finished(_LOOK):
@@ -138,7 +138,7 @@ class _Campaign:
         self.state.busy = self._pool.busy()
         return ended
 
-    def _end(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
+    def _end(self, job: Job, done: JobOutcome) -> list[tuple[Job, JobOutcome]]:
         if done.disk_full:  # every further job would fail, and none of them is the planner's fault
             message = done.error.removeprefix(f"{InputError.__name__}: ")
             raise InputError(f"{message}; free some, and the same command goes on where it was")
@@ -156,7 +156,7 @@ class _Campaign:
             self._store.add(job.directory)
         return [(job, done)]
 
-    def _fail(self, job: Job, done: Done) -> list[tuple[Job, Done]]:
+    def _fail(self, job: Job, done: JobOutcome) -> list[tuple[Job, JobOutcome]]:
         self.state.failures[job.key] = done
         if job.kind == "run":
             self.state.statuses[job.key] = Ending.NO_RUN
@@ -170,7 +170,7 @@ class _Campaign:
         return ended
 
 
-def _failure(job: Job, done: Done, axes: dict[str, str]) -> Failure:
+def _failure(job: Job, done: JobOutcome, axes: dict[str, str]) -> Failure:
     return Failure(
         run_id=job.key,
         suite=job.suite + altered_suffix(job.altered),

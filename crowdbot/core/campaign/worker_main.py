@@ -16,7 +16,7 @@ import time
 from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
 
-from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.campaign.job import Job, JobOutcome
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.support.skip_final_gc import end_without_collecting
 
@@ -26,7 +26,7 @@ _SEND_PROGRESS = 0.25
 _PR_SET_PDEATHSIG = 1
 
 
-class Beat(NamedTuple):
+class Heartbeat(NamedTuple):
     """Message: the process is alive; ``progress`` of the job, None before it starts.
 
     ``patient``: True while the planner may load a model, or scores are computed.
@@ -36,7 +36,7 @@ class Beat(NamedTuple):
     patient: bool
 
 
-class Hung(NamedTuple):
+class PlannerHung(NamedTuple):
     """Message: the planner ignores every interruption, so the process ends now."""
 
 
@@ -70,7 +70,7 @@ class _Line:
         self._lock = threading.Lock()
         self._sent = 0.0
 
-    def send(self, message: Beat | Hung | Done) -> None:
+    def send(self, message: Heartbeat | PlannerHung | JobOutcome) -> None:
         """Send a message; if the parent is gone, end the process."""
         with self._lock:
             try:
@@ -94,13 +94,13 @@ class _Line:
 
     def hung(self) -> None:
         """Report a hang, called by the watchdog's thread if a planner cannot be interrupted."""
-        self.send(Hung())
+        self.send(PlannerHung())
         os._exit(3)
 
     def _beat(self) -> None:
         progress = self.progress
         ended = progress is not None and progress.t >= progress.limit
-        self.send(Beat(progress, patient=progress is None or ended))
+        self.send(Heartbeat(progress, patient=progress is None or ended))
 
 
 def _die_with(parent: int) -> None:
@@ -112,4 +112,4 @@ def _die_with(parent: int) -> None:
         os._exit(1)
 
 
-__all__ = ["BEAT", "Beat", "Done", "Hung", "Job", "main"]
+__all__ = ["BEAT", "Heartbeat", "Job", "JobOutcome", "PlannerHung", "main"]

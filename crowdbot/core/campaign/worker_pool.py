@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from multiprocessing.connection import wait
 from typing import NamedTuple, Protocol
 
-from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.campaign.job import Job, JobOutcome
 from crowdbot.core.campaign.worker_process import WorkerProcess
 from crowdbot.core.runs.outcome import Progress
 
 
-class Busy(NamedTuple):
+class RunningJob(NamedTuple):
     """A job that a worker is executing; ``progress`` if known."""
 
     job: Job
@@ -27,10 +27,10 @@ class WorkerPool(Protocol):
     def submit(self, job: Job) -> None:
         """Start a job; there must be a free slot."""
 
-    def finished(self, timeout: float) -> list[Done]:
+    def finished(self, timeout: float) -> list[JobOutcome]:
         """Return finished jobs; wait up to ``timeout`` seconds for one."""
 
-    def busy(self) -> Sequence[Busy]:
+    def busy(self) -> Sequence[RunningJob]:
         """Return running jobs, for display."""
 
     def close(self) -> None:
@@ -51,15 +51,15 @@ class LocalWorkerPool:
         """Start a job."""
         next(w for w in self._workers if w.job is None).submit(job)
 
-    def finished(self, timeout: float) -> list[Done]:
+    def finished(self, timeout: float) -> list[JobOutcome]:
         """Return finished jobs."""
         at_work = [w for w in self._workers if w.job is not None]
         wait([w.connection for w in at_work], timeout)
         return [done for w in at_work if (done := w.poll()) is not None]
 
-    def busy(self) -> list[Busy]:
+    def busy(self) -> list[RunningJob]:
         """Return running jobs."""
-        return [Busy(w.job, w.progress) for w in self._workers if w.job is not None]
+        return [RunningJob(w.job, w.progress) for w in self._workers if w.job is not None]
 
     def close(self) -> None:
         """End all processes."""

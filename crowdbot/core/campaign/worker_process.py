@@ -12,8 +12,8 @@ from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import Any
 
-from crowdbot.core.campaign.job import Done, Job
-from crowdbot.core.campaign.worker_main import Beat, Hung
+from crowdbot.core.campaign.job import Job, JobOutcome
+from crowdbot.core.campaign.worker_main import Heartbeat, PlannerHung
 from crowdbot.core.planning.host import RESET_LIMIT
 from crowdbot.core.planning.watchdog import Watchdog
 from crowdbot.core.runs.outcome import Progress
@@ -82,7 +82,7 @@ class WorkerProcess:
         self._began = time.monotonic()
         self._send()
 
-    def poll(self) -> Done | None:
+    def poll(self) -> JobOutcome | None:
         """Read messages; return the end of the job, if there is one.
 
         A dead process is replaced and repeats the job, with at most `TRIES` attempts.
@@ -90,11 +90,11 @@ class WorkerProcess:
         try:
             while self.connection.poll():
                 message = self.connection.recv()
-                if isinstance(message, Done):
+                if isinstance(message, JobOutcome):
                     return self._finish(message)
-                if isinstance(message, Hung):
+                if isinstance(message, PlannerHung):
                     return self._give_up(PlannerHungError("the planner swallowed interruptions"))
-                assert isinstance(message, Beat)
+                assert isinstance(message, Heartbeat)
                 self._heard, self._patient = time.monotonic(), message.patient
                 self.progress = message.progress
         except (EOFError, OSError):
@@ -142,11 +142,11 @@ class WorkerProcess:
             )
         self._connection = ours
 
-    def _finish(self, done: Done) -> Done:
+    def _finish(self, done: JobOutcome) -> JobOutcome:
         self.job = self.progress = None
         return done
 
-    def _died(self) -> Done | None:
+    def _died(self) -> JobOutcome | None:
         """Try again with a new process, or give up."""
         assert self._process is not None
         self._deaths += 1
@@ -170,12 +170,12 @@ class WorkerProcess:
             "the process was ended"
         )
 
-    def _give_up(self, error: PlannerHungError | SimulationError) -> Done:
+    def _give_up(self, error: PlannerHungError | SimulationError) -> JobOutcome:
         assert self.job is not None
         key, output = self.job.key, self._tail()
         self.stop()
         return self._finish(
-            Done(
+            JobOutcome(
                 key=key,
                 error=f"{type(error).__name__}: {error}",
                 exit_code=error.exit_code,

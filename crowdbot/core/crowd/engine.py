@@ -355,7 +355,7 @@ class CrowdEngine:
             np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
 
     def _evade(self, flat: Array, people: s.People, robots: Array, outlines: Array) -> None:
-        """Change what people want who have noticed robots, whatever their policy is."""
+        """Change desired accelerations of people who have noticed robots, under any policy."""
         if not len(robots):
             return
         now = float(flat[s.TICK]) * TICK

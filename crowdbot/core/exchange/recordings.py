@@ -168,7 +168,7 @@ class _Row:
 
     @property
     def mark(self) -> Mark:
-        """Its position."""
+        """Return its position in the file."""
         return Mark(self._file.source, self._line)
 
     def end(self, columns: int) -> None:

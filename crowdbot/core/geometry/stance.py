@@ -37,7 +37,7 @@ class PersonCircle(NamedTuple):
     radius: Array
 
 
-class Off(NamedTuple):
+class RelativePosition(NamedTuple):
     """A robot's position relative to a person: numbers, or arrays (N,).
 
     Attributes:
@@ -75,12 +75,14 @@ def together(x: Array, y: Array, facing: Array, radius: Array) -> PersonCircle:
     return PersonCircle(cx, cy, heading, size)
 
 
-def off(outline: Footprint, x: Array, y: Array, yaw: Array, person: PersonCircle) -> Off:
+def off(
+    outline: Footprint, x: Array, y: Array, yaw: Array, person: PersonCircle
+) -> RelativePosition:
     """Return a robot's position relative to a person."""
     dx, dy = person.x - x, person.y - y
     c, s = np.cos(yaw), np.sin(yaw)
     ahead, left = c * dx + s * dy, c * dy - s * dx
-    return Off(
+    return RelativePosition(
         gap=outline.gap(ahead, left) - person.radius,
         around=wrapped(np.arctan2(-dy, -dx) - person.heading),
         bearing=np.arctan2(left, ahead),
@@ -105,7 +107,7 @@ def wanted_direction(task: PersonTask, around: Array) -> Array:
     return np.full_like(around, 0.5 * math.pi if task.side == "left" else -0.5 * math.pi)
 
 
-def in_place(task: PersonTask, found: Off) -> Array:
+def in_place(task: PersonTask, found: RelativePosition) -> Array:
     """Return True where a robot is at its place; without a known front, any direction will do."""
     near = np.abs(found.gap - task.distance) <= task.tolerance
     aside = np.abs(wrapped(found.around - wanted_direction(task, found.around)))

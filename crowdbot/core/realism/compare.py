@@ -35,7 +35,7 @@ class RealismScore:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Beside:
+class ReportedErrors:
     """Errors that are reported in addition to the score.
 
     Attributes:
@@ -106,11 +106,11 @@ def _sample(crowd: Statistics, cell: Cell, rng: np.random.Generator) -> Mapping[
     return histograms_of(rows[rng.choice(len(rows), SAMPLES, replace=False)])
 
 
-def beside(crowd: Statistics, reference: Statistics) -> Beside:
+def beside(crowd: Statistics, reference: Statistics) -> ReportedErrors:
     """Return the additional errors; NaN if there is nothing to compare."""
     cells = [c for c in compared_cells(reference) if crowd.count(c) >= _FEWEST]
     counter = [c for c in cells if c[0] == "counter"]
-    return Beside(
+    return ReportedErrors(
         diagram_error=_mean(
             [abs(e) for flow in FLOWS for e in diagram_errors(crowd, reference, flow)]
         ),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.realism.bins import FEATURES, LEAST_SAMPLES
-from crowdbot.core.realism.compare import Beside, RealismScore, beside
+from crowdbot.core.realism.compare import RealismScore, ReportedErrors, beside
 from crowdbot.core.realism.corridor import corridors, simulate
 from crowdbot.core.realism.model import CrowdModel
 from crowdbot.core.realism.reference import RealismReference
@@ -51,7 +51,7 @@ class Realism:
     floor: float
     parts: Mapping[str, float]
     cells: Mapping[tuple[str, str], float]
-    beside: Beside
+    beside: ReportedErrors
     statistics: Statistics
     reference: RealismReference
     of_cells: int = 0
@@ -193,7 +193,7 @@ def _parts(scores: Sequence[RealismScore]) -> dict[str, float]:
     return {f: float(np.mean([s.parts[f] for s in scores])) for f in FEATURES}
 
 
-def _others(near: Beside) -> dict[str, float]:
+def _others(near: ReportedErrors) -> dict[str, float]:
     return {
         DIAGRAM: max(0.0, 1.0 - near.diagram_error),
         LANES: max(0.0, 1.0 - near.lane_error),

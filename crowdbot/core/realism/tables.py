@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crowdbot.core.realism.bins import FEATURES
-from crowdbot.core.realism.compare import Beside, beside
+from crowdbot.core.realism.compare import ReportedErrors, beside
 from crowdbot.core.realism.measure import DIAGRAM, LANES, PAIRS, Realism
 from crowdbot.core.realism.reference import RealismReference
 
@@ -40,12 +40,12 @@ def rows(found: Realism) -> list[list[str]]:
     return out
 
 
-def real_beside(reference: RealismReference) -> Beside:
+def real_beside(reference: RealismReference) -> ReportedErrors:
     """Return the errors of one half of the recordings against the other."""
     return beside(*reference.halves)
 
 
-def ghosts_beside(reference: RealismReference) -> Beside:
+def ghosts_beside(reference: RealismReference) -> ReportedErrors:
     """Return the errors of people without avoidance."""
     return beside(reference.floors["avoid nobody"], reference.whole)
 

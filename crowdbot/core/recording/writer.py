@@ -26,7 +26,7 @@ from crowdbot.core.recording.container.own_file import Written
 from crowdbot.core.recording.drawings import drawing_message
 from crowdbot.core.recording.header import RecordingHeader, tilts_message, with_frames
 from crowdbot.core.recording.joints import WheelMessages
-from crowdbot.core.recording.motion.candidates import Choosers
+from crowdbot.core.recording.motion.candidates import CandidateGroup
 from crowdbot.core.recording.motion.states import SeriesRows, StateSample, StatesWriter
 from crowdbot.core.recording.namespace import NamespacedFile, in_namespace
 from crowdbot.core.recording.person_task import person_task_message
@@ -80,7 +80,7 @@ class RecordingWriter:
         header: RecordingHeader,
         *,
         record: Literal["all", "used", "none"] = "all",
-        choosers: Sequence[Choosers] = (),
+        choosers: Sequence[CandidateGroup] = (),
         description: str = "",
         beside: RecordingWriter | None = None,
         wheels: Sequence[str] = (),
@@ -143,7 +143,7 @@ class RecordingWriter:
             else ToolTopics(self._file, header, description, whole=self._whole)
         )
 
-    def _write_constants(self, header: RecordingHeader, known: Sequence[Choosers]) -> None:
+    def _write_constants(self, header: RecordingHeader, known: Sequence[CandidateGroup]) -> None:
         self._file.put(Topic.HEADER, 0, header.to_message(), latched=True)
         tilts = tilts_message(header.sensors)
         if tilts is not None:

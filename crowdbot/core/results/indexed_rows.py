@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.results.rows import RUN_COLUMNS, RunRow
-from crowdbot.core.results.score_columns import ColumnState, Numbered, ScoreColumns, ScoreLabel
+from crowdbot.core.results.score_columns import ColumnState, IndexByValue, ScoreColumns, ScoreLabel
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.types.score import Score
 
@@ -114,7 +114,7 @@ class Texts:
 def row_of(run: RunRow, scores: Sequence[Score], texts: Texts) -> dict[str, Any]:
     """Return the columns of a run with its scores."""
     ordered = sorted(scores, key=lambda s: (s.metric, s.variant))
-    states = Numbered[tuple[str, str]]()
+    states = IndexByValue[tuple[str, str]]()
     state = np.array([states.place((s.status, s.reason)) for s in ordered], "<u2")
     numbers = [
         np.array([np.nan if x is None else x for x in column], "<f8")
@@ -178,7 +178,7 @@ class _Packed:
 
 def _columns(found: Mapping[int, _Packed], texts: Texts) -> ScoreColumns:
     """Return the scores of runs by number of their labels."""
-    known = Numbered[str](), Numbered[ScoreLabel](), Numbered[ColumnState]()
+    known = IndexByValue[str](), IndexByValue[ScoreLabel](), IndexByValue[ColumnState]()
     parts = [_part(packed, texts.value(number), known, texts) for number, packed in found.items()]
     if len(parts) == 1:
         columns = list(parts[0][1:])
@@ -201,7 +201,7 @@ def _nothing() -> list[NDArray[Any]]:
 def _part(
     found: _Packed,
     names: Sequence[Sequence[str]],
-    known: tuple[Numbered[str], Numbered[ScoreLabel], Numbered[ColumnState]],
+    known: tuple[IndexByValue[str], IndexByValue[ScoreLabel], IndexByValue[ColumnState]],
     texts: Texts,
 ) -> tuple[NDArray[Any], ...]:
     """Return places, then columns, of the scores of runs that have the same labels."""

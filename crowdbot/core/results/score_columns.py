@@ -70,7 +70,11 @@ class ScoreColumns(Sequence[ScoreRow]):
         """Return rows as columns; columns are returned unchanged."""
         if isinstance(rows, ScoreColumns):
             return rows
-        runs, labels, states = Numbered[str](), Numbered[ScoreLabel](), Numbered[ColumnState]()
+        runs, labels, states = (
+            IndexByValue[str](),
+            IndexByValue[ScoreLabel](),
+            IndexByValue[ColumnState](),
+        )
         places = [
             (
                 runs.place(r.run_id),
@@ -165,7 +169,7 @@ class ScoreColumns(Sequence[ScoreRow]):
         )  # fmt: skip
 
 
-class Numbered(dict[_Value, int]):
+class IndexByValue(dict[_Value, int]):
     """Values with indices in the order of first appearance."""
 
     def place(self, value: _Value) -> int:

@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.robots.check_links import below_floor, check_masses, impossible_moments
 from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.joint import Joint
 from crowdbot.core.robots.wheel_gain import reached_speed
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
@@ -145,50 +146,59 @@ def _check_base(model: RobotModel, described: Description) -> None:
 
 
 def _check_wheels(model: RobotModel, drive: DifferentialDrive, described: Description) -> None:
-    sides = []
+    left, right = drive.left_joint, drive.right_joint
     heights = [
         float(described.pose(described.joint(name).child, model.base)[2, 3])
-        for name in (drive.left_joint, drive.right_joint)
+        for name in (left, right)
     ]
-    if abs(heights[0] - heights[1]) > _FLOOR:
+    apart = abs(heights[0] - heights[1])
+    if apart > _FLOOR:
         raise PluginError(
-            f"the axles of '{drive.left_joint}' and '{drive.right_joint}' are "
-            f"{1e3 * abs(heights[0] - heights[1]):.3g} mm apart in height; the driven wheels have "
-            "one radius and one axle"
+            f"the axles of '{left}' and '{right}' are {1e3 * apart:.3g} mm apart in height; the "
+            "driven wheels have one radius and one axle"
         )
-    for name, side in ((drive.left_joint, 1.0), (drive.right_joint, -1.0)):
-        joint = described.joint(name)
-        if not joint.free:
-            raise PluginError(f"joint '{name}' is {joint.kind}; a wheel's is continuous")
-        if joint.effort is None or not joint.effort > 0.0:
-            raise PluginError(
-                f"joint '{name}' has no motor: say its torque, <limit effort=\"…\"/>"
-                if described.format == "urdf"
-                else f"joint '{name}' has no motor: say its torque, <limit><effort>…"
-            )
-        if not math.isclose(described.wheel_radius(name), drive.command_radius, rel_tol=0.1):
-            raise PluginError(
-                f"the wheel on '{name}' has radius {described.wheel_radius(name):g} m; "
-                f"command_radius is {drive.command_radius:g} m"
-            )
-        pose = described.pose(joint.child, model.base)
-        try:
-            _check_place(name, pose, model.base, model.base_height - drive.command_radius)
-        except PluginError as error:
-            raise PluginError(f"{error}{_skid_steer(drive, described)}") from error
-        if side * pose[1, 3] <= 0.0:
-            raise PluginError(f"the wheel on '{name}' is on the other side of the robot")
-        if (pose[:3, :3] @ joint.axis)[1] < _ALONG:
-            raise PluginError(
-                f"joint '{name}' does not drive ahead: its axis must point to the left of "
-                f"'{model.base}', and is {np.round(pose[:3, :3] @ joint.axis, 3).tolist()} there"
-            )
-        sides.append(pose[1, 3])
-    track = sides[0] - sides[1]
+    track = _checked_side(model, drive, described, left, 1.0)
+    track -= _checked_side(model, drive, described, right, -1.0)
     if not math.isclose(track, drive.track, rel_tol=_SHARE):
         raise PluginError(f"track is {drive.track:g} m; the wheels are {track:g} m apart")
-    if drive.left_joint == drive.right_joint:
-        raise PluginError(f"the left and the right wheel are the same joint, '{drive.left_joint}'")
+    if left == right:
+        raise PluginError(f"the left and the right wheel are the same joint, '{left}'")
+
+
+def _checked_side(
+    model: RobotModel, drive: DifferentialDrive, described: Description, name: str, side: float
+) -> float:
+    """Return y of a driven wheel in the base's frame, m; ``side`` is 1 for the left one, or -1."""
+    joint = described.joint(name)
+    _check_motor(joint, name, described)
+    radius = described.wheel_radius(name)
+    if not math.isclose(radius, drive.command_radius, rel_tol=0.1):
+        raise PluginError(
+            f"the wheel on '{name}' has radius {radius:g} m; command_radius is "
+            f"{drive.command_radius:g} m"
+        )
+    pose = described.pose(joint.child, model.base)
+    try:
+        _check_place(name, pose, model.base, model.base_height - drive.command_radius)
+    except PluginError as error:
+        raise PluginError(f"{error}{_skid_steer(drive, described)}") from error
+    if side * pose[1, 3] <= 0.0:
+        raise PluginError(f"the wheel on '{name}' is on the other side of the robot")
+    axis = pose[:3, :3] @ joint.axis
+    if axis[1] < _ALONG:
+        raise PluginError(
+            f"joint '{name}' does not drive ahead: its axis must point to the left of "
+            f"'{model.base}', and is {np.round(axis, 3).tolist()} there"
+        )
+    return float(pose[1, 3])
+
+
+def _check_motor(joint: Joint, name: str, described: Description) -> None:
+    if not joint.free:
+        raise PluginError(f"joint '{name}' is {joint.kind}; a wheel's is continuous")
+    if joint.effort is None or not joint.effort > 0.0:
+        element = '<limit effort="…"/>' if described.format == "urdf" else "<limit><effort>…"
+        raise PluginError(f"joint '{name}' has no motor: say its torque, {element}")
 
 
 def _skid_steer(drive: DifferentialDrive, described: Description) -> str:

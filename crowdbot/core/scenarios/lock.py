@@ -63,7 +63,7 @@ def _check_draw(files: LockFiles, scenario: Scenario, origin: Scenario, name: st
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class NewLock:
     """A new lock, its tables by name, and the number of newly sampled tables."""
 
     lock: Lock
@@ -106,7 +106,7 @@ def population(scenario: Scenario, registry: Registry) -> Population:
 
 def make_lock(
     expansion: Expansion, registry: Registry, files: LockFiles, *, redraw: bool = False
-) -> Made:
+) -> NewLock:
     """Freeze a suite; tables whose inputs did not change are kept as they are.
 
     Args:
@@ -147,10 +147,10 @@ def make_lock(
         draws=locked,
         scenarios=scenarios,
     )
-    return Made(lock, tables, drawn)
+    return NewLock(lock, tables, drawn)
 
 
-def write_lock(files: LockFiles, made: Made) -> None:
+def write_lock(files: LockFiles, made: NewLock) -> None:
     """Write both files atomically: both or neither.
 
     A file of tables that is shared with another suite is left alone.

@@ -120,7 +120,7 @@ class People:
         return foresee
 
 
-class Guided(NamedTuple):
+class GuideInputs(NamedTuple):
     """A guide, the people it is about as a function of robot and crowd state, and its lidars."""
 
     guide: PersonGuide
@@ -150,7 +150,7 @@ class PlannerSystem(LeafSystem):
         on_signal: Callable[[float, str, float], None],
         on_drawing: Callable[[float, Drawn], None],
         people: People | None = None,
-        guided: Guided | None = None,
+        guided: GuideInputs | None = None,
         crowd_size: int = 0,
         others: OtherRobots,
     ) -> None:
@@ -358,11 +358,11 @@ def add_planner(
     return planner
 
 
-def _guided(built: BuiltRun, seed: int) -> Guided | None:
+def _guided(built: BuiltRun, seed: int) -> GuideInputs | None:
     guide = guide_of(built, seed)
     if guide is None or built.target is None:
         return None
-    return Guided(guide, relative_people(built.target), tuple(lidars_of(built.infos)))
+    return GuideInputs(guide, relative_people(built.target), tuple(lidars_of(built.infos)))
 
 
 def _people(crowd: CrowdSystem | None, others: Sequence[RobotModel]) -> People:

@@ -18,7 +18,7 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader
-from crowdbot.core.recording.motion.candidates import Choosers
+from crowdbot.core.recording.motion.candidates import CandidateGroup
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.recording.writer import RecordingWriter
@@ -139,17 +139,17 @@ def agents(engine: CrowdEngine | None) -> AgentsHeader | None:
     return AgentsHeader(id=a.id, radius=a.radius, mass=a.mass)
 
 
-def choosers(engine: CrowdEngine | None) -> list[Choosers]:
+def choosers(engine: CrowdEngine | None) -> list[CandidateGroup]:
     """Return people with known candidate velocities; empty without an engine."""
     if engine is None:
         return []
-    a, found = engine.agents, list[Choosers]()
+    a, found = engine.agents, list[CandidateGroup]()
     for number, policy in enumerate(engine.policies):
         candidates = candidates_of(policy)
         rows = np.flatnonzero(a.policy == number)
         if candidates is not None and len(rows):
             found.append(
-                Choosers(
+                CandidateGroup(
                     candidates=candidates,
                     rows=rows,
                     preferred_speed=a.preferred_speed[rows],

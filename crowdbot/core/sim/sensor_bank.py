@@ -56,7 +56,7 @@ class Slot:
         return Reading(float(state[self.stamp]), values)
 
 
-class _Way(NamedTuple):
+class _SensorReader(NamedTuple):
     """Data for taking a reading: its slot, its sensor, its random numbers."""
 
     slot: Slot
@@ -146,8 +146,10 @@ class SensorBank(LeafSystem):
         self.slots, size = lay_out(
             {n: x.info() for n, x in sensors.items()}, people, len(scene.others)
         )
-        self._ways = {
-            n: _Way(x, sensors[n].read, SensorStream(seed, robot, n) if x.info.random else None)
+        self._readers = {
+            n: _SensorReader(
+                x, sensors[n].read, SensorStream(seed, robot, n) if x.info.random else None
+            )
             for n, x in self.slots.items()
         }
         self._renderers = tuple(renderers.values())
@@ -189,7 +191,7 @@ class SensorBank(LeafSystem):
 
     def _rng(self, name: str, t: float) -> np.random.Generator:
         """Return the random generator of one reading, even if it is not used."""
-        stream = self._ways[name].stream
+        stream = self._readers[name].stream
         return self._idle if stream is None else stream.at(round(t * TICKS_PER_SECOND))
 
     def _update(self, context: Context, state: State) -> None:
@@ -252,7 +254,7 @@ class SensorBank(LeafSystem):
         self._scene.show_robots(self._poses)
 
     def _read(self, name: str, bank: Array, pose: Pose, t: float, tick: int) -> None:
-        slot, read, stream = self._ways[name]
+        slot, read, stream = self._readers[name]
         rng = self._idle if stream is None else stream.at(tick)
         if slot.info.memory:
             values = read(self._scene, pose, t, rng, bank[slot.memory])

@@ -250,20 +250,20 @@ def _record_run(
             references_by_robot(references, names),
             metrics="*" if request.options.metrics is None else request.options.metrics,
         )
-        people = prepared.run.people
         record = make_record(
-            request, identity, people, references, outcome, runs, scores, parts=parts
+            request, identity, prepared.run.people, references, outcome, runs, scores, parts=parts
         )
         if excused:
             record = record.model_copy(update={"excused": list(excused)})
-        shown = [] if images is None else images.images()
         write_scenario(folder, request.scenario, request.registry)
         label = request.choice.label
         write_scores_csv(folder / files.SCORES, scores, request.scenario.id, label, request.seed)
         if request.options.replay:
+            models = {name: built.model for name, built in builts.items()}
+            shown = [] if images is None else images.images()
             page = shown_run(
-                request.scenario, seen, {name: built.model for name, built in builts.items()},
-                parts, record, scores, shown, people.agents,
+                request.scenario, seen, models, parts, record, scores, shown,
+                prepared.run.people.agents,
             )  # fmt: skip
             write_replay(folder / files.REPLAY, page)
         record = _finish(folder, record, outcome.written)

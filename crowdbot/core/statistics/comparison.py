@@ -13,7 +13,7 @@ import crowdbot.core.statistics.clusters as c
 from crowdbot.core.statistics.clusters import Bounds, Clusters, Floats
 from crowdbot.core.statistics.effect_size import effect_size
 from crowdbot.core.statistics.estimate import NOTHING, Counts, Estimate
-from crowdbot.core.statistics.judged import Judged, judge, utility
+from crowdbot.core.statistics.judged import ComparisonVerdict, judge, utility
 from crowdbot.core.statistics.sign_flip import least_p
 from crowdbot.core.statistics.signed_rank import double_ranks, signed_ranks
 from crowdbot.core.statistics.summary_estimator import bounds_of_difference, rate_difference
@@ -82,7 +82,7 @@ class Comparison:
 
 def compare(
     table: Table, name: Name, a: str, b: str, *, level: float = 0.95
-) -> tuple[Comparison, Judged]:
+) -> tuple[Comparison, ComparisonVerdict]:
     """Compare two planners; `with_verdict` adds the verdict once all p values are known."""
     label = table.label(name)
     sides = table.column(name, a), table.column(name, b)
@@ -94,23 +94,23 @@ def compare(
         counts_a=sides[0].counts, counts_b=sides[1].counts,
     )  # fmt: skip
     if not there.any():
-        return replace(head, reason="no scenario and seed was run with both"), Judged()
+        return replace(head, reason="no scenario and seed was run with both"), ComparisonVerdict()
     reference = table.reference(name)
     if label.better == "reference" and reference is None:
-        return replace(head, verdict="not ranked", reason=NO_REFERENCE), Judged()
+        return replace(head, verdict="not ranked", reason=NO_REFERENCE), ComparisonVerdict()
     pair = _Pair(*(_Side.of(s, there, label.better, reference) for s in sides))
     found = _differences(head, pair, groups, _bounds(table, head), level)
     rates = rate_difference(table, name, (a, b), _chosen(there, pair.known), level)
     if rates is not None:
         found = _with_rates(found, *rates, groups, level)
     if label.better == "none":
-        return replace(found, verdict="not ranked", reason=NO_DIRECTION), Judged()
+        return replace(found, verdict="not ranked", reason=NO_DIRECTION), ComparisonVerdict()
     judged = judge(table, name, a, b, label.better, reference)
     return replace(_ranked(found, pair, groups, level), p=judged.p), judged
 
 
 def with_verdict(
-    found: Comparison, judged: Judged, p_holm: float | None, alpha: float
+    found: Comparison, judged: ComparisonVerdict, p_holm: float | None, alpha: float
 ) -> Comparison:
     """Return the comparison with its verdict, which rests on means; ranks only describe."""
     if found.verdict == "not ranked" or found.p is None:

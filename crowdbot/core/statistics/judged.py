@@ -25,7 +25,7 @@ _ROUNDING = 1e-12  # values with a smaller relative difference are equal
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class ComparisonVerdict:
     """The direction of a comparison, and the p value of its mean.
 
     Attributes:
@@ -39,7 +39,9 @@ class Judged:
     reason: str = ""
 
 
-def judge(table: Table, name: Name, a: str, b: str, better: str, reference: float | None) -> Judged:
+def judge(
+    table: Table, name: Name, a: str, b: str, better: str, reference: float | None
+) -> ComparisonVerdict:
     """Return the direction and the p value of two planners in a score that has a direction."""
     one, two = (_Side.of(table, name, planner, better, reference) for planner in (a, b))
     worst = _worst(table, name, better, (one, two))
@@ -54,8 +56,10 @@ def judge(table: Table, name: Name, a: str, b: str, better: str, reference: floa
             continue
         last = int((own.last & kept).sum())
         reason = f"{plural(last, 'run')} of {planner} without a value count as the worst"
-        return Judged(sign, p_value(gains, table.clusters.part(kept)), reason if last else "")
-    return Judged(reason=forbidden)
+        return ComparisonVerdict(
+            sign, p_value(gains, table.clusters.part(kept)), reason if last else ""
+        )
+    return ComparisonVerdict(reason=forbidden)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,7 +18,7 @@ import crowdbot.core.statistics.clusters as c
 from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.comparison import reach
 from crowdbot.core.statistics.estimate import Estimate
-from crowdbot.core.statistics.judged import Judged, judge
+from crowdbot.core.statistics.judged import ComparisonVerdict, judge
 from crowdbot.core.statistics.sample_size import MOST_DRAWS
 from crowdbot.core.statistics.sign_flip import least_p, p_value
 from crowdbot.core.statistics.table import Name, Table
@@ -138,10 +138,10 @@ class _Rows:
             runs={size: None if n is None else math.ceil(n * each) for size, n in found.items()},
         )
 
-    def _judged(self) -> Judged:
+    def _judged(self) -> ComparisonVerdict:
         better = self.table.label(self.name).better
         if better not in ("higher", "lower", "reference"):
-            return Judged()
+            return ComparisonVerdict()
         reference = self.table.reference(self.name)
         return judge(self.table, self.name, *self.planners, better, reference)
 

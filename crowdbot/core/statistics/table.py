@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import WITHOUT_RUN, RunRow, ScoreRow
-from crowdbot.core.results.score_columns import ColumnState, Numbered, ScoreColumns, different
+from crowdbot.core.results.score_columns import ColumnState, IndexByValue, ScoreColumns, different
 from crowdbot.core.scoring.score_scale import UNKNOWN, ScoreScale
 from crowdbot.core.statistics.clusters import Clusters, Floats
 from crowdbot.core.statistics.estimate import OUTCOMES, Counts
@@ -256,7 +256,7 @@ class AxisLabels:
         axes = {}
         named, which = different([run.axes for _, run in there])
         for axis in dict.fromkeys(a for labels in named for a in labels):
-            order = Numbered[str]()
+            order = IndexByValue[str]()
             index = [order.place(labels.get(axis, "")) for labels in named]
             axes[axis] = tuple(order), np.array(index, np.intp)[which]
         density = [math.nan if run.density is None else run.density for _, run in there]

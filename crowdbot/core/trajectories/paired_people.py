@@ -72,7 +72,7 @@ class Pairing:
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _TripSamples:
     """One trip: its samples; (3, K) x, y and time since its start; its duration."""
 
     rows: slice
@@ -87,8 +87,8 @@ class _Pair:
     """One trip of a person with and without the robot."""
 
     who: int
-    one: _Way
-    two: _Way
+    one: _TripSamples
+    two: _TripSamples
 
     @cached_property
     def laid(self) -> tuple[Array, Array]:
@@ -203,21 +203,21 @@ def _delay(pair: _Pair) -> float:
     return float(pair.laid[1][-1])
 
 
-def _laid_over(one: _Way, two: _Way) -> tuple[Array, Array]:
+def _laid_over(one: _TripSamples, two: _TripSamples) -> tuple[Array, Array]:
     """Return, at each sample (K,), the distance from the other path (m) and the delay there (s)."""
     beside, late = np.empty((2, one.path.shape[1]))
     follow(one.path, two.path, WINDOW, beside, late)
     return beside, late
 
 
-def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
+def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _TripSamples]:
     """Return person and number of the trip -> its path; with at least two samples."""
     agents, trips = people(run), run.trips
     if trips is None or not agents.x.size:
         return {}
     x, y = inf_to_nan(agents.x), inf_to_nan(agents.y)
     parts = _continuous(run, jump_speed).tolist()
-    found: dict[tuple[int, int], _Way] = {}
+    found: dict[tuple[int, int], _TripSamples] = {}
     count: dict[int, int] = {}
     for k in np.lexsort((trips.t0, trips.agent)).tolist():
         person, (first, end, column) = int(trips.agent[k]), parts[k]
@@ -227,7 +227,7 @@ def _ways(run: Trajectories, jump_speed: float) -> dict[tuple[int, int], _Way]:
         rows, path = slice(first, end), np.empty((3, end - first))
         path[0], path[1] = x[rows, column], y[rows, column]
         np.subtract(run.t[rows], trips.t0[k], out=path[2])
-        found[person, count[person]] = _Way(
+        found[person, count[person]] = _TripSamples(
             rows=rows,
             column=column,
             path=path,
@@ -250,7 +250,7 @@ def _continuous(run: Trajectories, jump_speed: float) -> NDArray[np.int64]:
     return parts
 
 
-def _walked(way: _Way) -> tuple[float, float]:
+def _walked(way: _TripSamples) -> tuple[float, float]:
     """Return length (m) and duration (s) of the observed part of a trip."""
     x, y, t = way.path
     length = np.hypot(x[1:] - x[:-1], y[1:] - y[:-1]).sum()

@@ -26,7 +26,7 @@ _PERSON = 0.3  # m, kept around people
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Filmed:
+class FilmedRun:
     """A run to be filmed.
 
     Attributes:

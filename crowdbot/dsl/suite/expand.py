@@ -164,7 +164,7 @@ class Expanding:
 
 
 @dataclass
-class _Folded:
+class _SharedError:
     """An error, and the scenarios that have it."""
 
     diagnostic: Diagnostic
@@ -173,7 +173,7 @@ class _Folded:
 
 
 @dataclass(frozen=True, slots=True)
-class _Bare:
+class _Combination:
     """A combination of the matrix: its id, crowd seed key, labels of the axes, and document."""
 
     name: str
@@ -192,7 +192,7 @@ class _Expander:
 
     def __init__(self, suite: ParsedSuite, model: type[Scenario], overrides: Sequence[str]) -> None:
         self._suite, self._model = suite, model
-        self._errors: dict[tuple[str, Mark, str], _Folded] = {}
+        self._errors: dict[tuple[str, Mark, str], _SharedError] = {}
         self._problems = list(suite.problems)
         self._set = _parse_overrides(overrides, self._problems)
         self._altered = tuple(overrides)
@@ -205,7 +205,7 @@ class _Expander:
         self._parts, self._checks = ValidParts(), Checks()
         self._assets = AssetFiles(suite.finder, suite.files) if suite.finder else None
         self._validated: dict[tuple[tuple[str, int], ...], Scenario] = {}
-        self._bare: list[_Bare] | None = None
+        self._bare: list[_Combination] | None = None
         self._total = self._noted = 0
 
     def run(self) -> Expansion:
@@ -236,7 +236,7 @@ class _Expander:
             suite.round,
         )
 
-    def _unusable(self, bare: _Bare) -> str:
+    def _unusable(self, bare: _Combination) -> str:
         """Return why a combination's id cannot be a folder beside earlier ones; empty if it can."""
         if bare.name == self._suite.scenario_id:
             return ""
@@ -245,7 +245,7 @@ class _Expander:
             return f"'{bare.name}' is '{first}' where file systems do not tell capitals"
         return path_problem(bare.name)
 
-    def _longest(self, bare: _Bare) -> Mark:
+    def _longest(self, bare: _Combination) -> Mark:
         """Return the position of a combination's longest label."""
         keys = {axis.name: axis.keys for axis in self._suite.axes}
         marks = [
@@ -263,7 +263,7 @@ class _Expander:
         assert scenario is not None
         return scenario
 
-    def _scenario(self, bare: _Bare, tree: Node) -> Scenario | None:
+    def _scenario(self, bare: _Combination, tree: Node) -> Scenario | None:
         """Return a combination with its references.
 
         None if there was an error, which is recorded.
@@ -283,7 +283,7 @@ class _Expander:
         if problems := [*self._problems, *self._folded()]:
             raise SpecError(_sorted(problems))
 
-    def _trees(self) -> Iterator[_Bare]:
+    def _trees(self) -> Iterator[_Combination]:
         """Yield the selected combinations as trees."""
         suite, axes = self._suite, [axis.name for axis in self._suite.axes]
         for combination in combinations(suite.base, suite.axes):
@@ -295,9 +295,9 @@ class _Expander:
             name = name or suite.scenario_id
             draw = labels.get(DRAW)
             name = f"{name}-{draw}" if name and draw else name
-            yield _Bare(name and name + self._suffix, key, labels, combination.tree)
+            yield _Combination(name and name + self._suffix, key, labels, combination.tree)
 
-    def _complete(self, bare: _Bare, reference: Node | None = None) -> Node:
+    def _complete(self, bare: _Combination, reference: Node | None = None) -> Node:
         """Return a combination merged with the reference, ``--set`` and the seed, in this order."""
         tree = bare.tree
         if reference is None:
@@ -387,7 +387,7 @@ class _Expander:
     def _note(self, diagnostic: Diagnostic, name: str, reference: str) -> None:
         self._noted += 1
         key = (diagnostic.code, diagnostic.mark, diagnostic.message)
-        folded = self._errors.setdefault(key, _Folded(diagnostic, [], reference))
+        folded = self._errors.setdefault(key, _SharedError(diagnostic, [], reference))
         if not folded.ids or folded.ids[-1] != name:
             folded.ids.append(name)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core.campaign.execute import failed_job
-from crowdbot.core.campaign.job import Done, Job
+from crowdbot.core.campaign.job import Job, JobOutcome
 from crowdbot.core.campaign.plan import make_plan
 from crowdbot.core.campaign.request import CampaignRequest
 from crowdbot.core.campaign.run import State, run_campaign
@@ -37,7 +37,7 @@ class _Pool:
         self._jobs.append(job)
         self.submitted += 1
 
-    def finished(self, timeout: float) -> list[Done]:
+    def finished(self, timeout: float) -> list[JobOutcome]:
         del timeout
         error = _raised(InputError("run.mcap: cannot be written"), OSError(self._number, "no"))
         ended = [failed_job(job, error) for job in self._jobs]

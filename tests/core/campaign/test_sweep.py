@@ -12,7 +12,13 @@ import pytest
 from crowdbot.core.campaign.sweep import search as sweeping
 from crowdbot.core.campaign.sweep.axes import ParameterAxis, Trial, parse_axes, run_trials
 from crowdbot.core.campaign.sweep.page import as_json, render, sensitivities, verdict
-from crowdbot.core.campaign.sweep.search import Sweep, SweepRequest, Tried, known_metric, search
+from crowdbot.core.campaign.sweep.search import (
+    Sweep,
+    SweepRequest,
+    TrialResult,
+    known_metric,
+    search,
+)
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.errors import InputError, UnknownNameError, UsageError
@@ -27,10 +33,10 @@ def request(out: Path, **more: Any) -> SweepRequest:
     return SweepRequest(**{**given, **more}, out=out)
 
 
-def tried(speed: str, score: float, elsewhere: float | None = None) -> Tried:
+def tried(speed: str, score: float, elsewhere: float | None = None) -> TrialResult:
     other = None if elsewhere is None else Estimate(value=elsewhere)
     trial = {"speed": speed} if speed else {}
-    return Tried(trial=trial, label=f"dwa-{speed}", score=Estimate(value=score), runs=2,
+    return TrialResult(trial=trial, label=f"dwa-{speed}", score=Estimate(value=score), runs=2,
                  elsewhere=other)  # fmt: skip
 
 
@@ -118,7 +124,8 @@ def test_sensitivity_is_the_share_between_values(tmp_path: Path) -> None:
     axes = parse_axes(["a=x,y", "b=p,q"])
     rows = [("x", "p", 1.0), ("x", "q", 1.1), ("y", "p", 0.0), ("y", "q", 0.1)]
     found = tuple(
-        Tried(trial={"a": a, "b": b}, label="", score=Estimate(value=v), runs=1) for a, b, v in rows
+        TrialResult(trial={"a": a, "b": b}, label="", score=Estimate(value=v), runs=1)
+        for a, b, v in rows
     )
     by_name = {
         s.name: s.share

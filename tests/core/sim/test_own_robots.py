@@ -45,15 +45,15 @@ def _installed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class Holonomic(Drive):
-    """A planner that also says vy."""
+    """A planner whose command has vy, too."""
 
     def __init__(self, *command: float) -> None:
         super().__init__(lambda _: (0.0, 0.0))
-        self.command = Command(*command)
+        self.answer = Command(*command)
 
     def step(self, obs: Any) -> Command:
         super().step(obs)
-        return self.command
+        return self.answer
 
 
 def _puck(mode: str) -> Any:

@@ -16,7 +16,7 @@ from PIL import Image
 
 from crowdbot.core.recording.placed_drawings import PlacedDrawing
 from crowdbot.core.view import encode_film
-from crowdbot.core.view.film import Filmed
+from crowdbot.core.view.film import FilmedRun
 from crowdbot.core.view.raster import to_image
 from crowdbot.core.view.shapes import DARK, LIGHT, Disc, Drawing, Text
 from crowdbot.core.view.shapes import Path as Line
@@ -27,9 +27,9 @@ T = grid(4, 1 / 16)
 LEGEND = 90  # px, three rows at this width
 
 
-def filmed(**more: object) -> Filmed:
+def filmed(**more: object) -> FilmedRun:
     run = scene(T, line(T, (0, 0), (1, 0)), (line(T, (3, 1), (-0.5, 0)),), goal_time=None)
-    return Filmed(tracks=(run,), title="made up", width=320, **more)  # type: ignore[arg-type]
+    return FilmedRun(tracks=(run,), title="made up", width=320, **more)  # type: ignore[arg-type]
 
 
 def near(image: Image.Image, colour: str, below: int = 0) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from crowdbot.core.campaign.sweep.axes import ParameterAxis
-from crowdbot.core.campaign.sweep.search import Sweep, Tried, words
+from crowdbot.core.campaign.sweep.search import Sweep, TrialResult, words
 from crowdbot.core.statistics.estimate_text import joined_text
 from crowdbot.core.support.html_page import render_page
 
@@ -75,7 +75,7 @@ def verdict(sweep: Sweep) -> list[str]:
     return lines
 
 
-def _fit(sweep: Sweep, best: Tried) -> Iterator[str]:
+def _fit(sweep: Sweep, best: TrialResult) -> Iterator[str]:
     """Yield what is left of the best trial's lead on other people."""
     usual = sweep.usual
     if best.elsewhere is None or best.elsewhere.value is None or best.score.value is None:

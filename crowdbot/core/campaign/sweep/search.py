@@ -84,7 +84,7 @@ class SweepRequest:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Tried:
+class TrialResult:
     """One trial: its parameters, label, and score on the people of the search and others.
 
     ``motions`` are the hashes of its runs' trajectories: equal ones met the same people.
@@ -112,11 +112,11 @@ class Sweep:
     """
 
     request: SweepRequest
-    tried: tuple[Tried, ...]
-    usual: Tried | None
+    tried: tuple[TrialResult, ...]
+    usual: TrialResult | None
 
     @property
-    def best(self) -> Tried | None:
+    def best(self) -> TrialResult | None:
         """Return the best trial."""
         return next((t for t in self.tried if t.score.value is not None), None)
 
@@ -141,7 +141,7 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
         name: _Round(request, registry, execute, name, request.seed + i)
         for i, name in enumerate((_SEARCH, _CHECK))
     }
-    found: dict[tuple[tuple[str, str], ...], Tried] = {}
+    found: dict[tuple[tuple[str, str], ...], TrialResult] = {}
 
     def score(trial: Trial) -> float | None:
         key = tuple(sorted(trial.items()))
@@ -166,7 +166,7 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
     return Sweep(request=request, tried=tuple(tried), usual=usual)
 
 
-def _ordered(request: SweepRequest, tried: Iterable[Tried]) -> list[Tried]:
+def _ordered(request: SweepRequest, tried: Iterable[TrialResult]) -> list[TrialResult]:
     """Return trials from the best to the worst; those without a score are last."""
     sign = -1.0 if request.better == "higher" else 1.0
     return sorted(
@@ -202,7 +202,7 @@ class _Round:
         self._suite = _derived(request, registry, name, seed)
         self._scales = score_scales(registry)
 
-    def run(self, trial: Trial, title: str) -> Tried:
+    def run(self, trial: Trial, title: str) -> TrialResult:
         """Return the score of a trial, after running what is missing."""
         request = self._request
         settings = [*request.settings, *(f"{k}={v}" for k, v in trial.items())]
@@ -228,9 +228,11 @@ class _Round:
         known = name in table.names and label in table.planners
         score = planner_mean(table, name, label) if known else Estimate(reason="not scored")
         motions = frozenset(run.trajectory_hash for run in kept)
-        return Tried(trial=trial, label=label, score=score, runs=len(plan.runs), motions=motions)
+        return TrialResult(
+            trial=trial, label=label, score=score, runs=len(plan.runs), motions=motions
+        )
 
-    def again(self, tried: Tried, title: str) -> Tried:
+    def again(self, tried: TrialResult, title: str) -> TrialResult:
         """Return a trial with its score on these people."""
         found = self.run(tried.trial, title)
         return replace(tried, elsewhere=found.score, motions_elsewhere=found.motions)
@@ -297,7 +299,7 @@ def _write(request: SweepRequest, tried: Any) -> None:
     )
 
 
-def _row(one: Tried) -> Mapping[str, Any]:
+def _row(one: TrialResult) -> Mapping[str, Any]:
     elsewhere = None if one.elsewhere is None else asdict(one.elsewhere)
     return {
         "parameters": dict(one.trial), "planner": one.label, "runs": one.runs,

@@ -39,7 +39,7 @@ Policies = dict[int, tuple[Data, Item]]
 
 
 @dataclass(slots=True)
-class _Found:
+class _Elements:
     """Elements of all files, by their names; each with the file that it is in.
 
     Attributes:
@@ -59,7 +59,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     Raises:
         SpecError: E402, a part has a value that cannot be.
     """
-    report, found = context.report, _Found()
+    report, found = context.report, _Elements()
     for file in files:
         for root in file.roots:
             _collect(root, file.path, found, context)
@@ -85,7 +85,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     return scenes
 
 
-def _collect(item: Item, path: Path, found: _Found, context: Context) -> None:
+def _collect(item: Item, path: Path, found: _Elements, context: Context) -> None:
     """Collect an element once, those within it and those of the files that it names."""
     if any(item is known for known, _ in found.of(item.name)):
         return
@@ -111,7 +111,7 @@ def _collect(item: Item, path: Path, found: _Found, context: Context) -> None:
                 _collect(part, path, found, context)
 
 
-def _world(found: _Found, scene: Draft, report: Report) -> None:
+def _world(found: _Elements, scene: Draft, report: Report) -> None:
     for item, _ in found.of("World")[-1:]:
         fields = report.take(item, WORLD)
         scene.origins["environment",] = item.mark

@@ -20,7 +20,7 @@ MOST_CANDIDATES = 120
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Choosers:
+class CandidateGroup:
     """People who choose among the same candidate velocities.
 
     Attributes:
@@ -53,7 +53,7 @@ class Choosers:
         )
 
     @classmethod
-    def from_message(cls, message: Any, people: int) -> Choosers:
+    def from_message(cls, message: Any, people: int) -> CandidateGroup:
         """Read ``crowdbot_msgs/VelocityCandidates``.
 
         Raises:
@@ -96,7 +96,7 @@ class CandidateTable(NamedTuple):
     relaxation: Array
 
 
-def candidate_table(people: int, choosers: Sequence[Choosers]) -> CandidateTable:
+def candidate_table(people: int, choosers: Sequence[CandidateGroup]) -> CandidateTable:
     """Return the table of some groups among this many people."""
     first, count = np.zeros(people, np.int64), np.zeros(people, np.int64)
     speed, radius, limit = np.zeros(people), np.zeros(people), np.zeros(people)

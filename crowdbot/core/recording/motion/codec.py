@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.recording.motion.candidates import (
+    CandidateGroup,
     CandidateTable,
-    Choosers,
     candidate_table,
 )
 from crowdbot.core.recording.motion.difference_bytes import EXACT, carry, mark_exact
@@ -91,7 +91,7 @@ class _Samples(NamedTuple):
     difference: NDArray[np.int64]
 
 
-class _Past(NamedTuple):
+class _PreviousState(NamedTuple):
     """The state from earlier samples, updated in place.
 
     Attributes:
@@ -113,7 +113,7 @@ class MotionCodec:
         choosers: those whose candidates are known; no person is in two groups.
     """
 
-    def __init__(self, people: int, choosers: Sequence[Choosers] = ()) -> None:
+    def __init__(self, people: int, choosers: Sequence[CandidateGroup] = ()) -> None:
         self._people = people
         self._candidates = candidate_table(people, choosers)
         self._choice = np.zeros(people, np.int64)  # the last candidate taken
@@ -223,7 +223,7 @@ def _code(
     One function for both directions, so that predictions are identical.
 
     Args:
-        packs to difference: fields of `_Samples` and `_Past`.
+        packs to difference: fields of `_Samples` and `_PreviousState`.
         steps: (K,) ticks since the last sample.
         goals: (K, 2, M).
         choice: (M,) the last candidate taken, updated.
@@ -231,7 +231,7 @@ def _code(
             towards candidates, and the resulting motion.
     """
     samples = _Samples(packs, values, bits, scratch, scratch_bits, taken, difference)
-    past = _Past(last, speeds, oldest)
+    past = _PreviousState(last, speeds, oldest)
     chooses = candidates.unit.shape[0] > 0
     for k in range(values.shape[0]):
         if chooses:  # all people at once, which vectorises
@@ -294,7 +294,9 @@ def _follow(samples: _Samples, k: int, i: int, vx: float, vy: float) -> bool:
 
 
 @inline_kernel
-def _extrapolate(samples: _Samples, past: _Past, k: int, i: int, ticks: int, gain: float) -> None:
+def _extrapolate(
+    samples: _Samples, past: _PreviousState, k: int, i: int, ticks: int, gain: float
+) -> None:
     """Predict velocities from those of the two previous samples."""
     last, speeds, scratch = past.last, past.speeds[i], samples.scratch
     values, taken = samples.values, samples.taken

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import crowdbot.core.recording.messages as ros
-from crowdbot.core.recording.motion.candidates import Choosers, GoalChanges, GoalsReader
+from crowdbot.core.recording.motion.candidates import CandidateGroup, GoalChanges, GoalsReader
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -50,7 +50,7 @@ class StatesWriter:
         choosers: people with known candidates.
     """
 
-    def __init__(self, people: int, choosers: Sequence[Choosers] = ()) -> None:
+    def __init__(self, people: int, choosers: Sequence[CandidateGroup] = ()) -> None:
         self._people, self._written = people, 0
         self._codec = _codec(people, choosers)
         self._changes = GoalChanges(people) if choosers else None
@@ -103,7 +103,7 @@ class StatesReader:
             InputError, ValueError: they are inconsistent, or do not match the number of people.
         """
         self._people, self._read = people, 0
-        choosers = [Choosers.from_message(message, people) for message in candidates]
+        choosers = [CandidateGroup.from_message(message, people) for message in candidates]
         self._codec = _codec(people, choosers)
         self._goals = GoalsReader(people, goals) if choosers else None
 
@@ -181,7 +181,7 @@ def series(messages: Iterable[Any]) -> dict[str, Array]:
     }
 
 
-def _codec(people: int, choosers: Sequence[Choosers]) -> MotionCodec:
+def _codec(people: int, choosers: Sequence[CandidateGroup]) -> MotionCodec:
     """Return the codec; its module imports numba, which a search for runs does without."""
     from crowdbot.core.recording.motion.codec import MotionCodec
 

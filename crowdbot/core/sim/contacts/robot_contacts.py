@@ -69,7 +69,7 @@ class _Touch:
 
 
 @dataclass(frozen=True, slots=True)
-class Touched:
+class RobotContactForces:
     """Contact forces of one tick between two robots.
 
     Attributes:
@@ -89,7 +89,7 @@ class Touched:
 
 def touch(
     a: Array, outline_a: Array, b: Array, outline_b: Array, stiffness: float
-) -> Touched | None:
+) -> RobotContactForces | None:
     """Return the contact of two robots (rows and outlines as in `robot_contact`), or None."""
     depth, nx, ny, x, y = overlap_of_robots(a, outline_a, b, outline_b)
     if depth <= 0.0:
@@ -97,7 +97,7 @@ def touch(
     vx, vy = (_velocity_at(b, x, y)[i] - _velocity_at(a, x, y)[i] for i in (0, 1))
     closing = -(vx * nx + vy * ny)
     force = max(0.0, stiffness * depth * (1.0 + DISSIPATION * closing))
-    return Touched(depth, (x, y), (nx, ny), force, math.hypot(vx, vy))
+    return RobotContactForces(depth, (x, y), (nx, ny), force, math.hypot(vx, vy))
 
 
 def _velocity_at(row: Array, x: float, y: float) -> tuple[float, float]:
@@ -169,11 +169,11 @@ class RobotContacts(LeafSystem):
         near = zip(*np.nonzero(self._near), strict=True)
         return sorted({*((int(i), int(j)) for i, j in near), *self._going_on})
 
-    def _touch(self, i: int, j: int) -> Touched | None:
+    def _touch(self, i: int, j: int) -> RobotContactForces | None:
         of = self._outlines
         return touch(self._rows[i], of[i], self._rows[j], of[j], self._stiffness[i, j])
 
-    def _add(self, forces: Array, i: int, j: int, found: Touched) -> None:
+    def _add(self, forces: Array, i: int, j: int, found: RobotContactForces) -> None:
         """Add equal and opposite forces at one point."""
         (x, y), (nx, ny) = found.at, found.normal
         fx, fy = found.force * nx, found.force * ny
@@ -181,7 +181,7 @@ class RobotContacts(LeafSystem):
             px, py = x - self._rows[k, RX], y - self._rows[k, RY]
             forces[k] += sign * np.array([fx, fy, px * fy - py * fx])
 
-    def _keep(self, i: int, j: int, found: Touched | None, t: float) -> None:
+    def _keep(self, i: int, j: int, found: RobotContactForces | None, t: float) -> None:
         """Record this pair's contact."""
         going_on = self._going_on.get((i, j))
         if found is None:

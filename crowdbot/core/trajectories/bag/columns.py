@@ -52,7 +52,7 @@ class Columns:
 
 
 @dataclass(slots=True)
-class Seen:
+class BodyRow:
     """A body in a message, as one row.
 
     Attributes:
@@ -72,7 +72,7 @@ class Seen:
     role: str = "person"
 
 
-def columns_of(rows: Sequence[Seen]) -> Columns:
+def columns_of(rows: Sequence[BodyRow]) -> Columns:
     """Return the columns of rows, which may be none."""
     names = dict.fromkeys(name for row in rows for name in row.values)
     return Columns(

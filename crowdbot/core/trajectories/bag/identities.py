@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.trajectories.bag.columns import Columns, Seen
+from crowdbot.core.trajectories.bag.columns import BodyRow, Columns
 from crowdbot.core.trajectories.bag.people import NAMES
 from crowdbot.core.types.arrays import Array
 
@@ -29,7 +29,7 @@ _FIELDS = ("id", "ns and id", *NAMES)
 _EVERYTHING_ELSE = "unknown"
 
 
-def persons_only(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
+def persons_only(rows: Sequence[BodyRow], notes: list[str]) -> list[BodyRow]:
     """Return rows of persons; a note counts other objects.
 
     Objects of unknown class are kept only if none is known to be a person.
@@ -45,9 +45,9 @@ def persons_only(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
     return [row for row in rows if row.role == wanted]
 
 
-def label_field(rows: Sequence[Seen]) -> str | None:
+def label_field(rows: Sequence[BodyRow]) -> str | None:
     """Return the field that identifies people: never empty, and unique within a message."""
-    by_message: dict[int, list[Seen]] = {}
+    by_message: dict[int, list[BodyRow]] = {}
     for row in rows:
         by_message.setdefault(row.message, []).append(row)
     for field in dict.fromkeys(_FIELDS):
@@ -60,12 +60,12 @@ def _distinct(labels: Sequence[str]) -> bool:
     return all(labels) and len(set(labels)) == len(labels)
 
 
-def named(rows: Sequence[Seen], field: str) -> list[str]:
+def named(rows: Sequence[BodyRow], field: str) -> list[str]:
     """Return the name of each row."""
     return [row.labels[field] for row in rows]
 
 
-def places(rows: Sequence[Seen]) -> list[str]:
+def places(rows: Sequence[BodyRow]) -> list[str]:
     """Return each row's position in the list of its message."""
     count: Counter[int] = Counter()
     found = []
@@ -75,7 +75,7 @@ def places(rows: Sequence[Seen]) -> list[str]:
     return found
 
 
-def linked(rows: Sequence[Seen], times: Array, notes: list[str]) -> list[str]:
+def linked(rows: Sequence[BodyRow], times: Array, notes: list[str]) -> list[str]:
     """Return identities of people in messages without any.
 
     The list position is the identity if the number of people never changes and no one moves faster
@@ -143,7 +143,7 @@ def _by_nearness(lists: Sequence[NDArray[np.int64]], xy: Array, times: Array) ->
 
 
 def not_at_origin(
-    rows: Sequence[Seen], names: Sequence[str], notes: list[str]
+    rows: Sequence[BodyRow], names: Sequence[str], notes: list[str]
 ) -> NDArray[np.bool_]:
     """Return a mask of rows (K,) with a position: finite, and no placeholder at exactly (0, 0).
 

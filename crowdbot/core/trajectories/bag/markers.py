@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.trajectories.bag.columns import Seen
+from crowdbot.core.trajectories.bag.columns import BodyRow
 from crowdbot.core.trajectories.bag.fields import header_of
 
 #: visualization_msgs/Marker: kinds of markers and their actions.
@@ -36,14 +36,14 @@ def is_marker(item: Any) -> bool:
     return hasattr(item, "action") and hasattr(item, "ns") and hasattr(item, "scale")
 
 
-def shapes(markers: Sequence[Any], log: int, message: int) -> Iterator[Seen]:
+def shapes(markers: Sequence[Any], log: int, message: int) -> Iterator[BodyRow]:
     """Yield the bodies that the markers of a message show, and the markers that it deletes."""
     for marker in markers:
         kind = int(marker.type)
         if int(marker.action) in (_DELETE, _DELETE_ALL):
             alone = int(marker.action) == _DELETE
             labels = {"ns and id": f"{marker.ns}/{marker.id}"} if alone else {}
-            yield Seen(log, 0, message, "", (0.0, 0.0, 0.0), {}, labels, role=DELETED)
+            yield BodyRow(log, 0, message, "", (0.0, 0.0, 0.0), {}, labels, role=DELETED)
         if int(marker.action) != _ADD or kind not in _RANK:
             continue
         if kind in (_CUBE, _SPHERE, _CYLINDER) and max(marker.scale.x, marker.scale.y) > _WIDEST:
@@ -52,16 +52,16 @@ def shapes(markers: Sequence[Any], log: int, message: int) -> Iterator[Seen]:
         group, number = f"{_RANK[kind]} {marker.ns}", f"{marker.ns}/{marker.id}"
         if kind in _LISTS:
             for xyz in _points(marker):
-                yield Seen(log, stamp, message, frame, xyz, {}, {}, group)
+                yield BodyRow(log, stamp, message, frame, xyz, {}, {}, group)
             continue
         at = marker.points[0] if kind == _ARROW and len(marker.points) else marker.pose.position
         labels = {"id": str(marker.id), "ns and id": number}
         if not (marker.lifetime.sec or marker.lifetime.nanosec):
             labels[_STAYS] = "yes"
-        yield Seen(log, stamp, message, frame, (at.x, at.y, at.z), {}, labels, group)
+        yield BodyRow(log, stamp, message, frame, (at.x, at.y, at.z), {}, labels, group)
 
 
-def without_deleted(rows: Sequence[Seen], notes: list[str]) -> list[Seen]:
+def without_deleted(rows: Sequence[BodyRow], notes: list[str]) -> list[BodyRow]:
     """Return rows of bodies; a note names markers that stop being sent without being deleted."""
     last = {row.labels["ns and id"]: row for row in rows if _STAYS in row.labels}
     end = max((row.log for row in rows), default=0)
@@ -93,16 +93,16 @@ def _points(marker: Any) -> Iterator[tuple[float, float, float]]:
         yield x + at.x, y + at.y, z + at.z
 
 
-def without_parts(rows: Sequence[Seen]) -> list[Seen]:
+def without_parts(rows: Sequence[BodyRow]) -> list[BodyRow]:
     """Return rows without shapes that are parts of other bodies, such as a head above a cylinder.
 
     Shapes with one namespace and type are left out if they nearly always coincide with shapes of a
     likelier type; arrows and points are left out if there is any other shape.
     """
-    by_group: dict[str, dict[int, list[Seen]]] = {}
+    by_group: dict[str, dict[int, list[BodyRow]]] = {}
     for row in rows:
         by_group.setdefault(row.group, {}).setdefault(row.message, []).append(row)
-    kept: list[dict[int, list[Seen]]] = []
+    kept: list[dict[int, list[BodyRow]]] = []
     ranks: set[int] = set()
     for group in sorted(by_group):
         rank = int(group.partition(" ")[0])
@@ -114,7 +114,7 @@ def without_parts(rows: Sequence[Seen]) -> list[Seen]:
     return [row for row in rows if id(row) in left]
 
 
-def _stands_on(group: dict[int, list[Seen]], other: dict[int, list[Seen]]) -> bool:
+def _stands_on(group: dict[int, list[BodyRow]], other: dict[int, list[BodyRow]]) -> bool:
     near = total = 0
     for message, rows in group.items():
         places = np.array([row.xyz[:2] for row in other.get(message, [])]).reshape(-1, 2)

@@ -8,7 +8,7 @@ from collections.abc import Container, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.trajectories.bag.columns import Seen
+from crowdbot.core.trajectories.bag.columns import BodyRow
 from crowdbot.core.trajectories.bag.fields import header_of, linear_of, place_of
 from crowdbot.core.trajectories.bag.markers import DELETED, is_marker, shapes
 from crowdbot.errors import InputError
@@ -35,7 +35,7 @@ _CLASSES = {
 _ROBOT = re.compile(r"(?<![a-z])robot(?!ic)", re.IGNORECASE)  # robot_1, no robotics student
 
 
-def people_in(path: Path, topic: str, message: Any, log: int, number: int) -> list[Seen]:
+def people_in(path: Path, topic: str, message: Any, log: int, number: int) -> list[BodyRow]:
     """Return the people of one message.
 
     Args:
@@ -99,7 +99,7 @@ def _only_list(message: Any) -> Sequence[Any] | None:
     return empty[0] if not bodies and empty else None
 
 
-def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterator[Seen]:
+def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterator[BodyRow]:
     stamp, frame = header_of(message)
     if _is_table(message):
         yield from _of_table(message, log, number)
@@ -122,7 +122,7 @@ def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterat
                 f"{path}: {topic} holds {message.__msgtype__}, whose items have no position"
             )
         own_stamp, own_frame = header_of(item)
-        yield Seen(
+        yield BodyRow(
             log, stamp or own_stamp, number, frame or own_frame, place.xyz, _values(item),
             _labels(item), role=_role(item),
         )  # fmt: skip
@@ -133,13 +133,13 @@ def _is_table(message: Any) -> bool:
     return all(hasattr(getattr(message, n, None), "__len__") for n in _TABLE)
 
 
-def _of_table(message: Any, log: int, number: int) -> Iterator[Seen]:
+def _of_table(message: Any, log: int, number: int) -> Iterator[BodyRow]:
     stamp, frame = header_of(message)
     names = [n for n in ("vx", "vy", "radius") if len(getattr(message, n, ())) == len(message.x)]
     for i, label in enumerate(message.id):
         xyz = float(message.x[i]), float(message.y[i]), 0.0
         values = {name: float(getattr(message, name)[i]) for name in names}
-        yield Seen(log, stamp, number, frame, xyz, values, {"id": str(label)}, "table")
+        yield BodyRow(log, stamp, number, frame, xyz, values, {"id": str(label)}, "table")
 
 
 def _values(item: Any) -> dict[str, float]:

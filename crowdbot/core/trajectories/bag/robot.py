@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.trajectories.bag.columns import Columns, Seen
+from crowdbot.core.trajectories.bag.columns import BodyRow, Columns
 from crowdbot.core.trajectories.bag.fields import header_of, place_of
 from crowdbot.core.trajectories.bag.frames import TF, FrameTree
 from crowdbot.core.types.arrays import Array
@@ -22,7 +22,7 @@ _WORLDS = ("map", "world", "odom")
 _SIDEWAYS = 0.01
 
 
-def pose_of(path: Path, topic: str, message: Any, log: int, number: int) -> Seen:
+def pose_of(path: Path, topic: str, message: Any, log: int, number: int) -> BodyRow:
     """Return the robot's pose in a message, with its velocity if there is one.
 
     Raises:
@@ -34,7 +34,7 @@ def pose_of(path: Path, topic: str, message: Any, log: int, number: int) -> Seen
     stamp, frame = header_of(message)
     values = {"theta": place.theta, **_twist(message)}
     child = str(getattr(message, "child_frame_id", "")).lstrip("/")
-    return Seen(log, stamp, number, frame, place.xyz, values, {"child": child})
+    return BodyRow(log, stamp, number, frame, place.xyz, values, {"child": child})
 
 
 def _twist(message: Any) -> dict[str, float]:

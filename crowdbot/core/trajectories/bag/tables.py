@@ -17,7 +17,7 @@ from crowdbot.core.trajectories.bag.clocks import (
     longest_part,
     tell_disorder,
 )
-from crowdbot.core.trajectories.bag.columns import Columns, Seen, columns_of
+from crowdbot.core.trajectories.bag.columns import BodyRow, Columns, columns_of
 from crowdbot.core.trajectories.bag.frames import TF, TF_STATIC, Edge, FrameTree, edges_of
 from crowdbot.core.trajectories.bag.into_one_frame import into_one_frame
 from crowdbot.core.trajectories.bag.markers import without_deleted, without_parts
@@ -87,7 +87,7 @@ class _Reading:
         self._robot, self._base = split_name(robot)
         self._from_tf = self._robot == TF
         self._notes: list[str] = []
-        self._seen: dict[str, list[Seen]] = {}
+        self._seen: dict[str, list[BodyRow]] = {}
         self._edges: list[Edge] | None = None
 
     def tables(self) -> BagTables:
@@ -117,7 +117,7 @@ class _Reading:
     # ------------------------------------------------------------------------ messages
     def _columns(self) -> dict[str, Columns]:
         """Return the rows of the topics, without those of other parts of a bag with resets."""
-        readers: dict[str, Callable[..., list[Seen]]] = {}
+        readers: dict[str, Callable[..., list[BodyRow]]] = {}
         if self._people is not None:
             readers[self._people] = people_in
         if self._robot is not None and not self._from_tf:
@@ -136,7 +136,7 @@ class _Reading:
         topics = {t: replace(c, stamp=filled(c.stamp, c.log)) for t, c in topics.items()}
         return longest_part(self._path, topics, self._notes)
 
-    def _persons(self, topic: str) -> list[Seen]:
+    def _persons(self, topic: str) -> list[BodyRow]:
         rows = without_deleted(self._seen.get(topic, []), self._notes)
         rows = identities.persons_only(rows, self._notes)
         is_shape = bool(rows) and rows[0].group not in ("", "table")
@@ -146,7 +146,7 @@ class _Reading:
             raise InputError(f"{self._path}: {topic} contains no people{notes}")
         return rows
 
-    def _rows(self, people: Columns) -> list[Seen]:
+    def _rows(self, people: Columns) -> list[BodyRow]:
         rows = self._seen[self._people or ""]
         return [rows[i] for i in people.row]
 
@@ -274,5 +274,5 @@ class _Reading:
         return values
 
 
-def _pose(path: Path, topic: str, message: Any, log: int, number: int) -> list[Seen]:
+def _pose(path: Path, topic: str, message: Any, log: int, number: int) -> list[BodyRow]:
     return [pose_of(path, topic, message, log, number)]

@@ -31,7 +31,7 @@ _BEFORE, _DRIVES, _BRAKING, _WINDOW, _TURN = 2.0, 0.1, 0.5, 0.5, 0.35
 
 
 @dataclass(frozen=True, slots=True)
-class Struck:
+class TopplingContact:
     """The contact by which a robot toppled.
 
     Attributes:
@@ -43,7 +43,7 @@ class Struck:
     t: float
 
 
-def struck_over(run: Trajectories, toppled_time: float) -> Struck | None:
+def struck_over(run: Trajectories, toppled_time: float) -> TopplingContact | None:
     """Return the contact that excuses a toppled robot; None if none does.
 
     No contact of the run is its fault; the first contact in the last two seconds is by a faster
@@ -64,7 +64,7 @@ def struck_over(run: Trajectories, toppled_time: float) -> Struck | None:
     k = int(np.argmin(np.where(last, found.time, np.inf)))
     if not (_steady(run, float(found.time[k])) and _from_behind(run, found, k)):
         return None
-    return Struck(int(found.agent[k]), float(found.time[k]))
+    return TopplingContact(int(found.agent[k]), float(found.time[k]))
 
 
 def _steady(run: Trajectories, onset: float) -> bool:
@@ -100,4 +100,4 @@ def _from_behind(run: Trajectories, found: PersonContacts, k: int) -> bool:
     return dx * vx + dy * vy < 0.0 and px * vx + py * vy > speed * speed > 0.0
 
 
-__all__ = ["USUAL_RULE", "Struck", "struck_over"]
+__all__ = ["USUAL_RULE", "TopplingContact", "struck_over"]

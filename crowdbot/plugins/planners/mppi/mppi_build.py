@@ -59,7 +59,7 @@ class Mppi:
         self._path_finder = PathFinder(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = _parameters(spec, limits)
         self._samples = self._drawn(2, 0)
-        around = rollouts.Around(
+        around = rollouts.RolloutObstacles(
             np.ones((1, 5)), self._field.values, (0.0, 0.0), self._robot, (9.0, 0.0)
         )
         rollouts.improve(around, self._p, (0.0,) * 6, self._samples)
@@ -88,7 +88,7 @@ class Mppi:
         waypoint = self._path_finder.waypoint(obs.t, pose, scene.seen, obs.goal)
         self._field.fill(scene.points, pose.x, pose.y)
         people = people_near(scene, limits.v_max, spec.steps * spec.step_time, samples.MOST_PEOPLE)
-        around = rollouts.Around(
+        around = rollouts.RolloutObstacles(
             people, self._field.values, self._field.corner, self._robot, waypoint
         )
         state = (pose.x, pose.y, pose.yaw, *scene.twist)

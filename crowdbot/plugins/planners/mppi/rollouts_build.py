@@ -43,7 +43,7 @@ _SLACK = 1e-3
 _STANDING = 0.15
 
 
-class Around(NamedTuple):
+class RolloutObstacles(NamedTuple):
     """Obstacles and people against which rollouts are tested, as `plans_build.PlanWorld`."""
 
     people: Array
@@ -54,7 +54,7 @@ class Around(NamedTuple):
 
 
 @kernel
-def _wall_gap(around: Around, x: float, y: float, c: float, s: float) -> float:
+def _wall_gap(around: RolloutObstacles, x: float, y: float, c: float, s: float) -> float:
     """Return the gap from the robot to what stands, m."""
     best = math.inf
     for k in range(around.robot.shape[0]):
@@ -84,7 +84,7 @@ def _people_gap(
 
 
 @kernel
-def _predict(around: Around, p: Array, state: MotionState, samples: Samples) -> None:
+def _predict(around: RolloutObstacles, p: Array, state: MotionState, samples: Samples) -> None:
     """Write the people who can come within reach of the robot's rollouts in each step."""
     size = 0.0
     for k in range(around.robot.shape[0]):
@@ -107,7 +107,7 @@ def _predict(around: Around, p: Array, state: MotionState, samples: Samples) -> 
 
 @kernel
 def _among_people(
-    around: Around,
+    around: RolloutObstacles,
     p: Array,
     samples: Samples,
     n: int,
@@ -132,7 +132,7 @@ def _among_people(
 
 
 @kernel
-def _turned_away(around: Around, samples: Samples, i: int) -> float:
+def _turned_away(around: RolloutObstacles, samples: Samples, i: int) -> float:
     """Return how far lane i ends turned away from the goal: 0, towards it, to 1, backwards."""
     kept, lanes = samples.kept, samples.lanes
     last = kept.shape[0] - 1
@@ -143,7 +143,12 @@ def _turned_away(around: Around, samples: Samples, i: int) -> float:
 
 @kernel
 def _cost(
-    around: Around, p: Array, samples: Samples, i: int, start: float, need: tuple[float, ...]
+    around: RolloutObstacles,
+    p: Array,
+    samples: Samples,
+    i: int,
+    start: float,
+    need: tuple[float, ...],
 ) -> float:
     """Return the cost of the rollout in lane i; inf as soon as it is more than counts.
 
@@ -204,7 +209,7 @@ def _cost(
 
 @kernel
 def improve(
-    around: Around,
+    around: RolloutObstacles,
     p: Array,
     state: MotionState,
     samples: Samples,
@@ -233,7 +238,7 @@ def improve(
 
 @kernel
 def _price(
-    around: Around,
+    around: RolloutObstacles,
     p: Array,
     state: MotionState,
     samples: Samples,

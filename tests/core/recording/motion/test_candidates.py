@@ -16,7 +16,7 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader
 from crowdbot.core.recording.motion.candidates import (
     MOST_CANDIDATES,
-    Choosers,
+    CandidateGroup,
     GoalChanges,
     GoalsReader,
     candidate_table,
@@ -36,10 +36,10 @@ from tests.core.crowd.crowd_worlds import challenge
 UNIT = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 
-def group(rows: list[int], unit: Any = UNIT) -> Choosers:
+def group(rows: list[int], unit: Any = UNIT) -> CandidateGroup:
     """People who choose among a few velocities."""
     count = len(rows)
-    return Choosers(
+    return CandidateGroup(
         candidates=VelocityCandidates(np.asarray(unit, np.float64), 0.5),
         rows=np.array(rows, np.int64),
         preferred_speed=np.full(count, 1.2),
@@ -48,7 +48,7 @@ def group(rows: list[int], unit: Any = UNIT) -> Choosers:
     )
 
 
-def recorded(path: Path, engine: CrowdEngine, known: list[Choosers]) -> Path:
+def recorded(path: Path, engine: CrowdEngine, known: list[CandidateGroup]) -> Path:
     """People alone for some seconds."""
     header = RecordingHeader(scenario="test/one", agents=agents(engine))
     writer = RecordingWriter(path, header, record="none", choosers=known)
@@ -72,7 +72,7 @@ def test_known_choices_make_a_crowd_small_and_change_nothing(tmp_path: Path) -> 
 
 def test_groups_come_back() -> None:
     one = group([4, 1])
-    back = Choosers.from_message(one.to_message(), 5)
+    back = CandidateGroup.from_message(one.to_message(), 5)
     assert np.array_equal(back.candidates.unit, UNIT)
     assert back.candidates.relaxation_time == 0.5
     assert back.rows.tolist() == [4, 1]
@@ -99,7 +99,7 @@ def test_groups_that_contradict_themselves_are_refused(
     for name, value in changes.items():
         setattr(message, name, value)
     with pytest.raises(ValueError, match=reason):
-        Choosers.from_message(message, 5)
+        CandidateGroup.from_message(message, 5)
 
 
 def test_too_many_candidates_are_not_used(tmp_path: Path) -> None:

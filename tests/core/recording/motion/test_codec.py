@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crowdbot.core.recording.motion.candidates import Choosers
+from crowdbot.core.recording.motion.candidates import CandidateGroup
 from crowdbot.core.recording.motion.codec import GAINS, MotionCodec, Packed
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.candidates import VelocityCandidates
@@ -25,7 +25,7 @@ def there_and_back(
     t: Array,
     motion: Array,
     block: int,
-    choosers: Sequence[Choosers] = (),
+    choosers: Sequence[CandidateGroup] = (),
     goals: Array | None = None,
 ) -> tuple[Array, list[Packed]]:
     """What comes back of samples that are packed in blocks."""
@@ -37,7 +37,7 @@ def there_and_back(
     return np.concatenate(back), packed
 
 
-def deciders(samples: int, people: int) -> tuple[Array, Array, Array, Choosers]:
+def deciders(samples: int, people: int) -> tuple[Array, Array, Array, CandidateGroup]:
     """People who take one of some velocities around the way to their goal in each step."""
     rng = np.random.default_rng(11)
     angles = np.linspace(-math.pi / 2, math.pi / 2, 19)
@@ -58,7 +58,7 @@ def deciders(samples: int, people: int) -> tuple[Array, Array, Array, Choosers]:
             v = v + a * TICK
             x = x + v * TICK
     some = np.arange(people - 1)  # the last one's candidates are not known
-    group = Choosers(
+    group = CandidateGroup(
         candidates=VelocityCandidates(unit, 0.5),
         rows=some,
         preferred_speed=speed[some],

@@ -52,7 +52,7 @@ def test_who_stands_in_the_way_is_driven_around_on_one_side() -> None:
     assert out.contacts == []
 
 
-def _around() -> tuple[rollouts.Around, np.ndarray, samples_build.Samples]:
+def _around() -> tuple[rollouts.RolloutObstacles, np.ndarray, samples_build.Samples]:
     planner = _mppi(samples=500)
     world = World()
     planner.reset(world.task, LIMITS, {n: s.info() for n, s in world.sensors.items()}, 3)
@@ -60,7 +60,7 @@ def _around() -> tuple[rollouts.Around, np.ndarray, samples_build.Samples]:
     field.fill(np.array([[1.2, 0.6], [1.3, -0.7]]), 0.0, 0.0)
     people = np.array([[1.5, 0.2, -0.5, 0.0, 0.25], [1.0, -1.5, 0.0, 0.8, 0.25]])
     robot = np.array([[0.0, 0.0, 0.2]])
-    around = rollouts.Around(people, field.values, field.corner, robot, (9.0, 0.0))
+    around = rollouts.RolloutObstacles(people, field.values, field.corner, robot, (9.0, 0.0))
     return around, planner._p, planner._samples
 
 
