@@ -102,7 +102,7 @@ def test_longitude_and_latitude_are_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("columns", "body", "told"),
+    ("columns", "body", "expected"),
     [
         ({"radius": 25}, {}, "people: median radius 25 m: centimetres"),
         ({"radius": 250}, {}, "people: median radius 250 m: millimetres"),
@@ -111,12 +111,14 @@ def test_longitude_and_latitude_are_told(tmp_path: Path) -> None:
         ({}, {"robot_mass": 50_000}, "robot_mass 50000 kg: grams"),
     ],
 )
-def test_bodies_in_other_units(columns: dict[str, float], body: dict[str, Any], told: str) -> None:
+def test_bodies_in_other_units(
+    columns: dict[str, float], body: dict[str, Any], expected: str
+) -> None:
     t = np.arange(20) / 10
     robot = {"t": t, "x": t, "y": 0 * t}
     people = {"t": t, "id": 0 * t, "x": 5 - t, "y": 0 * t + 1}
     people |= {name: np.full(20, value) for name, value in columns.items()}
-    with pytest.warns(RecordingWarning, match=told):
+    with pytest.warns(RecordingWarning, match=expected):
         READ.from_pandas(robot, people, **{**BODY, **body})
 
 
@@ -125,9 +127,11 @@ def test_numbers_that_stand_for_no_place_are_told(nowhere: float) -> None:
     t = np.arange(40) / 10
     x, y = 5 - t, 1 + 0 * t
     x[25:] = y[25:] = nowhere
-    with pytest.warns(RecordingWarning, match=rf"in 15 samples .* exactly \({nowhere:g}, ") as told:
+    with pytest.warns(
+        RecordingWarning, match=rf"in 15 samples .* exactly \({nowhere:g}, "
+    ) as caught:
         READ.from_pandas(agents={"t": t, "id": 0 * t + 3, "x": x, "y": y})
-    assert len(told) == 1  # nor is it told as a jump
+    assert len(caught) == 1  # nor is it reported as a jump
 
 
 def test_people_in_another_unit_of_time_are_refused_where_no_one_would_be_left() -> None:

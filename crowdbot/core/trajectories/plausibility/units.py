@@ -46,12 +46,12 @@ def _weight(what: str, mass: float, most: float) -> Iterator[str]:
         yield f"{what} {mass:g} kg: grams? Masses are in kilograms"
 
 
-def creeping(t: Array, who: str, x: Array, y: Array) -> Iterator[str]:
+def creeping(t: Array, name: str, x: Array, y: Array) -> Iterator[str]:
     """Yield a sentence for bodies that go one way, slower than anyone.
 
     Args:
         t: times (N,), s.
-        who: the robot or people, for the sentence.
+        name: the robot or people, for the sentence.
         x, y: places (N,) or (N, M), m; NaN where absent.
     """
     if len(t) < _FEW:
@@ -68,7 +68,7 @@ def creeping(t: Array, who: str, x: Array, y: Array) -> Iterator[str]:
     net = np.array([_net(x[:, i], y[:, i]) for i in range(x.shape[1])])
     if speed < _CREEPING and float(np.sum(net)) > _ONE_WAY * float(np.sum(ways)):
         yield (
-            f"{who}: median speed {speed:.2g} m/s, and straight on: kilometres, or longitude "
+            f"{name}: median speed {speed:.2g} m/s, and straight on: kilometres, or longitude "
             "and latitude? Positions are in metres"
         )
 
@@ -96,9 +96,9 @@ def turning(run: Any) -> Iterator[str]:
         known = np.isfinite(rate + robot.w) & (rate > _TURNING)
     if np.count_nonzero(known) < _FEW:
         return
-    turned, told = float(np.median(rate[known])), float(np.median(np.abs(robot.w[known])))
-    if abs(np.radians(told) / turned - 1.0) < 0.2:
+    turned, recorded = float(np.median(rate[known])), float(np.median(np.abs(robot.w[known])))
+    if abs(np.radians(recorded) / turned - 1.0) < 0.2:
         yield (
-            f"the robot: w is {told:.3g} rad/s (median) where the heading changes by "
+            f"the robot: w is {recorded:.3g} rad/s (median) where the heading changes by "
             f"{turned:.2g} rad/s: degrees? 'w [deg/s]' as a column's name says so"
         )
