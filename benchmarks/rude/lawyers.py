@@ -172,11 +172,12 @@ class LastMinute(Lawyer):
         """Store the limit of time and what the drive needs of it."""
         super().reset(task, limits, sensors, seed)
         needs = 1.3 * math.dist(task.start[:2], task.goal) / limits.v_max
-        self._leaves = task.time_limit - needs
+        self._leaves, self._start = task.time_limit - needs, task.start[:2]
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
         """Return rest while somebody is near and there is time, else the lawful command."""
-        waits = obs.t < self._leaves and self.near(points, 4.0) and obs.pose.x < 1.0
+        at_start = math.dist(obs.pose[:2], self._start) < 1.0
+        waits = at_start and obs.t < self._leaves and self.near(points, 4.0)
         return (0.0, 0.0) if waits else (self.lawful(obs, points, v), w)
 
 

@@ -74,6 +74,24 @@ Each picture shows a robot (blue) and people (orange) at three times, from light
 
 """
 
+_LIMITS = """
+## What the rule does not see
+
+People may judge these four otherwise; a robot gains nothing from them in `challenge-2026` \
+([measured](../decisions/0036-fault-and-the-ranking-rule.md#what-adversaries-gain)).
+
+- **Tailgating.** The robot follows at 0.2 m, the person stops at once, and the robot brakes \
+after its reaction time: no fault, since nothing was foreseeable before.
+- **Cutting in, then braking.** The robot moves in front of a person with a gap of 0.05 m, and \
+stops a second later: no fault, since the person had the time to react to the cutting in, though \
+not the room.
+- **Passing at 5 cm at full speed.** The person sways by 8 cm into the robot's flank: no fault, \
+since the touching point hardly comes nearer. [Acceptance](metrics/acceptance.md) counts it.
+- **Hidden people.** Cutting in is judged by where people walk, even if a wall hides them. A robot \
+that drives straight on, and stands as soon as a person has stepped out of a door across its way, \
+has cut in.
+"""
+
 
 def files() -> dict[Path, str]:
     """Return file -> text of the page and of all pictures."""
@@ -92,7 +110,7 @@ def page() -> str:
         picture = f"![{case.told}](../images/fault/{case.name}.svg)"
         rule = case.rule.replace("_", " ")
         cases.append(f"| {case.told} | {picture} | {_yes(case.fault)} | {rule} |")
-    return _HEAD + "\n".join(lines) + "\n" + _MIDDLE + "\n".join(cases) + "\n"
+    return _HEAD + "\n".join(lines) + "\n" + _MIDDLE + "\n".join(cases) + "\n" + _LIMITS
 
 
 def _yes(fault: bool) -> str:
