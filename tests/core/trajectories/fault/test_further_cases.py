@@ -45,7 +45,7 @@ STROKES = Track(
 
 
 @pytest.mark.parametrize(
-    ("told", "fault", "robot", "person", "outline"),
+    ("description", "fault", "robot", "person", "outline"),
     [
         ("brakes hard, but late", True, LATE, still(LATE.x[84] + REACH), False),
         ("somebody walks into its flank", False, Track(x=0.1 * T, y=ZERO),
@@ -70,7 +70,9 @@ STROKES = Track(
          True),
     ],
 )  # fmt: skip
-def test_the_robot(told: str, fault: bool, robot: Track, person: Track, outline: bool) -> None:
-    case = Case(name="", told=told, fault=fault, rule="", shown=(), robot=robot, people=(person,),
+def test_the_robot(
+    description: str, fault: bool, robot: Track, person: Track, outline: bool
+) -> None:
+    case = Case(name="", told=description, fault=fault, rule="", shown=(), robot=robot, people=(person,),
                 outline=outline)  # fmt: skip
     assert first_is_at_fault(case.run()) is fault
