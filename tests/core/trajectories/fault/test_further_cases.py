@@ -73,6 +73,6 @@ STROKES = Track(
 def test_the_robot(
     description: str, fault: bool, robot: Track, person: Track, outline: bool
 ) -> None:
-    case = Case(name="", told=description, fault=fault, rule="", shown=(), robot=robot, people=(person,),
-                outline=outline)  # fmt: skip
+    case = Case(name="", told=description, fault=fault, rule="", shown=(), outline=outline,
+                robot=robot, people=(person,))  # fmt: skip
     assert first_is_at_fault(case.run()) is fault
