@@ -157,3 +157,7 @@ class Range(Spec):
     @classmethod
     def _short_form(cls, value: Any) -> Any:
         return {"value": value} if isinstance(value, int | float | str) else value
+
+    def cost_params(self) -> dict[str, float]:
+        """Return the fields of `CostParams`: range, m; from_surface, 1 between surfaces, else 0."""
+        return {"range": self.value, "from_surface": float(self.measure == "surface")}

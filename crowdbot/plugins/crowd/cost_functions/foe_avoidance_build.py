@@ -188,8 +188,7 @@ def build(spec: FoeAvoidanceSpec) -> CompiledCost:
         gradient=_gradient,
         params=record_values(
             COST_PARAMS,
-            range=spec.range.value,
-            from_surface=1.0 if spec.range.measure == "surface" else 0.0,
+            **spec.range.cost_params(),
         ),
         weight=spec.weight,
         # Nothing is seen that is reached later than in 10 s.

@@ -142,15 +142,12 @@ def _excess(
 
 def build(spec: MoussaidSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,
         prepare=_prepare,
         excess=_excess,
         lower_bound=_lower_bound,
-        params=record_values(
-            _PARAMS, range=spec.range.value, from_surface=surface, d_max=spec.d_max
-        ),
+        params=record_values(_PARAMS, **spec.range.cost_params(), d_max=spec.d_max),
         weight=spec.weight,
         wall_reach=(min(NEAR_WALLS, spec.d_max * (1.0 + 1e-6)), 0.0),
         looks_farther=spec.d_max > NEAR_WALLS,

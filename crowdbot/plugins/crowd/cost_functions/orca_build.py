@@ -210,7 +210,6 @@ def _optimum(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -
 
 def build(spec: OrcaSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,
         prepare=_prepare,
@@ -218,8 +217,7 @@ def build(spec: OrcaSpec) -> CompiledCost:
         optimum=_optimum,
         params=record_values(
             _PARAMS,
-            range=spec.range.value,
-            from_surface=surface,
+            **spec.range.cost_params(),
             horizon=spec.time_horizon,
             limit=float(spec.limit == "preferred_speed"),
         ),

@@ -267,15 +267,13 @@ def _excess(
 
 def build(spec: ParisSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,
         prepare=_prepare,
         excess=_excess,
         params=record_values(
             _PARAMS,
-            range=spec.range.value,
-            from_surface=surface,
+            **spec.range.cost_params(),
             w_a=spec.w_a,
             w_b=spec.w_b,
             t_max=spec.t_max,

@@ -112,16 +112,13 @@ def _prepare(
 
 def build(spec: PowerLawSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=no_base,
         prepare=_prepare,
         excess=from_target,
         gradient=to_target,
         optimum=target,
-        params=record_values(
-            _PARAMS, range=spec.range.value, from_surface=surface, k=spec.k, tau0=spec.tau0
-        ),
+        params=record_values(_PARAMS, **spec.range.cost_params(), k=spec.k, tau0=spec.tau0),
         weight=spec.weight,
         # Later collisions exert no force.
         wall_reach=(0.0, spec.tau0),

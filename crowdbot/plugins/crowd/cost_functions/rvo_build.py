@@ -112,13 +112,12 @@ def _lower_bound(
 
 def build(spec: RvoSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,
         prepare=_prepare,
         excess=_excess,
         lower_bound=_lower_bound,
-        params=record_values(_PARAMS, range=spec.range.value, from_surface=surface, w=spec.w),
+        params=record_values(_PARAMS, **spec.range.cost_params(), w=spec.w),
         weight=spec.weight,
         wall_reach=(min(NEAR_WALLS, spec.range.value), 0.0),
         looks_farther=True,

@@ -207,7 +207,6 @@ def _prepare(
 
 def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=no_base,
         prepare=_prepare,
@@ -216,8 +215,7 @@ def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
         optimum=target,
         params=record_values(
             _PARAMS,
-            range=spec.range.value,
-            from_surface=surface,
+            **spec.range.cost_params(),
             v0=spec.v0,
             sigma=spec.sigma,
             u0=spec.u0,

@@ -86,15 +86,13 @@ def _excess(
 
 def build(spec: VanTollSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,
         prepare=_prepare,
         excess=_excess,
         params=record_values(
             _PARAMS,
-            range=spec.range.value,
-            from_surface=surface,
+            **spec.range.cost_params(),
             max_distance=spec.max_distance,
         ),
         weight=spec.weight,

@@ -130,7 +130,6 @@ def _gradient(
 
 def build(spec: PersonalSpaceSpec) -> CompiledCost:
     """The functions with this spec's parameters."""
-    surface = 1.0 if spec.range.measure == "surface" else 0.0
     return CompiledCost(
         base=_base,
         prepare=_prepare,
@@ -138,8 +137,7 @@ def build(spec: PersonalSpaceSpec) -> CompiledCost:
         gradient=_gradient,
         params=record_values(
             _PARAMS,
-            range=spec.range.value,
-            from_surface=surface,
+            **spec.range.cost_params(),
             ahead=spec.ahead,
             fade=spec.fade,
         ),

@@ -42,7 +42,7 @@ function start() {
     scene: ({ scene }) => { words.end = null; takeScene(scene); writeWords(); },
     frame: takeFrame,
     taken: ({ n, at }) => noteTaken(n, at),
-    end: (said) => { words.end = said; link.over = Boolean(said.last); writeWords(); },
+    end: (message) => { words.end = message; link.over = Boolean(message.last); writeWords(); },
   });
   setInterval(writeWords, 250);
   requestAnimationFrame(draw);

@@ -111,8 +111,7 @@ def build(spec: TtcaDcaSpec) -> CompiledCost:
     """Return the compile-time functions with this spec's parameters."""
     params = record_values(
         PARAMS,
-        range=spec.range.value,
-        from_surface=1.0 if spec.range.measure == "surface" else 0.0,
+        **spec.range.cost_params(),
         inv_ttca2=1.0 / spec.sigma_ttca**2,
         inv_dca2=1.0 / spec.sigma_dca**2,
         sigma_angle=spec.sigma_angle_goal,
