@@ -94,6 +94,10 @@ class Recording:
         self._sampled = False  # a sample was seen, after which no header comes
         self._robots: dict[str | None, RobotRecording] = {}
 
+    def __reduce__(self) -> tuple[Callable[[Path], Recording], tuple[Path]]:
+        """Return how another process makes it: it opens and reads the file itself."""
+        return partial(Recording, max_rate=self._max_rate, observe=self._observe), (self.path,)
+
     def __enter__(self) -> Self:
         return self
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from crowdbot.core.geometry.footprint import footprint_of_model
+from crowdbot.core.robots.check_drive import beyond_the_drive
 from crowdbot.core.robots.check_links import below_floor, check_masses, impossible_moments
 from crowdbot.core.robots.description import Description, read_description
 from crowdbot.core.robots.joint import Joint
@@ -40,6 +41,8 @@ def check_model(model: object) -> RobotModel:
     except ValueError as error:
         raise PluginError(str(error)) from error
     described = read_description(model.description)
+    if "world" in described.links:
+        raise PluginError("a link is called 'world', as the simulator's own: rename or remove it")
     check_masses(described)
     _check_base(model, described)
     if abs(described.mass - model.mass) > _SHARE * model.mass:
@@ -50,6 +53,7 @@ def check_model(model: object) -> RobotModel:
         _check_wheels(model, drive, described)
         notes += [*_beside_axle(model, drive, described), *_damped(model, drive, described)]
         notes += _one_sided(model, drive, described)
+        notes += beyond_the_drive(model, drive, described)
         notes += below_floor(described, model.base, model.base_height)
     notes = [note for note in notes if note not in model.notes]
     return replace(model, notes=(*model.notes, *notes)) if notes else model

@@ -244,7 +244,12 @@ def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
         is_path = isinstance(file, Path)
         content = read_bytes(Path(str(file)), LARGEST) if is_path else file.read_bytes()
         text = content.decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise PluginError(
+            f"robot description {file} cannot be read: is not UTF-8 text; save it as UTF-8, and "
+            "remove another encoding from its first line"
+        ) from error
+    except OSError as error:
         raise PluginError(f"robot description {file} cannot be read: {error}") from error
     return text, file.parent if isinstance(file, Path) else None
 

@@ -27,6 +27,7 @@ class Joint:
         effort: largest force or torque, N or N m; None if not given.
         free: True if it rotates without limits.
         damping: N m s/rad, or N s/m.
+        velocity: largest speed, rad/s or m/s; None if not given.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Joint:
     effort: float | None
     free: bool
     damping: float = 0.0
+    velocity: float | None = None
 
 
 def child_of(joint: Xml.Element) -> str:
@@ -63,6 +65,12 @@ def _damping(text: str | None, name: str) -> float:
     return 0.0 if text is None else number(text, f"the damping of joint '{name}'")
 
 
+def _fastest(text: str | None, name: str) -> float | None:
+    """Return the largest speed of a joint; numbers that are not positive stand for none."""
+    speed = None if text is None else number(text, f"the velocity limit of joint '{name}'")
+    return speed if speed is not None and speed > 0.0 else None
+
+
 def urdf_joint(joint: Xml.Element) -> Joint:
     """Return a joint of a URDF, whose frame is its child's."""
     name, kind = name_of(joint), joint.get("type", "")
@@ -79,6 +87,7 @@ def urdf_joint(joint: Xml.Element) -> Joint:
         effort=None if effort is None else number(effort, f"the effort of joint '{name}'"),
         free=kind == "continuous",
         damping=_damping(None if (d := joint.find("dynamics")) is None else d.get("damping"), name),
+        velocity=_fastest(None if limit is None else limit.get("velocity"), name),
     )
 
 
@@ -102,4 +111,5 @@ def sdf_joint(joint: Xml.Element) -> Joint:
         effort=None if effort is None else number(effort, f"the effort of joint '{name}'"),
         free=kind == "continuous" or (kind == "revolute" and not bounded),
         damping=_damping(joint.findtext("axis/dynamics/damping"), name),
+        velocity=_fastest(joint.findtext("axis/limit/velocity"), name),
     )

@@ -35,6 +35,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, PluginError, did_you_mean, nearest
 
 _HELD = ("revolute", "prismatic", "floating", "planar")
+_ANCHOR = "joint to the world is left out, the robot drives"
 #: Number of names that are listed; beyond it, only their number is given.
 _NAMED = 4
 
@@ -88,6 +89,7 @@ def read_published(
     """
     text, folder = read_text(source)
     described = parse_description(text)
+    anchors = _loosen(described.model) if described.format == "sdf" else []
     try:
         robot = from_sdf(described, {}) if described.format == "sdf" else described.model
     except InputError as error:
@@ -95,10 +97,13 @@ def read_published(
     work = _Work(deepcopy(robot), base, dict(wheels), dict(positions or {}))
     work.robot.set("name", name_of(robot) or "robot")
     work.notes += described.notes
+    work.note(anchors, _ANCHOR, "")
     work.check()
     work.keep_one_tree()
+    work.leave_the_world()
     hold_at(work.robot, work.positions)
     work.centre_wheels()
+    work.compare_plugins(described.model)
     work.drive_with_two()
     work.hold_joints()
     work.replace_meshes(lambda name: _find(name, folder, packages or {}), meshes)
@@ -151,6 +156,18 @@ class _Work:
                 hint = did_you_mean(nearest(name, known)) or f"; there are: {', '.join(known)}"
                 raise PluginError(f"the robot's description has no {part} '{name}'{hint}")
 
+    def leave_the_world(self) -> None:
+        """Remove a link 'world' and its joints, by which other programs hold or place the robot."""
+        world = self.links.get("world")
+        if world is None or self.base == "world":
+            return
+        self.robot.remove(world)
+        for name, joint in self.joints.items():
+            if parent_of(joint) == "world":
+                self.robot.remove(joint)
+                self.note([name], _ANCHOR, "")
+        self.keep_one_tree()
+
     def keep_one_tree(self) -> None:
         """Remove links that are not connected to the base."""
         hangs = {self.base}
@@ -172,6 +189,15 @@ class _Work:
             if wheel.effort is not None:
                 note = drives.centre_wheel(self.robot, self.base, self.joints[name])
                 self.notes += [note] if note else []
+
+    def compare_plugins(self, model: Xml.Element) -> None:
+        """Tell what Gazebo's plugins say otherwise of the two driven wheels."""
+        driven = [n for n, wheel in self.wheels.items() if wheel.effort is not None]
+        if len(driven) == 2:
+            at = drives.places_of(self.robot, self.base, driven)
+            track = abs(float(at[driven[0]][1] - at[driven[1]][1]))
+            radius = self.wheels[driven[0]].radius
+            self.notes += drives.other_in_plugins(model, track, radius)
 
     def drive_with_two(self) -> None:
         """Let one wheel of each side stand for all driven ones, and bring the base above them."""
@@ -278,6 +304,8 @@ class _Work:
         """Give each wheel a sphere of its radius for contact with the floor."""
         for name, wheel in self.wheels.items():
             link = self.links[child_of(self.joints[name])]
+            note = drives.other_radius(link, wheel.radius, name)
+            self.notes += [note] if note else []
             for collision in link.findall("collision"):
                 link.remove(collision)
             shape = Xml.SubElement(link, "collision", name=f"{name}_floor")
@@ -348,6 +376,14 @@ class _Work:
         if any(shape.tag != "collision" for shape in shapes):
             raise PluginError("shell holds <collision> elements, and nothing else")
         self.links[self.base].extend(shapes)
+
+
+def _loosen(model: Xml.Element) -> list[str]:
+    """Remove the joints of an SDFormat model to the world; return their names."""
+    anchors = [j for j in model.findall("joint") if j.findtext("parent", "").strip() == "world"]
+    for joint in anchors:
+        model.remove(joint)
+    return [name_of(joint) for joint in anchors]
 
 
 def _fix(joint: Xml.Element) -> None:

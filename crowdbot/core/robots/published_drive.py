@@ -9,13 +9,21 @@ import numpy as np
 
 from crowdbot.core.robots.description import Description
 from crowdbot.core.robots.joint import child_of, parent_of
-from crowdbot.core.robots.xml import matrix, name_of, pose_of, six
+from crowdbot.core.robots.xml import matrix, name_of, number, pose_of, six
 from crowdbot.core.types.arrays import Array
 
 #: A base that is nearer to the axle is not moved, m.
 _SAME = 1e-3
 #: Cosine of the largest angle between directions that are taken for opposite.
 _OPPOSITE = -0.999
+#: Share of a wheel's radius by which two statements of it may differ.
+_ROUNDED = 0.02
+#: Parameters of plugins, in lower case -> metres in their unit, what they say here, and in notes.
+_DRIVES = {
+    "wheelseparation": (1.0, "track", "wheel separation"),
+    "wheelradius": (1.0, "radius", "wheel radius"),
+    "wheeldiameter": (0.5, "radius", "wheel radius"),
+}
 _PARTS = ("inertial", "visual", "collision")
 _ROUND = ("sphere", "cylinder")
 
@@ -107,6 +115,38 @@ def centre_wheel(robot: Xml.Element, base: str, joint: Xml.Element) -> str:
     _shift(joint, matrix(pose_of(joint))[:3, :3] @ (by * along))
     side = "left" if by > 0.0 else "right"
     return f"the middle of the wheel is {1e3 * abs(by):.3g} mm to the {side} of its joint: {name}"
+
+
+def other_radius(link: Xml.Element, radius: float, joint: str) -> str:
+    """Return a note if the round shapes of a wheel's link have another radius than is given, m."""
+    for kind in ("collision", "visual"):
+        found = [
+            number(shape.get("radius", "0"), f"the radius of the wheel on '{joint}'")
+            for tag in _ROUND
+            for shape in link.findall(f"{kind}/geometry/{tag}")
+        ]
+        if found:
+            own = max(found)
+            same = abs(own - radius) <= _ROUNDED * radius
+            return "" if same else f"wheel's radius is {radius:g} m, not {own:g} m: {joint}"
+    return ""
+
+
+def other_in_plugins(model: Xml.Element, track: float, radius: float) -> list[str]:
+    """Return notes on Gazebo's drives that say another track or wheel radius, m, than is used."""
+    notes = []
+    for plugin in model.iter("plugin"):
+        for element in plugin.iter():
+            scale, used, what = _DRIVES.get(element.tag.lower().replace("_", ""), (0.0, "", ""))
+            try:
+                said = scale * float(element.text or "0")
+            except ValueError:
+                continue
+            own = track if used == "track" else radius
+            if said > 0.0 and abs(said - own) > _ROUNDED * own:
+                told = f"{what} {said:g} m in Gazebo's plugin is not used"
+                notes.append(f"{told}: the description has {own:.4g} m")
+    return list(dict.fromkeys(notes))
 
 
 def point_left(robot: Xml.Element, base: str, joint: Xml.Element) -> str:

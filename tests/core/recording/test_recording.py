@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pickle
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -252,3 +253,13 @@ def test_closing_twice_changes_nothing(tmp_path: Path) -> None:
     before = path.read_bytes()
     writer.close(1.0, True, "arrived")
     assert path.read_bytes() == before
+
+
+def test_another_process_reads_the_file_itself(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    write_run(path, random_run())
+    with Recording(path, max_rate=5.0) as given:
+        assert given.info.complete
+        found = pickle.loads(pickle.dumps(given))  # noqa: S301
+        assert found.info.duration == given.info.duration
+        assert bits(found.trajectories()) == bits(given.trajectories())
