@@ -139,13 +139,15 @@ def other_in_plugins(model: Xml.Element, track: float, radius: float) -> list[st
         for element in plugin.iter():
             scale, used, what = _DRIVES.get(element.tag.lower().replace("_", ""), (0.0, "", ""))
             try:
-                said = scale * float(element.text or "0")
+                length = scale * float(element.text or "0")
             except ValueError:
                 continue
             own = track if used == "track" else radius
-            if said > 0.0 and abs(said - own) > _ROUNDED * own:
-                told = f"{what} {said:g} m in Gazebo's plugin is not used"
-                notes.append(f"{told}: the description has {own:.4g} m")
+            if length > 0.0 and abs(length - own) > _ROUNDED * own:
+                notes.append(
+                    f"{what} {length:g} m in Gazebo's plugin is not used: the description has "
+                    f"{own:.4g} m"
+                )
     return list(dict.fromkeys(notes))
 
 

@@ -61,7 +61,7 @@ def test_a_plain_robot_is_quiet() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         (_urdf(turns=2.0), "limited to 2 rad/s, which is 0.2 m/s; .* v_max is 0.8 m/s"),
         (_urdf(mass=10_000.0), r"together 8 N m, accelerates its 10002 kg by 0.008 m/s\^2"),
@@ -69,8 +69,8 @@ def test_a_plain_robot_is_quiet() -> None:
         (_urdf(radius=0.12), "wheel's radius is 0.1 m, not 0.12 m: left"),
     ],
 )
-def test_what_the_wheels_contradict_is_told(text: str, told: str) -> None:
-    assert any(re.search(told, note) for note in check_model(_model(text)).notes)
+def test_what_the_wheels_contradict_is_told(text: str, message: str) -> None:
+    assert any(re.search(message, note) for note in check_model(_model(text)).notes)
 
 
 @pytest.mark.parametrize("kind", ["fixed", "floating"])
@@ -120,7 +120,7 @@ def test_a_model_of_sdformat_that_hangs_on_the_world_drives() -> None:
 
 def test_drives_of_gazebo_in_a_urdf() -> None:
     drive = "<wheelSeparation>0.4</wheelSeparation><wheelDiameter>{}</wheelDiameter>"
-    for size, told in (("0.2", 0), ("0.3", 1), ("${{d}}", 0)):
+    for size, count in (("0.2", 0), ("0.3", 1), ("${{d}}", 0)):
         more = f"<gazebo><plugin name='d' filename='x'>{drive.format(size)}</plugin></gazebo>"
         notes = _model(_urdf(more=more)).notes
-        assert sum("wheel radius 0.15 m in Gazebo's plugin" in note for note in notes) == told
+        assert sum("wheel radius 0.15 m in Gazebo's plugin" in note for note in notes) == count
