@@ -28,6 +28,7 @@ MOST_PIXELS = 64_000_000
 #: Default thresholds, those of ROS, by which the grey 205 is unknown.
 _OCCUPIED, _FREE = 0.65, 0.196
 #: Grey of unknown cells in the images of ROS.
+_COARSE = 0.9  # m; cells of maps for robots are smaller
 _UNKNOWN = 205 / 255
 #: Length of the beginning of a PNG image, up to its width and height, bytes.
 _PNG_HEADER = 24
@@ -88,6 +89,14 @@ class RosMap:
         return grey if self.negate else 1.0 - grey
 
 
+def _tell_units(name: str, found: RosMap) -> None:
+    """Warn of a yaw that is hardly in radians, and of cells that are hardly in metres."""
+    if abs(found.origin[2]) > 2.0 * np.pi:
+        _LOG.warning("%s: yaw is %g rad: degrees?", name, found.origin[2])
+    if found.resolution > _COARSE:
+        _LOG.warning("%s: resolution is %g m: centimetres?", name, found.resolution)
+
+
 def read_map(file: Path) -> RosMap:
     """Read a ``map.yaml``.
 
@@ -115,11 +124,16 @@ def read_map(file: Path) -> RosMap:
         raise InputError(f"{file.name}: {error.args[0]} is missing") from error
     except (TypeError, ValueError, IndexError) as error:
         raise InputError(f"{file.name}: {error}") from error
+    if len(origin) > 3:
+        raise InputError(
+            f"{file.name}: origin has {len(origin)} numbers; it is x, y (m) and yaw (rad)"
+        )
     numbers = (found.resolution, *found.origin, found.occupied, found.free)
     if not (np.all(np.isfinite(numbers)) and found.resolution > 0.0):
         raise InputError(f"{file.name}: resolution must be above 0, and all numbers finite")
     if not 0.0 <= found.free <= found.occupied <= 1.0:
         raise InputError(f"{file.name}: thresholds must be 0 <= free <= occupied <= 1")
+    _tell_units(file.name, found)
     if found.mode not in _MODES:
         known, near = ", ".join(_MODES), did_you_mean(nearest(found.mode, _MODES))
         raise InputError(f"{file.name}: mode '{found.mode}' is not one of {known}{near}")

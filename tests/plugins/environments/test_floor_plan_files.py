@@ -371,6 +371,28 @@ def test_a_pixel_above_what_the_header_says_is_refused(tmp_path: Path) -> None:
         build(FloorPlanSpec.model_validate({"file": str(tmp_path / "map.yaml")}))
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[0, 0, 0]", "[0, 0, 30]", "map.yaml: yaw is 30 rad: degrees?"),
+        ("0.1", "5", "map.yaml: resolution is 5 m: centimetres?"),
+        ("[0, 0, 0]", "[0, 0, 0, 0, 0, 1]", "map.yaml: origin has 6 numbers; it is x, y"),
+    ],
+)
+def test_numbers_of_a_map_in_other_units(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, old: str, new: str, message: str
+) -> None:
+    _image(tmp_path / "map.png")
+    text = "image: map.png\nresolution: 0.1\norigin: [0, 0, 0]\n".replace(old, new)
+    (tmp_path / "map.yaml").write_text(text, "utf-8")
+    if "6 numbers" in message:
+        with pytest.raises(InputError, match=message):
+            _plan(file=str(tmp_path / "map.yaml"))
+        return
+    _plan(file=str(tmp_path / "map.yaml"))
+    assert caplog.messages == [message]
+
+
 # --------------------------------------------------------------- properties of other programs
 @pytest.mark.parametrize(
     ("name", "values"),

@@ -95,7 +95,7 @@ def _not_readable(path: Path, error: Exception) -> Exception:
     """Return what to raise for an error of the library."""
     if isinstance(error, MemoryError):
         return error
-    text = str(error) or type(error).__name__
+    text = " ".join((str(error) or type(error).__name__).split())
     return InputError(f"{path}: not a bag that can be read: {text}{_remedy(text)}")
 
 
@@ -160,6 +160,12 @@ _REMEDIES = {
     "end-of-stream marker": "a file is cut off",
     **dict.fromkeys(("'.zip'", "'.gz'", "'.tgz'", "'.xz'", "'.7z'", "'.tar'"), "unpack it first"),
     "database files are missing": "metadata.yaml names its files: rename them back, or remove it",
+    "Profile is not ros2": "its messages are not those of ROS 2, or its writer did not say so: "
+    "'ros2 bag convert' writes it again; JSON and Protobuf of Foxglove are not read",
+    **dict.fromkeys(
+        ("Invalid bag metadata", "Could not load YAML"),
+        "without metadata.yaml the folder is read, too: remove it, or 'ros2 bag reindex FOLDER'",
+    ),
 }
 
 

@@ -84,9 +84,25 @@ def _none(bag: Path) -> None:
     (bag / "bag.db3").unlink()
 
 
+def _blank(bag: Path) -> None:
+    (bag / "metadata.yaml").write_text("")
+
+
+def _half(bag: Path) -> None:
+    (bag / "metadata.yaml").write_text("rosbag2_bagfile_information:\n  version: 5\n  messag")
+
+
+def _without_profile(bag: Path) -> None:
+    file = next(bag.glob("*.mcap"))
+    file.write_bytes(file.read_bytes().replace(b"\4\0\0\0ros2", b"\4\0\0\0ros9", 1))
+
+
 @pytest.mark.parametrize(
     ("plugin", "damage", "expected"),
     [
+        (StoragePlugin.SQLITE3, _blank, "'ros2 bag reindex FOLDER'"),
+        (StoragePlugin.MCAP, _half, "'ros2 bag reindex FOLDER'"),
+        (StoragePlugin.MCAP, _without_profile, "JSON and Protobuf of Foxglove are not read"),
         (StoragePlugin.MCAP, _cut, "mcap recover FILE"),
         (StoragePlugin.SQLITE3, _cut, r"cut off: .* 'sqlite3 FILE .recover"),
         (StoragePlugin.SQLITE3, _packed, "unpack it with 'zstd -d FILE'"),
