@@ -89,7 +89,7 @@ def _blank(bag: Path) -> None:
 
 
 def _half(bag: Path) -> None:
-    (bag / "metadata.yaml").write_text("rosbag2_bagfile_information:\n  version: 5\n  messag")
+    (bag / "metadata.yaml").write_text("rosbag2_bagfile_information:\n  version: 5\n  mess")
 
 
 def _without_profile(bag: Path) -> None:
