@@ -40,7 +40,7 @@ class Mine:
 #: Most seconds that what was killed may leave a process behind.
 _GOES = 4.0
 #: What a run says of a planner that was killed, alone or with its server.
-_TOLD = ("SIGKILL", "with it the one that had started it")
+_KILLED = ("SIGKILL", "with it the one that had started it")
 Runs = dict[str, tuple[str, str]]
 
 
@@ -155,7 +155,7 @@ def _told(out: Path, planners: bool, code: int) -> list[str]:
     """What a campaign with kills does not say as it should."""
     records = [json.loads(f.read_text()) for f in out.glob("challenge-2020/*/*/*/run.json")]
     failed = [r for r in records if r["status"] == "planner_failed"]
-    mute = [r["reason"] for r in failed if not any(how in r["reason"] for how in _TOLD)]
+    mute = [r["reason"] for r in failed if not any(how in r["reason"] for how in _KILLED)]
     wrong = [f"reason of a killed planner: {reason}" for reason in mute]
     if failed and not planners:
         wrong.append(f"{len(failed)} planners failed where workers were killed")

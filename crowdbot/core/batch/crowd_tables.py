@@ -37,14 +37,14 @@ EVERY, GOAL_KEY, MOTION_SEEN = range(3)
 GROUP_FIELDS = (
     "members", "choices", "numbers", "traits", "settings", "random", "near", "found", "deciding",
     "discs", "table", "functions", "weights", "candidates", "regular", "ranked", "indices", "first",
-    "frame", "world", "active", "tried", "grid_frame", "grid_first", "grid_near", "chosen", "who",
-    "shown", "starts", "order", "box",
+    "frame", "world", "active", "tried", "grid_frame", "grid_first", "grid_near", "chosen",
+    "decides", "shown", "starts", "order", "box",
 )  # fmt: skip
 (
     G_MEMBERS, G_CHOICES, G_NUMBERS, G_TRAITS, G_SETTINGS, G_RANDOM, G_NEAR, G_FOUND, G_DECIDING,
     G_DISCS, G_TABLE, G_FUNCTIONS, G_WEIGHTS, G_CANDIDATES, G_REGULAR, G_RANKED, G_INDICES, G_FIRST,
-    G_FRAME, G_WORLD, G_ACTIVE, G_TRIED, G_GRID_FRAME, G_GRID_FIRST, G_GRID_NEAR, G_CHOSEN, G_WHO,
-    G_SHOWN, G_STARTS, G_ORDER, G_BOX,
+    G_FRAME, G_WORLD, G_ACTIVE, G_TRIED, G_GRID_FRAME, G_GRID_FIRST, G_GRID_NEAR, G_CHOSEN,
+    G_DECIDES, G_SHOWN, G_STARTS, G_ORDER, G_BOX,
 ) = range(len(GROUP_FIELDS))  # fmt: skip
 
 #: Entries of a group's ``choices``, integers, and of its ``numbers``.
@@ -171,7 +171,7 @@ def _group_table(
     )  # fmt: skip
     pool.put(
         own, **scratch, frame=search.frame, world=search.world, active=search.active,
-        tried=search.tried, chosen=np.zeros((people, 2)), who=np.zeros(people, np.bool_),
+        tried=search.tried, chosen=np.zeros((people, 2)), decides=np.zeros(people, np.bool_),
         shown=np.zeros((shown, 5)),
     )  # fmt: skip
     return own

@@ -73,14 +73,14 @@ def look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
 def decide_group(people: People, crowd: Indices, group: Indices, seen: Array) -> bool:
     """Set the accelerations of one group; return False if a cost function returned NaN."""
     choices, numbers = ints1(group, c.G_CHOICES), floats1(group, c.G_NUMBERS)
-    present, who, members = (
+    present, decides, members = (
         mask1(crowd, c.PRESENT),
-        mask1(group, c.G_WHO),
+        mask1(group, c.G_DECIDES),
         mask1(group, c.G_MEMBERS),
     )
     shown, chosen = floats2(group, c.G_SHOWN), floats2(group, c.G_CHOSEN)
     for i in range(people.shape[0]):
-        who[i] = present[i] and members[i]
+        decides[i] = present[i] and members[i]
         chosen[i, 0] = chosen[i, 1] = 0.0
     for r in range(shown.shape[0]):
         for k in range(4):
@@ -99,7 +99,7 @@ def decide_group(people: People, crowd: Indices, group: Indices, seen: Array) ->
         as_rows(floats1(group, c.G_DISCS), DISC), table, starts, ints2(group, c.G_ORDER),
     )  # fmt: skip
     choose_velocities(
-        table[:count], starts[: strips + 1], low, height, who, goal, floats2(crowd, c.WALLS),
+        table[:count], starts[: strips + 1], low, height, decides, goal, floats2(crowd, c.WALLS),
         floats1(group, c.G_GRID_FRAME), ints1(group, c.G_GRID_FIRST), ints1(group, c.G_GRID_NEAR),
         reach, as_rows(floats1(group, c.G_TRAITS), TRAITS),
         as_rows(floats1(group, c.G_SETTINGS), SETTINGS), floats1(group, c.G_RANDOM),
@@ -117,6 +117,6 @@ def decide_group(people: People, crowd: Indices, group: Indices, seen: Array) ->
         numbers[c.STEP],
     )  # fmt: skip
     for i in range(people.shape[0]):
-        if who[i]:
+        if decides[i]:
             people[i].ax, people[i].ay = chosen[i, 0], chosen[i, 1]
     return bool(deciding[0].broken == 0.0)

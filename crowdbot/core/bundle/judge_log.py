@@ -24,7 +24,7 @@ from crowdbot.errors import InputError
 LOG, BEGIN = "judge.log.jsonl", "0" * 64
 #: Event of a submission that came in time.
 RECEIVED = "received"
-_TOLD = ("line", "time", "previous", "event")
+_REQUIRED = ("line", "time", "previous", "event")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def read_log(path: Path, trusted: Collection[str]) -> list[LogLine]:
             document = parse_json(line)
         except ValueError as error:
             raise InputError(f"{where}: {error}") from None
-        if not isinstance(document, dict) or any(k not in document for k in _TOLD):
+        if not isinstance(document, dict) or any(k not in document for k in _REQUIRED):
             raise InputError(f"{where}: not a line of a judge's log")
         before = found[-1].sha256 if found else BEGIN
         if document["line"] != number or document["previous"] != before:

@@ -54,7 +54,7 @@ _UNIT = re.compile(
     rf"^(.*?)\s*(?:/|\[|\(|_in_)\s*({'|'.join([*_METRES, *_SCALES])})(?:/s)?\s*[\])]?$",
     re.IGNORECASE,
 )
-_TOLD = re.compile(
+_UNIT_IN_TEXT = re.compile(
     r"\b(?:in|units?|lengths?|positions?)\s*(?:is|are|in|[:=])*\s*\(?"
     r"(mm|cm|m|millimet(?:er|re)s?|centimet(?:er|re)s?|met(?:er|re)s?)\b", re.IGNORECASE
 )  # fmt: skip
@@ -169,7 +169,7 @@ def unit_in(column: str) -> float | None:
 
 def length_unit(text: str) -> float | None:
     """Return metres in the unit that a comment states; None if it states none."""
-    match = _TOLD.search(text)
+    match = _UNIT_IN_TEXT.search(text)
     if match is None:
         match = _UNIT.match(text)
         return None if match is None else _METRES.get(match[2].lower())

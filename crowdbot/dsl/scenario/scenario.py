@@ -216,7 +216,7 @@ class Goal(TaskGoal):
     zone: str = Field(description="Name of the goal zone.")
 
 
-def _zone_unless_said(value: Any) -> Any:
+def _zone_unless_given(value: Any) -> Any:
     """Return a goal whose default kind is written out."""
     return {"kind": TaskGoal.usual, **value} if isinstance(value, dict) else value
 
@@ -226,7 +226,7 @@ GoalChoice = Annotated[
     Annotated[
         Goal | ApproachGoal | FollowGoal | AccompanyGoal | LeadGoal, Field(discriminator="kind")
     ],
-    BeforeValidator(_zone_unless_said),
+    BeforeValidator(_zone_unless_given),
 ]
 
 

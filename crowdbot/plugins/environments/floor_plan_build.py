@@ -45,8 +45,8 @@ def place_of(spec: FloorPlanFields) -> Place:
     image = None if spec.image is None else spec.image.file
     words = spec.model_dump_json(exclude={"zones", "portals"})
     stamps = tuple(map(_stamp, (file, image)))
-    told_unit = "unit" in spec.model_fields_set
-    found = _place_or_problem(words, type(spec), (file, image), stamps, told_unit)
+    unit_given = "unit" in spec.model_fields_set
+    found = _place_or_problem(words, type(spec), (file, image), stamps, unit_given)
     if isinstance(found, InputError):
         raise found.with_traceback(None)
     return found
@@ -66,12 +66,12 @@ def _place_or_problem(
     model: type[FloorPlanFields],
     files: tuple[Path | None, Path | None],
     stamps: tuple[tuple[int, int], ...],
-    told_unit: bool,
+    unit_given: bool,
 ) -> Place | InputError:
     """Return the place, or why there is none: several checks of a document ask for it."""
     del stamps  # part of the cache's key
     try:
-        return _place_of(model.model_validate_json(words), *files, told_unit)
+        return _place_of(model.model_validate_json(words), *files, unit_given)
     except InputError as error:
         if isinstance(error.__context__, OSError):  # it may be readable later
             raise
@@ -79,10 +79,10 @@ def _place_or_problem(
 
 
 def _place_of(
-    spec: FloorPlanFields, file: Path | None, image: Path | None, told_unit: bool
+    spec: FloorPlanFields, file: Path | None, image: Path | None, unit_given: bool
 ) -> Place:
     name = "wkt" if file is None else file.name
-    plan = _read(spec, file, image, name, told_unit)
+    plan = _read(spec, file, image, name, unit_given)
     small = list[Any]()
     floor = shapely.union_all([_repaired(p, name) for p in plan.walkable])
     floor = without_details(_polygons(floor), spec, small)
@@ -102,7 +102,7 @@ def _place_of(
 
 
 def _read(
-    spec: FloorPlanFields, file: Path | None, image: Path | None, name: str, told_unit: bool
+    spec: FloorPlanFields, file: Path | None, image: Path | None, name: str, unit_given: bool
 ) -> ImportedPlan:
     if spec.read_as == "ros_map":
         assert file is not None  # the document's validation checked this
@@ -111,10 +111,10 @@ def _read(
         from crowdbot.plugins.environments.floor_plan_dxf_build import read_dxf
 
         assert file is not None
-        found, spec = read_dxf(spec, file, _LARGEST, told_unit)
-        return sorted_plan(found, spec, name, "", told_unit)
+        found, spec = read_dxf(spec, file, _LARGEST, unit_given)
+        return sorted_plan(found, spec, name, "", unit_given)
     text = spec.wkt or "" if file is None else input_text(file, _LARGEST, name)
-    return read_vector(spec, text.removeprefix("\ufeff"), name, told_unit)
+    return read_vector(spec, text.removeprefix("\ufeff"), name, unit_given)
 
 
 # --------------------------------------------------------------------------------- checks

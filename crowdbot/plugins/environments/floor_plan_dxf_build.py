@@ -42,7 +42,7 @@ _Point = tuple[float, float, float]
 
 
 def read_dxf(
-    spec: FloorPlanFields, file: Path, most: int, told_unit: bool
+    spec: FloorPlanFields, file: Path, most: int, unit_given: bool
 ) -> tuple[list[_Found], FloorPlanFields]:
     """Return the geometries of a drawing, and the fields with the unit of their numbers.
 
@@ -52,14 +52,14 @@ def read_dxf(
         spec: says which layers mean what.
         file: the drawing, ASCII or binary.
         most: largest size, bytes.
-        told_unit: True if the document gives the unit.
+        unit_given: True if the document gives the unit.
 
     Raises:
         InputError: it is not a drawing, its unit is not known, ezdxf is not installed, or a named
             layer is not there.
     """
     drawing = opened(file, most)
-    spec, scale = _with_unit(drawing, spec, file.name, told_unit)
+    spec, scale = _with_unit(drawing, spec, file.name, unit_given)
     aside, seen = Counter[str](), set[str]()
     chord = _CHORD / UNITS.get(spec.unit, 1.0) / scale
     outlines: dict[tuple[str, str, float], list[tuple[Any, str]]] = {}
@@ -104,7 +104,7 @@ def _scaled(shape: Any, scale: float) -> Any:
 
 
 def _with_unit(
-    drawing: Any, spec: FloorPlanFields, name: str, told_unit: bool
+    drawing: Any, spec: FloorPlanFields, name: str, unit_given: bool
 ) -> tuple[FloorPlanFields, float]:
     """Return the fields with the drawing's unit, unless the document gives one, and a factor.
 
@@ -113,7 +113,7 @@ def _with_unit(
     """
     code = int(drawing.header.get("$INSUNITS", 0))
     declared = _INSUNITS.get(code)
-    if told_unit:
+    if unit_given:
         if declared is not None and declared != spec.unit:
             _LOG.warning(
                 "%s: the drawing declares %s, the document says %s, which counts",

@@ -56,14 +56,14 @@ class ImportedPlan:
 _Found = tuple[Any, dict[str, Any]]
 
 
-def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) -> ImportedPlan:
+def read_vector(spec: FloorPlanFields, text: str, name: str, unit_given: bool) -> ImportedPlan:
     """Return the plan in a text of WKT or GeoJSON.
 
     Args:
         spec: says which of both, and how numbers become metres.
         text: without a byte order mark.
         name: the file's name, for messages.
-        told_unit: True if the document gives the unit.
+        unit_given: True if the document gives the unit.
 
     Raises:
         InputError: it is not a plan, or one of several storeys.
@@ -74,11 +74,11 @@ def read_vector(spec: FloorPlanFields, text: str, name: str, told_unit: bool) ->
     else:
         content = _from_json(text, name)
         found, crs = list(_features(content, name, aside)), declared_crs(content)
-    return sorted_plan(found, spec, name, crs, told_unit, aside)
+    return sorted_plan(found, spec, name, crs, unit_given, aside)
 
 
 def sorted_plan(
-    found: list[_Found], spec: FloorPlanFields, name: str, crs: str, told_unit: bool,
+    found: list[_Found], spec: FloorPlanFields, name: str, crs: str, unit_given: bool,
     aside: Counter[str] | None = None,
 ) -> ImportedPlan:  # fmt: skip
     """Return the floor and the solids among geometries.
@@ -88,7 +88,7 @@ def sorted_plan(
         spec: says how numbers become metres, and which storey is read.
         name: the file's name, for messages.
         crs: reference system that the file declares, or "".
-        told_unit: True if the document gives the unit.
+        unit_given: True if the document gives the unit.
         aside: what was left out already.
 
     Raises:
@@ -104,7 +104,7 @@ def sorted_plan(
         )
         _LOG.warning("%s: left out: %s", name, listed)
     found = _on_one_storey([one for one in found if not one[0].is_empty], spec, name)
-    check_numbers([shape for shape, _ in found], spec, name, crs, told_unit)
+    check_numbers([shape for shape, _ in found], spec, name, crs, unit_given)
     if spec.polygons == "walkable" and (renamed := solid_by_another_name(p for _, p in found)):
         _LOG.warning(
             "%s: taken for floor: %s; only the property 'kind' makes solids", name, renamed

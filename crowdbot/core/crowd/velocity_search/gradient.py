@@ -71,7 +71,7 @@ class Descent:
 
 @kernel
 def _descend(
-    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, decides: Mask, goal: Array,
     walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
     traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
@@ -86,7 +86,7 @@ def _descend(
         active, out: (K,), (2,) scratch.
     """
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        table, starts, low, height, decides, goal, walls, grid_frame, grid_first, grid_cells,
         reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]

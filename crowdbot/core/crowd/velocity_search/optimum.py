@@ -77,7 +77,7 @@ class Optimum:
 
 @kernel
 def _solve(
-    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, decides: Mask, goal: Array,
     walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
     traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
@@ -95,7 +95,7 @@ def _solve(
         active, out: (1,), (2,) scratch.
     """
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        table, starts, low, height, decides, goal, walls, grid_frame, grid_first, grid_cells,
         reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]

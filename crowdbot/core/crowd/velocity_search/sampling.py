@@ -197,7 +197,7 @@ def _tabulate(
 
 @kernel
 def choose_velocities(
-    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, decides: Mask, goal: Array,
     walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
     traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
@@ -224,7 +224,7 @@ def choose_velocities(
         chosen: (N, 2) result, m/s.
     """
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        table, starts, low, height, decides, goal, walls, grid_frame, grid_first, grid_cells,
         reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]
@@ -290,7 +290,7 @@ def _fetch_table(i: int, ranked: Array, indices: Indices, first: Indices) -> Non
 
 @kernel
 def _candidates_of(
-    table: Rows[DiscRecord], starts: Starts, low: float, height: float, who: Mask, goal: Array,
+    table: Rows[DiscRecord], starts: Starts, low: float, height: float, decides: Mask, goal: Array,
     walls: Array, grid_frame: Array, grid_first: Indices, grid_cells: Indices, reach: float,
     traits: Rows[DecisionTraitsRecord], settings: Rows[SettingsRecord],
     random: Array, near: Rows[NeighbourRecord], found: Rows[WallRecord],
@@ -300,7 +300,7 @@ def _candidates_of(
 ) -> None:  # fmt: skip
     """Write the candidates of all agents (N, S, 2), m/s; arguments as of `choose_velocities`."""
     around = Surroundings(
-        table, starts, low, height, who, goal, walls, grid_frame, grid_first, grid_cells,
+        table, starts, low, height, decides, goal, walls, grid_frame, grid_first, grid_cells,
         reach, traits, settings, random, near, found, deciding,
     )  # fmt: skip
     agent = deciding[0]

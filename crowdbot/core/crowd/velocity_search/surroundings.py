@@ -69,7 +69,7 @@ class Surroundings(NamedTuple):
         table: (B,) all discs, sorted into strips by `neighbours.sort_discs`.
         starts: (strips + 1, 2) from the same function.
         low, height: lower border of the first strip, and height of a strip, m.
-        who: (N,) True for agents whose choice is wanted.
+        decides: (N,) True for agents whose velocity is chosen.
         goal: (N, 2), m.
         walls: (S, 4) both ends of segments, m.
         grid_frame, grid_first, grid_cells: their `SegmentGrid`.
@@ -85,7 +85,7 @@ class Surroundings(NamedTuple):
     starts: Starts
     low: float
     height: float
-    who: Mask
+    decides: Mask
     goal: Array
     walls: Array
     grid_frame: Array
@@ -146,7 +146,7 @@ def describe(around: Surroundings, b: int) -> int:
     """
     disc, settings, agent = around.table[b], around.settings[0], around.deciding[0]
     i = int(disc.index)
-    if i < 0 or not around.who[i] or (disc.wanted_x == 0.0 and disc.wanted_y == 0.0):
+    if i < 0 or not around.decides[i] or (disc.wanted_x == 0.0 and disc.wanted_y == 0.0):
         return -1
     traits = around.traits[i]
     agent.px, agent.py = disc.x, disc.y

@@ -11,7 +11,7 @@ from crowdbot.dsl.scenario.scenario import Scenario
 
 _NOTE = "left out: a trial has no word for it"
 #: Field that holds parts -> their fields that are exported, or of which the report says more.
-_SAID: Mapping[str, frozenset[str]] = {
+_EXPORTED: Mapping[str, frozenset[str]] = {
     "": frozenset({"id", "environment", "crowd", "robots", "contact", "rates"}),
     "environment": frozenset({"kind", "zones", "portals", "area", "border", "walls", "blocks",
                               "pillars", "wkt", "file"}),
@@ -38,7 +38,7 @@ def name_lost(scenario: Scenario, report: Report) -> None:
         parts |= {f"robots.{name}": robot, f"robots.{name}.task": robot.task}
     for path, part in parts.items():
         for field in _set(part):
-            if field not in _SAID[_kind(path)]:
+            if field not in _EXPORTED[_kind(path)]:
                 report.added(f"{path}.{field}".lstrip("."), _NOTE)
     _common(scenario, report)
 

@@ -25,8 +25,8 @@ _LENGTH = 16
 #: Largest file that is read, bytes.
 _LARGEST = 1 << 28
 _OF_OTHERS = stat.S_IWGRP | stat.S_IWOTH
-#: Folders of which it was said that they hold damaged files.
-_SAID: set[str] = set()
+#: Folders whose damaged files were reported.
+_REPORTED: set[str] = set()
 
 
 class CheckedCacheFile(caching.IndexDataCacheFile):
@@ -112,8 +112,8 @@ class _Damaged(Exception):  # noqa: N818 - a state of a file, told by `_say_dama
 
 def _say_damaged(folder: str, file: str) -> None:
     """Print, once for a folder, that compiled functions are damaged and compiled again."""
-    if folder not in _SAID:
-        _SAID.add(folder)
+    if folder not in _REPORTED:
+        _REPORTED.add(folder)
         text = "was cut or changed, or is of another version or user; it is compiled again"
         print(f"{file}: {text}, and so are others like it", file=sys.stderr)
 

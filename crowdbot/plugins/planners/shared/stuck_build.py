@@ -29,7 +29,7 @@ _STILL_WIDE, _WIDE = 8, 1.0
 #: Neighbouring points nearer than this plus a share of their distance are of one surface, m.
 _GAP, _GAP_SHARE = 0.1, 0.03
 #: Commanded way (m) on which stalled wheels roll no farther than the second number.
-_TOLD, _STALLED = 0.5, 0.05
+_COMMANDED, _STALLED = 0.5, 0.05
 #: A jolt: horizontal specific force above any command's, m/s^2; how long it counts, s.
 _JOLT, _JOLTED = 6.0, 2.0
 #: Time for which a bumper is pressed before it counts, s.
@@ -169,7 +169,7 @@ class Stuck:
         ahead, aside = _moved(then.pose, obs.pose)
         rolled = math.hypot(ahead, aside)
         pressed = self._felt.pressed_for(obs.t) >= _PRESSED and abs(obs.twist[0]) > 0.0
-        stalls = abs(self._commanded) >= _TOLD and rolled <= _STALLED
+        stalls = abs(self._commanded) >= _COMMANDED and rolled <= _STALLED
         if rolled < _ROLLED and not stalls and not pressed:
             if obs.t - then.t > _PATIENCE:
                 self._held = None

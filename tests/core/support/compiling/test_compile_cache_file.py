@@ -20,7 +20,7 @@ RAN: list[str] = []
 
 @pytest.fixture(autouse=True)
 def nothing_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compile_cache_file, "_SAID", set())
+    monkeypatch.setattr(compile_cache_file, "_REPORTED", set())
 
 
 class Planted:
