@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.core.trajectories.bag.columns import BodyRow, Columns
 from crowdbot.core.trajectories.bag.fields import header_of, place_of
 from crowdbot.core.trajectories.bag.frames import TF, FrameTree
+from crowdbot.core.trajectories.bag.reader import topic_fields
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, UnknownNameError
 
@@ -30,7 +31,11 @@ def pose_of(path: Path, topic: str, message: Any, log: int, number: int) -> Body
     """
     place = place_of(message)
     if place is None:
-        raise InputError(f"{path}: {topic} holds {message.__msgtype__}, which has no pose")
+        fields = topic_fields(path)
+        found = [TF] if TF in fields else []
+        found += [name for name, names in fields.items() if "pose" in names]
+        near = f"; these have: {', '.join(sorted(found))}" if found else ""
+        raise InputError(f"{path}: {topic} holds {message.__msgtype__}, which has no pose{near}")
     stamp, frame = header_of(message)
     values = {"theta": place.theta, **_twist(message)}
     child = str(getattr(message, "child_frame_id", "")).lstrip("/")

@@ -194,6 +194,17 @@ def test_poses_that_are_only_in_tf(tmp_path: Path) -> None:
         read(bag, robot="/tf:base_footprin")
 
 
+def test_a_topic_without_a_pose_names_those_that_have_one(tmp_path: Path) -> None:
+    rows: list[Row] = [("/cmd_vel", t, twist(0.5)) for t in TIMES]
+    bag = write(tmp_path / "bag", rows + robot_rows() + marker_rows())
+    with pytest.raises(InputError, match=r"geometry_msgs/msg/Twist, .* no pose; these have: /odom"):
+        read(bag, robot="/cmd_vel")
+    own = [("/a/tf", t, transform(t, "map", "a/base_link", (0.0, 0.0, 0.0))) for t in TIMES]
+    bag = write(tmp_path / "namespace", own + marker_rows())
+    with pytest.raises(InputError, match=r"/a/tf holds tf2_msgs/msg/TFMessage, which has no pose$"):
+        read(bag, robot="/a/tf")
+
+
 def test_transforms_of_two_robots(tmp_path: Path) -> None:
     rows = marker_rows()
     for t in TIMES:
