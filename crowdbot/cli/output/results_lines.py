@@ -131,16 +131,7 @@ def with_interval(line: dict[str, Any]) -> dict[str, Any]:
 
 def _narrow(line: dict[str, Any]) -> dict[str, Any]:
     """Return a line of `line_of` with fewer columns, for narrow terminals."""
-    shown = {
-        "metric",
-        "variant",
-        "unit",
-        "n",
-        "median",
-        "mean [95 %]",
-        "mean of all",
-        *WITHOUT,
-    }
+    shown = {"metric", "variant", "unit", "n", "median", "mean [95 %]", "mean of all", *WITHOUT}
     variant = "" if line["variant"] == "corrected" else f" {line['variant']}"
     unit = "" if line["unit"] == "1" else f", {line['unit']}"
     cells = with_interval(line)

@@ -136,11 +136,7 @@ def _ways(run: Trajectories) -> Iterator[dict[str, Any]]:
         jumps = None if people.jump is None else people.jump[:, i]
         for rows in _pieces(people.x[:, i], jumps):
             path = np.column_stack((people.x[rows, i], people.y[rows, i])).tolist()
-            fields = {
-                "what": "person",
-                "id": int(people.id[i]),
-                "radius": float(people.radius[i]),
-            }
+            fields = {"what": "person", "id": int(people.id[i]), "radius": float(people.radius[i])}
             yield _feature("LineString", path, **fields, t=run.t[rows].tolist())
 
 
@@ -168,14 +164,7 @@ def trajnet(runs: Iterable[tuple[Trajectories, str]]) -> str:
                 f"{name}: is too short for trajnet, which needs two frames 0.4 s apart"
             )
         last = max(row["track"]["f"] for row in rows)
-        scene = {
-            "id": number,
-            "p": first,
-            "s": frame,
-            "e": last,
-            "fps": TRAJNET_RATE,
-            "tag": name,
-        }
+        scene = {"id": number, "p": first, "s": frame, "e": last, "fps": TRAJNET_RATE, "tag": name}
         scenes.append({"scene": scene})
         tracks += rows
         frame, first = last + 1, max(row["track"]["p"] for row in rows) + 1
