@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import importlib
 import logging
+import re
+import shlex
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -49,8 +52,17 @@ def _escaped_errors() -> Iterator[None]:
         yield
     except TyperException as error:
         if isinstance(text := getattr(error, "message", None), str):
-            error.message = printable(text)
+            error.message = printable(text) + _meant_runs(text, getattr(error, "ctx", None))
         raise
+
+
+def _meant_runs(text: str, ctx: Any) -> str:
+    """Return a hint if a folder was given as an argument to a command that has ``--runs``."""
+    extra = re.fullmatch(r"Got unexpected extra argument\(?s?\)? \((.+)\)", text)
+    takes_runs = ctx is not None and any("--runs" in p.opts for p in ctx.command.params)
+    if not (extra and takes_runs and Path(extra[1]).is_dir()):
+        return ""
+    return f"; a folder of runs is given with --runs {shlex.quote(printable(extra[1]))}"
 
 
 class _Commands(TyperGroup):

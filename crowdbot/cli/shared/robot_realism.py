@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
+from crowdbot.core.runs.run_directory import recordings_under
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
@@ -93,7 +94,7 @@ def _of_runs(path: Path, reference: RobotReference) -> RobotRealism:
     from crowdbot.core.realism.near_robots.measure import measure_encounters
     from crowdbot.core.realism.near_robots.recordings import clips_of_runs
 
-    files = sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
+    files = recordings_under(path) if path.is_dir() else [path]
     if not files:
         raise InputError(f"{path}: there are no recordings (.mcap) in it")
     clips, without = clips_of_runs(files)

@@ -7,7 +7,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.runs.run_directory import RECORD, RECORDING, changed, checked_record, is_bag
+from crowdbot.core.runs.run_directory import (
+    RECORD,
+    RECORDING,
+    changed,
+    checked_record,
+    is_bag,
+    is_for_results,
+)
 from crowdbot.errors import InputError
 
 
@@ -74,10 +81,7 @@ def find_source(
 
 
 def _is_run(record: Path, root: Path) -> bool:
-    parts = record.relative_to(root).parts[:-1]
-    if is_bag(record.parent):
-        return False
-    return "references" not in parts and not any(".partial" in p or ".old-" in p for p in parts)
+    return not is_bag(record.parent) and is_for_results(record.parent, root)
 
 
 def _in_directory(folder: Path) -> RecordingSource:

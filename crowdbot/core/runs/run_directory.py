@@ -69,7 +69,22 @@ def runs_under(folder: Path) -> list[Path]:
     Calibration runs, which lack the robot or the people, are not among them.
     """
     found = (file.parent for file in folder.rglob(RECORD) if (file.parent / RECORDING).is_file())
-    return sorted(run for run in found if _REFERENCES not in run.relative_to(folder).parts)
+    return sorted(run for run in found if is_for_results(run, folder))
+
+
+def recordings_under(folder: Path) -> list[Path]:
+    """Return the recordings in a folder, those of unfinished and of replaced runs left out."""
+    return sorted(file for file in folder.rglob("*.mcap") if _stays(file, folder))
+
+
+def is_for_results(run: Path, root: Path) -> bool:
+    """Return True for a run below a folder that is finished and no calibration run."""
+    return _stays(run, root) and _REFERENCES not in run.relative_to(root).parts
+
+
+def _stays(path: Path, root: Path) -> bool:
+    """Return True unless it is in a folder that is being written, or being replaced."""
+    return not any(".partial" in p or ".old-" in p for p in path.relative_to(root).parts)
 
 
 def attach_files(folder: Path, record: Mapping[str, Any]) -> bytes:

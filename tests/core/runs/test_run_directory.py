@@ -178,3 +178,13 @@ def test_a_record_is_written_in_one_go(tmp_path: Path, monkeypatch: pytest.Monke
         files.write_json(path, {"é": 2})
     assert [p.name for p in tmp_path.iterdir()] == ["run.json"]
     assert json.loads(path.read_text(encoding="utf-8")) == {"é": 1}
+
+
+def test_unfinished_and_replaced_runs_are_not_among_those_of_a_folder(tmp_path: Path) -> None:
+    for name in ("seed-0", "seed-1.partial", "seed-2.old-7"):
+        (tmp_path / "a" / name).mkdir(parents=True)
+        _fill(tmp_path / "a" / name)
+    assert files.runs_under(tmp_path) == [tmp_path / "a" / "seed-0"]
+    assert files.recordings_under(tmp_path) == [tmp_path / "a" / "seed-0" / "run.mcap"]
+    partial = tmp_path / "a" / "seed-1.partial"
+    assert files.runs_under(partial) == [partial]  # named by itself

@@ -12,6 +12,7 @@ from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.options import NoPlugins, OwnRecordings, Plugins, check_ending, installed
 from crowdbot.cli.shared.run_arguments import AsJson
+from crowdbot.core.runs.run_directory import recordings_under
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
@@ -135,7 +136,7 @@ def _of_runs(path: Path, beside: RealismReference) -> Realism:
     from crowdbot.core.realism.measure import measure_met
     from crowdbot.core.realism.recordings import read_runs
 
-    files = sorted(path.rglob("*.mcap")) if path.is_dir() else [path]
+    files = recordings_under(path) if path.is_dir() else [path]
     if not files:
         raise InputError(f"{path}: there are no recordings (.mcap) in it")
     tracks, without = read_runs(files)
