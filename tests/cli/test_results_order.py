@@ -41,5 +41,4 @@ def test_a_folder_is_told_where_it_belongs(
     words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main([*words, str(tmp_path)]) == 2
-    output = "".join(c for c in capsys.readouterr().err if c not in " │
-")
+    output = "".join(c for c in capsys.readouterr().err if c not in " │\n")
