@@ -42,3 +42,4 @@ def test_a_folder_is_told_where_it_belongs(
 ) -> None:
     assert cli.main([*words, str(tmp_path)]) == 2
     output = "".join(c for c in capsys.readouterr().err if c not in " │\n")
+    assert "afolderofrunsisgivenwith--runs" in output
