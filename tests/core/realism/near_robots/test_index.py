@@ -100,7 +100,8 @@ def test_tables_with_a_robot_are_read_and_compared(tmp_path: Path) -> None:
         ("t,id,x,y\n0,1,0,0\n1,1,1,0\n", "there is no row of id 'robot'"),
         ("t,id,x,y,radius\n0,robot,0,0,0.2\n1,robot,1,0,\n", "there is no row of a person"),
         ("t,id,x,y\n0,robot,0,0\n0,1,3,0\n1,robot,1,0\n", r"bad.csv:2: .*needs its radius"),
-        ("t,id,x,y,radius\n0,robot,0,0,0.2\n0,1,3,0,\n1,robot,1,0,\n1,1,3,1,\n", "too short"),
+        ("t,id,x,y,radius\n0,robot,0,0,0.2\n0,1,3,0,\n0.5,robot,1,0,\n0.5,1,3,1,\n", "too short"),
+        ("t,id,x,y,radius\n0,robot,0,0,0.2\n0,1,3,0,\n1,robot,1,0,\n1,1,3,1,\n", "max_gap"),
         ("t,name,x,y\n0,1,0,0\n", "column id is"),
     ],
 )
