@@ -44,4 +44,6 @@ def of_planners(found: Results, patterns: Sequence[str]) -> Results:
 
 
 def _fits(label: str, pattern: str) -> bool:
-    return fnmatchcase(label, pattern) or fnmatchcase(without_mark(label), pattern)
+    """Return True if a pattern fits; ``+privileged`` need not be in it."""
+    name = without_mark(label)
+    return any(fnmatchcase(n, pattern) for n in (label, name, name.removesuffix("+privileged")))

@@ -169,6 +169,13 @@ def test_scenarios_without_a_reference_are_left_out(
         of_planners(both, ["wall"])
 
 
+def test_a_privileged_planner_is_found_by_its_name_alone() -> None:
+    known = open_references("crowdbot").results
+    chosen = of_planners(known, ["oracle"])
+    assert {run.planner for run in chosen.runs} == {"oracle+privileged"}
+    assert len(chosen.runs) == len(of_planners(known, ["oracle+privileged"]).runs)
+
+
 def test_results_show_them_in_one_word(
     root: Path, file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
