@@ -170,7 +170,7 @@ def test_scenarios_without_a_reference_are_left_out(
 
 
 def test_a_privileged_planner_is_found_by_its_name_alone() -> None:
-    known = open_references("crowdbot").results
+    known = read_references(shipped_file()).results
     chosen = of_planners(known, ["oracle"])
     assert {run.planner for run in chosen.runs} == {"oracle+privileged"}
     assert len(chosen.runs) == len(of_planners(known, ["oracle+privileged"]).runs)
