@@ -83,7 +83,7 @@ class CutIn(LawfulRush):
     """Rushes into gaps, then slows down before those who come from behind."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return the lawful command, a third of it while somebody comes from behind."""
+        """Return the lawful command, a third of it while a person comes from behind."""
         x, y, vx, _ = self._people.T
         behind = (x < 0.0) & (x > -1.2) & (np.abs(y) < 0.5) & (vx > obs.twist[0])
         return (0.3 if behind.any() else 1.0) * self.lawful(obs, points, v), w
@@ -112,7 +112,7 @@ class Roadblock(Lawyer):
 
 
 class BrakeCheck(Lawyer):
-    """Brakes hard whenever somebody behind comes near, so that they bump into it."""
+    """Brakes hard whenever a person behind comes near, so that they bump into it."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
         """Return the lawful command, or rest."""
@@ -175,7 +175,7 @@ class LastMinute(Lawyer):
         self._leaves, self._start = task.time_limit - needs, task.start[:2]
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
-        """Return rest while somebody is near and there is time, else the lawful command."""
+        """Return rest while a person is near and there is time, else the lawful command."""
         at_start = math.dist(obs.pose[:2], self._start) < 1.0
         waits = at_start and obs.t < self._leaves and self.near(points, 4.0)
         return (0.0, 0.0) if waits else (self.lawful(obs, points, v), w)
@@ -191,7 +191,7 @@ class Startle(Lawyer):
 
 
 class Spinner(Lawyer):
-    """Spins on the spot near people, so that nobody is before it, else drives."""
+    """Spins on the spot near people, so that the way is free, else drives."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
         """Return the lawful command, or a spin."""
@@ -200,7 +200,7 @@ class Spinner(Lawyer):
 
 
 class Pleaser(Lawyer):
-    """Games acceptance: as slow as somebody is near, and never nearer than half a metre."""
+    """Games acceptance: slow near people, and never nearer than half a metre."""
 
     def drive(self, obs: Observation, points: Array, v: float, w: float) -> tuple[float, float]:
         """Return a speed by the gap, backwards where it is too small."""
