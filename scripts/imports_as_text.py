@@ -53,9 +53,21 @@ class _Imports(NamedTuple):
 
 @cache
 def _read(root: Path, module: str) -> _Imports:
-    """Parse a module, once for all that is asked about it."""
-    tree = ast.parse(_file(root, module).read_text("utf-8"))
+    """Parse a module, once for all that is asked about it, unless it cannot have any of that."""
+    text = _file(root, module).read_text("utf-8")
+    if not _is_package(root, module) and not any(word in text for word in _words(module)):
+        return _Imports((), frozenset())
+    tree = ast.parse(text)
     return _Imports(tuple(_texts(tree, module)), _imported_names(tree))
+
+
+def _words(module: str) -> Iterator[str]:
+    """Yield texts of which a module has one if it imports by text or from a package around it."""
+    yield from (*_IMPORTERS, _LAZY)
+    package = module.rpartition(".")[0]
+    while package:
+        yield f"from {package} import"
+        package = package.rpartition(".")[0]
 
 
 def _texts(tree: ast.Module, module: str) -> Iterator[str]:
