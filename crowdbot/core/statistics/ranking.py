@@ -3,18 +3,20 @@
 A planner is ahead of another if it is worse in none of safety, efficiency and acceptance, and
 better in efficiency or acceptance. A planner that is only safer is not ahead: robots that park or
 quit are safe, too. Everything else is a tie, or a trade of one for the other. Verdicts are about
-means, with Holm's correction for all tests of one call (`comparison`).
+means, with Holm's correction for all tests of one call (`comparison`). The correction guards
+against a false *better*; it would also hide a loss, and so help a false *ahead*. A loss therefore
+stands in the way at its own p value already.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from crowdbot.core.statistics.comparison import Comparison, Verdict, compare, with_verdict
+from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
 from crowdbot.core.statistics.sign_flip import holm
 from crowdbot.core.statistics.table import Name, Table
 
@@ -35,7 +37,8 @@ class Ranked:
 
     Attributes:
         planner, other: labels.
-        standing: of ``planner``; ``traded``: better in one aspect, worse in another.
+        standing: of ``planner``; ``traded``: better in one aspect, worse in another, of which at
+            least one holds with Holm's correction.
         aspects: aspect -> comparison, as far as the runs have the scores.
     """
 
@@ -54,34 +57,44 @@ def rank(table: Table, pairs: Iterable[tuple[str, str]], alpha: float = 0.05) ->
         alpha: chance of any false verdict in all of these comparisons.
     """
     names = {aspect: _first(table, scores) for aspect, scores in SCORES.items()}
-    wanted = [(pair, a, name) for pair in pairs for a, name in names.items() if name is not None]
-    found = [compare(table, name, *pair) for pair, _, name in wanted]
-    tested = [i for i, (x, _) in enumerate(found) if x.p is not None]
-    p = dict(zip(tested, holm(np.array([found[i][0].p for i in tested], dtype=float)), strict=True))
-    apart: dict[tuple[str, str], dict[Aspect, Comparison]] = {}
-    for i, (pair, aspect, _) in enumerate(wanted):
-        held = p.get(i)
-        one = with_verdict(*found[i], None if held is None else float(held), alpha)
-        apart.setdefault(pair, {})[aspect] = one
+    tests = [(pair, a, name) for pair in pairs for a, name in names.items() if name is not None]
+    compared = [compare(table, name, *pair) for pair, _, name in tests]
+    tested = [i for i, (x, _) in enumerate(compared) if x.p is not None]
+    p = np.array([compared[i][0].p for i in tested], dtype=float)
+    corrected = dict(zip(tested, holm(p).tolist(), strict=True))
+    sides: dict[tuple[str, str], list[_Side]] = {}
+    for i, (pair, aspect, _) in enumerate(tests):
+        one = with_verdict(*compared[i], corrected.get(i), alpha)
+        sign = compared[i][1].sign if one.p is not None and one.p <= alpha else 0
+        sides.setdefault(pair, []).append(_Side(aspect, one, sign))
     return tuple(
-        Ranked(planner=a, other=b, aspects=aspects, standing=_standing(aspects))
-        for (a, b), aspects in apart.items()
-    )
+        Ranked(
+            planner=a, other=b, standing=_standing(found),
+            aspects={side.aspect: side.comparison for side in found},
+        )
+        for (a, b), found in sides.items()
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Side:
+    """One aspect of a pair; ``sign`` is that of its difference, 0 unless p <= alpha by itself."""
+
+    aspect: Aspect
+    comparison: Comparison
+    sign: int
 
 
 def _first(table: Table, scores: Iterable[Name]) -> Name | None:
     return next((name for name in scores if name in table.names), None)
 
 
-def _standing(aspects: Mapping[Aspect, Comparison]) -> Standing:
-    verdicts: dict[Aspect, Verdict] = {aspect: x.verdict for aspect, x in aspects.items()}
-    weighed = {v for aspect, v in verdicts.items() if aspect != "safety"}
-    better, worse = "better" in weighed, "worse" in verdicts.values()
-    loses = "worse" in weighed
-    if better and worse:
-        return "traded"
-    if better:
-        return "ahead"
-    if not loses:
-        return "tied"
-    return "traded" if verdicts.get("safety") == "better" else "behind"
+def _standing(sides: Sequence[_Side]) -> Standing:
+    """Return the standing; the rule is the same from both planners' points of view."""
+    weighed = {side.comparison.verdict for side in sides if side.aspect != "safety"}
+    signs = {side.sign for side in sides}
+    if "better" in weighed:
+        return "traded" if -1 in signs else "ahead"
+    if "worse" in weighed:
+        return "traded" if 1 in signs else "behind"
+    return "tied"
