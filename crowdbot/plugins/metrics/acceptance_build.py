@@ -8,14 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.plugin import (
-    Array,
-    References,
-    Score,
-    Trajectories,
-    duration,
-    truncate_at_arrival,
-)
+from crowdbot.plugin import Array, References, Score, Trajectories, duration, truncate_at_arrival
 from crowdbot.plugin.for_metrics import (
     MOST,
     demanded_evasion,
@@ -24,7 +17,7 @@ from crowdbot.plugin.for_metrics import (
     robot_approach,
     robot_velocities,
 )
-from crowdbot.plugins.metrics.acceptance import ACCEPTANCE, AcceptanceSpec
+from crowdbot.plugins.metrics.acceptance import AcceptanceSpec
 from crowdbot.plugins.metrics.common_reference_build import missed_goal
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.walls_build import wall_contacts
@@ -38,7 +31,7 @@ _CLOSE, _AT_SPEED = 0.25, 0.5
 _CREEPS = 0.05
 
 
-class Acceptance(DeclaredMetric[AcceptanceSpec], declared=ACCEPTANCE):
+class Acceptance(DeclaredMetric[AcceptanceSpec]):
     """Scores ``acceptance``: exp(-sum of weighted faults of the drive).
 
     Each fault can only lower it; without a goal, arrival does not count.

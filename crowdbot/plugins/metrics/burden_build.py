@@ -6,13 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from crowdbot.plugin import (
-    References,
-    Score,
-    ScoreFactory,
-    Trajectories,
-    truncate_at_arrival,
-)
+from crowdbot.plugin import References, Score, ScoreFactory, Trajectories, truncate_at_arrival
 from crowdbot.plugin.for_metrics import (
     Evasion,
     demanded_evasion,
@@ -23,12 +17,7 @@ from crowdbot.plugin.for_metrics import (
     robot_approach,
     share_below,
 )
-from crowdbot.plugins.metrics.burden import (
-    EVASIVE_ACCELERATION,
-    PUSH_WORK,
-    EvasiveAccelerationSpec,
-    PushWorkSpec,
-)
+from crowdbot.plugins.metrics.burden import EvasiveAccelerationSpec, PushWorkSpec
 from crowdbot.plugins.metrics.common_reference_build import rate_and_way
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 
@@ -38,7 +27,7 @@ PERCENTILE = 0.95
 _Spec = PushWorkSpec | EvasiveAccelerationSpec
 
 
-class PushWork(DeclaredMetric[PushWorkSpec], declared=PUSH_WORK):
+class PushWork(DeclaredMetric[PushWorkSpec]):
     """Scores ``push_work``: push work per progress, per person met, and in total.
 
     ``excess``, less that of the run without a robot, needs ``crowd_alone`` at the same times.
@@ -84,7 +73,7 @@ class PushWork(DeclaredMetric[PushWorkSpec], declared=PUSH_WORK):
         return found.work(people(run).mass) / max(float(found.met.sum()), 1.0)
 
 
-class EvasiveAcceleration(DeclaredMetric[EvasiveAccelerationSpec], declared=EVASIVE_ACCELERATION):
+class EvasiveAcceleration(DeclaredMetric[EvasiveAccelerationSpec]):
     """Scores ``evasive_acceleration``: percentile, maximum and mean square of people's peaks.
 
     ``excess``, less that of the run without a robot, needs ``crowd_alone`` at the same times.

@@ -17,12 +17,6 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import as_disc, encounter
 from crowdbot.plugins.metrics.clearance import (
-    AVG_CLEARANCE,
-    INTIMATE_TIME_FRACTION,
-    MIN_CLEARANCE,
-    PERSONAL_TIME_FRACTION,
-    SOCIAL_TIME_FRACTION,
-    SPACE_COMPLIANCE,
     AvgClearanceSpec,
     IntimateTimeFractionSpec,
     MinClearanceSpec,
@@ -36,7 +30,7 @@ from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 EDGE = 1e-9
 
 
-class MinClearance(RobotMetric[MinClearanceSpec], declared=MIN_CLEARANCE):
+class MinClearance(RobotMetric[MinClearanceSpec]):
     """Scores ``min_clearance``: the smallest gap, for the outline and for the disc around it.
 
     Negative where bodies overlap.
@@ -47,7 +41,7 @@ class MinClearance(RobotMetric[MinClearanceSpec], declared=MIN_CLEARANCE):
         return [self.factory.ok("corrected", gap.min()), self.factory.ok("disc", of_disc.min())]
 
 
-class AvgClearance(RobotMetric[AvgClearanceSpec], declared=AVG_CLEARANCE):
+class AvgClearance(RobotMetric[AvgClearanceSpec]):
     """Scores ``avg_clearance``: the mean gap over the time at which a person is present."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -61,14 +55,14 @@ class AvgClearance(RobotMetric[AvgClearanceSpec], declared=AVG_CLEARANCE):
         return [self.factory.ok("corrected", mean, {"coverage": coverage})]
 
 
-class IntimateTimeFraction(RobotMetric[IntimateTimeFractionSpec], declared=INTIMATE_TIME_FRACTION):
+class IntimateTimeFraction(RobotMetric[IntimateTimeFractionSpec]):
     """Scores ``intimate_time_fraction``: the share of time inside the intimate zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return time_within(self.factory, run, -np.inf, self.spec.intimate)
 
 
-class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec], declared=PERSONAL_TIME_FRACTION):
+class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec]):
     """Scores ``personal_time_fraction``: the share of time in the personal zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -76,14 +70,14 @@ class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec], declared=PERSO
         return time_within(self.factory, run, *zone)
 
 
-class SocialTimeFraction(RobotMetric[SocialTimeFractionSpec], declared=SOCIAL_TIME_FRACTION):
+class SocialTimeFraction(RobotMetric[SocialTimeFractionSpec]):
     """Scores ``social_time_fraction``: the share of time in the social zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return time_within(self.factory, run, self.spec.personal, self.spec.social)
 
 
-class SpaceCompliance(RobotMetric[SpaceComplianceSpec], declared=SPACE_COMPLIANCE):
+class SpaceCompliance(RobotMetric[SpaceComplianceSpec]):
     """Scores ``space_compliance``: the share of time beyond the required gap.
 
     Time without people counts as compliant.

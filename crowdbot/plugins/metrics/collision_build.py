@@ -6,14 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.plugin import (
-    Array,
-    References,
-    Score,
-    Trajectories,
-    duration,
-    path_length,
-)
+from crowdbot.plugin import Array, References, Score, Trajectories, duration, path_length
 from crowdbot.plugin.for_metrics import (
     PersonContacts,
     contact_runs,
@@ -27,10 +20,6 @@ from crowdbot.plugin.for_metrics import (
     touching,
 )
 from crowdbot.plugins.metrics.collision import (
-    COLLISION_COUNT,
-    COLLISION_RATE,
-    COLLISION_SEVERITY,
-    COLLISIONS_AT_FAULT,
     CollisionCountSpec,
     CollisionRateSpec,
     CollisionsAtFaultSpec,
@@ -51,7 +40,7 @@ _Spec = (
 )
 
 
-class CollisionCount(RobotMetric[CollisionCountSpec], declared=COLLISION_COUNT):
+class CollisionCount(RobotMetric[CollisionCountSpec]):
     """Scores ``collision_count``: all contacts, however short.
 
     ``literal``: sequences of samples in contact.
@@ -67,7 +56,7 @@ class CollisionCount(RobotMetric[CollisionCountSpec], declared=COLLISION_COUNT):
         ]
 
 
-class CollisionSeverity(RobotMetric[CollisionSeveritySpec], declared=COLLISION_SEVERITY):
+class CollisionSeverity(RobotMetric[CollisionSeveritySpec]):
     """Scores ``collision_severity``: the energy of contacts, just before each.
 
     ``literal``: of each sample in contact. Contacts of unknown speed or with an unknown person
@@ -98,7 +87,7 @@ class CollisionSeverity(RobotMetric[CollisionSeveritySpec], declared=COLLISION_S
         return total / 2.0, reduced
 
 
-class CollisionRate(RobotMetric[CollisionRateSpec], declared=COLLISION_RATE):
+class CollisionRate(RobotMetric[CollisionRateSpec]):
     """Scores ``collision_rate``: contacts per second, and per metre that the robot drove."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -110,7 +99,7 @@ class CollisionRate(RobotMetric[CollisionRateSpec], declared=COLLISION_RATE):
         ]
 
 
-class CollisionsAtFault(RobotMetric[CollisionsAtFaultSpec], declared=COLLISIONS_AT_FAULT):
+class CollisionsAtFault(RobotMetric[CollisionsAtFaultSpec]):
     """Scores ``collisions_at_fault``: contacts by fault of the robot and of the person.
 
     It is the robot's if it is faster and the person is in front of it, else the person's.

@@ -18,12 +18,6 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import PersonStance, person_stance, robot_of
 from crowdbot.plugins.metrics.companion import (
-    ASSISTED,
-    PERSON_ANGLE_ERROR,
-    PERSON_COMFORT,
-    PERSON_DISTANCE_ERROR,
-    TIME_IN_PLACE,
-    TIME_TO_PLACE,
     AssistedSpec,
     PersonAngleErrorSpec,
     PersonComfortSpec,
@@ -37,7 +31,7 @@ from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedErr
 EDGE = 1e-9
 
 
-class Assisted(DeclaredMetric[AssistedSpec], declared=ASSISTED):
+class Assisted(DeclaredMetric[AssistedSpec]):
     """Scores ``assisted``: 1 if done, untouched, and no nearer than task and zone allow."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -52,7 +46,7 @@ class Assisted(DeclaredMetric[AssistedSpec], declared=ASSISTED):
         return [self.factory.ok("corrected", done and kind, extras)]
 
 
-class TimeInPlace(DeclaredMetric[TimeInPlaceSpec], declared=TIME_IN_PLACE):
+class TimeInPlace(DeclaredMetric[TimeInPlaceSpec]):
     """Scores ``time_in_place``: the share of all time in place.
 
     ``since``: of the time since the robot was in place for the first time; 0 if it never was.
@@ -75,7 +69,7 @@ class TimeInPlace(DeclaredMetric[TimeInPlaceSpec], declared=TIME_IN_PLACE):
         ]
 
 
-class TimeToPlace(DeclaredMetric[TimeToPlaceSpec], declared=TIME_TO_PLACE):
+class TimeToPlace(DeclaredMetric[TimeToPlaceSpec]):
     """Scores ``time_to_place``: time of the first sample in place; without one, a lower bound."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -87,7 +81,7 @@ class TimeToPlace(DeclaredMetric[TimeToPlaceSpec], declared=TIME_TO_PLACE):
         return [self.factory.ok("corrected", found.t[int(np.argmax(found.in_place))] - found.t[0])]
 
 
-class PersonDistanceError(DeclaredMetric[PersonDistanceErrorSpec], declared=PERSON_DISTANCE_ERROR):
+class PersonDistanceError(DeclaredMetric[PersonDistanceErrorSpec]):
     """Scores ``person_distance_error``: the mean over the time that the task asks for."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -97,7 +91,7 @@ class PersonDistanceError(DeclaredMetric[PersonDistanceErrorSpec], declared=PERS
         return [_mean(self.factory, found, np.abs(found.gap - found.task.distance), "no_agents")]
 
 
-class PersonAngleError(DeclaredMetric[PersonAngleErrorSpec], declared=PERSON_ANGLE_ERROR):
+class PersonAngleError(DeclaredMetric[PersonAngleErrorSpec]):
     """Scores ``person_angle_error``: the mean over the time that the task asks for.
 
     Only time in which the person has a front counts.
@@ -110,7 +104,7 @@ class PersonAngleError(DeclaredMetric[PersonAngleErrorSpec], declared=PERSON_ANG
         return [_mean(self.factory, found, found.aside, "no_front")]
 
 
-class PersonComfort(DeclaredMetric[PersonComfortSpec], declared=PERSON_COMFORT):
+class PersonComfort(DeclaredMetric[PersonComfortSpec]):
     """Scores ``person_comfort``: 1 less half the mean and half the peak of the discomfort.
 
     Only time within social distance counts.

@@ -4,17 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crowdbot.plugin import (
-    ContactEvents,
-    Mask,
-    References,
-    Score,
-    Trajectories,
-)
+from crowdbot.plugin import ContactEvents, Mask, References, Score, Trajectories
 from crowdbot.plugins.metrics.contact import (
-    CONTACT_IMPULSE,
-    CONTACT_TIME,
-    MAX_CONTACT_FORCE,
     ContactImpulseSpec,
     ContactTimeSpec,
     MaxContactForceSpec,
@@ -22,7 +13,7 @@ from crowdbot.plugins.metrics.contact import (
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 
 
-class MaxContactForce(RobotMetric[MaxContactForceSpec], declared=MAX_CONTACT_FORCE):
+class MaxContactForce(RobotMetric[MaxContactForceSpec]):
     """Scores ``max_contact_force``: the largest force peak of all contacts with people.
 
     Needs a table of contacts; 0 without contact.
@@ -33,7 +24,7 @@ class MaxContactForce(RobotMetric[MaxContactForceSpec], declared=MAX_CONTACT_FOR
         return [self.factory.ok("corrected", contacts.peak_force[rows].max(initial=0.0))]
 
 
-class ContactImpulse(RobotMetric[ContactImpulseSpec], declared=CONTACT_IMPULSE):
+class ContactImpulse(RobotMetric[ContactImpulseSpec]):
     """Scores ``contact_impulse``: the sum over contacts with people, and the ``largest``.
 
     Needs a table of contacts; 0 without contact.
@@ -46,7 +37,7 @@ class ContactImpulse(RobotMetric[ContactImpulseSpec], declared=CONTACT_IMPULSE):
         return [self.factory.ok("corrected", impulses.sum(), largest)]
 
 
-class ContactTime(RobotMetric[ContactTimeSpec], declared=CONTACT_TIME):
+class ContactTime(RobotMetric[ContactTimeSpec]):
     """Scores ``contact_time``: total contact time; two simultaneous contacts count twice.
 
     Needs a table of contacts; 0 without contact.

@@ -31,11 +31,6 @@ from crowdbot.plugin.for_metrics import (
     truncate_to_shorter,
 )
 from crowdbot.plugins.metrics.crowd_effect import (
-    CROWD_DEVIATION,
-    EFFECT_ON_TIME,
-    EFFECT_ON_VELOCITY,
-    NEIGHBOURS_TIME_TO_GOAL,
-    NEIGHBOURS_VELOCITY,
     CrowdDeviationSpec,
     EffectOnTimeSpec,
     EffectOnVelocitySpec,
@@ -46,7 +41,7 @@ from crowdbot.plugins.metrics.declared_build import DeclaredMetric, RobotMetric,
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 
 
-class EffectOnTime(DeclaredMetric[EffectOnTimeSpec], declared=EFFECT_ON_TIME):
+class EffectOnTime(DeclaredMetric[EffectOnTimeSpec]):
     """Scores ``effect_on_time`` of all trips, in the common time window.
 
     ``literal``: of completed trips. Needs ``crowd_alone``.
@@ -80,7 +75,7 @@ class EffectOnTime(DeclaredMetric[EffectOnTimeSpec], declared=EFFECT_ON_TIME):
         return self.factory.ratio("restricted", *means, self.spec.zero_tol, extras)
 
 
-class NeighboursTimeToGoal(RobotMetric[NeighboursTimeToGoalSpec], declared=NEIGHBOURS_TIME_TO_GOAL):
+class NeighboursTimeToGoal(RobotMetric[NeighboursTimeToGoalSpec]):
     """Scores ``neighbours_time_to_goal``: people who meet the robot against all people.
 
     Needs trips, and no reference run.
@@ -103,7 +98,7 @@ class NeighboursTimeToGoal(RobotMetric[NeighboursTimeToGoalSpec], declared=NEIGH
         ]
 
 
-class EffectOnVelocity(DeclaredMetric[EffectOnVelocitySpec], declared=EFFECT_ON_VELOCITY):
+class EffectOnVelocity(DeclaredMetric[EffectOnVelocitySpec]):
     """Scores ``effect_on_velocity`` over the time in the common window.
 
     ``literal``: over all samples of both records. Needs ``crowd_alone``.
@@ -132,7 +127,7 @@ class EffectOnVelocity(DeclaredMetric[EffectOnVelocitySpec], declared=EFFECT_ON_
         return self.factory.ratio(variant, v_alone, v_run, self.spec.zero_tol, both)
 
 
-class NeighboursVelocity(RobotMetric[NeighboursVelocitySpec], declared=NEIGHBOURS_VELOCITY):
+class NeighboursVelocity(RobotMetric[NeighboursVelocitySpec]):
     """Scores ``neighbours_velocity``: speeds near the robot against all speeds."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -155,7 +150,7 @@ class NeighboursVelocity(RobotMetric[NeighboursVelocitySpec], declared=NEIGHBOUR
         return self.factory.ratio(variant, v_near, v_all, self.spec.zero_tol, both)
 
 
-class CrowdDeviation(DeclaredMetric[CrowdDeviationSpec], declared=CROWD_DEVIATION):
+class CrowdDeviation(DeclaredMetric[CrowdDeviationSpec]):
     """Scores ``crowd_deviation``: the mean over samples with a person present in both runs.
 
     Needs ``crowd_alone`` with the same people at the same times.

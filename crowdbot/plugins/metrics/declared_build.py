@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar, get_args
 
 from crowdbot.plugin import (
     MetricComponent,
@@ -27,15 +28,16 @@ class DeclaredMetric(Generic[_S]):
 
     Attributes:
         spec: its parameters.
-        factory: builds its scores; of the declaration that the class names.
+        factory: builds its scores; of the metric that is declared with this spec.
     """
 
     factory: ClassVar[ScoreFactory]
 
-    def __init_subclass__(cls, declared: MetricComponent[Any] | None = None) -> None:
+    def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if declared is not None:
-            cls.factory = ScoreFactory(declared)
+        (spec,) = get_args(cls.__dict__["__orig_bases__"][0])
+        if isinstance(spec, type):
+            cls.factory = ScoreFactory(_declared_with(spec))
 
     def __init__(self, spec: _S) -> None:
         self.spec = spec
@@ -64,3 +66,9 @@ class RobotMetric(DeclaredMetric[_S]):
         if run.robot is None:
             return self.factory.all_undefined("invalid_no_robot")
         return super().score(truncate_at_arrival(run), refs)
+
+
+def _declared_with(spec: type[MetricSpec]) -> MetricComponent[Any]:
+    """Return the metric that the module of a spec declares with it."""
+    declared = vars(sys.modules[spec.__module__]).values()
+    return next(m for m in declared if isinstance(m, MetricComponent) and m.spec is spec)

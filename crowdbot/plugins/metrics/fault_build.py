@@ -4,21 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crowdbot.plugin import (
-    References,
-    Score,
-    Trajectories,
-    path_length,
-)
+from crowdbot.plugin import References, Score, Trajectories, path_length
 from crowdbot.plugin.for_metrics import FaultRule, at_fault, person_contacts, robot_of
 from crowdbot.plugins.metrics.common_reference_build import way_made_good
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
-from crowdbot.plugins.metrics.fault import (
-    CONTACTS_AT_FAULT,
-    CONTACTS_PER_KM,
-    ContactsAtFaultSpec,
-    ContactsPerKmSpec,
-)
+from crowdbot.plugins.metrics.fault import ContactsAtFaultSpec, ContactsPerKmSpec
 from crowdbot.plugins.metrics.safe_efficiency import SafeEfficiencySpec
 
 #: Tolerance of the fault rule, m/s, so that rounding does not decide.
@@ -36,7 +26,7 @@ def fault_rule(spec: ContactsAtFaultSpec | ContactsPerKmSpec | SafeEfficiencySpe
     )
 
 
-class ContactsAtFault(RobotMetric[ContactsAtFaultSpec], declared=CONTACTS_AT_FAULT):
+class ContactsAtFault(RobotMetric[ContactsAtFaultSpec]):
     """Scores ``contacts_at_fault``: contacts by fault of the robot and of people.
 
     It is the robot's if it moves towards the person it touches and did not brake in time.
@@ -49,7 +39,7 @@ class ContactsAtFault(RobotMetric[ContactsAtFaultSpec], declared=CONTACTS_AT_FAU
         return [self.factory.ok("corrected", robot), self.factory.ok("person", len(found) - robot)]
 
 
-class ContactsPerKm(RobotMetric[ContactsPerKmSpec], declared=CONTACTS_PER_KM):
+class ContactsPerKm(RobotMetric[ContactsPerKmSpec]):
     """Scores ``contacts_per_km``: contacts per kilometre of progress and of driven path.
 
     All contacts and those at fault per progress, all per driven distance; and both distances. Needs

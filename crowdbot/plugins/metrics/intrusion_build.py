@@ -6,19 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.plugin import (
-    References,
-    Score,
-    Trajectories,
-    truncate_at_arrival,
-)
+from crowdbot.plugin import References, Score, Trajectories, truncate_at_arrival
 from crowdbot.plugin.for_metrics import DISTANCE_TOLERANCE, encounter, evasion, people, share_below
 from crowdbot.plugins.metrics.common_reference_build import rate_and_way
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.intrusion import INTRUSION, IntrusionSpec
+from crowdbot.plugins.metrics.intrusion import IntrusionSpec
 
 
-class Intrusion(DeclaredMetric[IntrusionSpec], declared=INTRUSION):
+class Intrusion(DeclaredMetric[IntrusionSpec]):
     """Scores ``intrusion``: advances on people with little room or little time left.
 
     Per progress, per person, and in total.

@@ -21,14 +21,6 @@ from crowdbot.plugin import (
 from crowdbot.plugin.for_metrics import heading_changes, robot_of, robot_velocities, wrap
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.motion import (
-    ACCELERATION,
-    CUMULATIVE_HEADING_CHANGE,
-    DIMENSIONLESS_JERK,
-    JERK,
-    PATH_IRREGULARITY,
-    SPEED,
-    STALLED_TIME,
-    TIME_NOT_MOVING,
     AccelerationSpec,
     CumulativeHeadingChangeSpec,
     DimensionlessJerkSpec,
@@ -40,7 +32,7 @@ from crowdbot.plugins.metrics.motion import (
 )
 
 
-class TimeNotMoving(RobotMetric[TimeNotMovingSpec], declared=TIME_NOT_MOVING):
+class TimeNotMoving(RobotMetric[TimeNotMovingSpec]):
     """Scores ``time_not_moving``: the time in which the robot neither drives nor turns."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -50,7 +42,7 @@ class TimeNotMoving(RobotMetric[TimeNotMovingSpec], declared=TIME_NOT_MOVING):
         return [self.factory.ok("corrected", time_weights(run.t) @ still)]
 
 
-class StalledTime(RobotMetric[StalledTimeSpec], declared=STALLED_TIME):
+class StalledTime(RobotMetric[StalledTimeSpec]):
     """Scores ``stalled_time``: the time in which the robot hardly drives, turning or not."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -58,16 +50,14 @@ class StalledTime(RobotMetric[StalledTimeSpec], declared=STALLED_TIME):
         return [self.factory.ok("corrected", time_weights(run.t) @ (speed < self.spec.stall_speed))]
 
 
-class CumulativeHeadingChange(
-    RobotMetric[CumulativeHeadingChangeSpec], declared=CUMULATIVE_HEADING_CHANGE
-):
+class CumulativeHeadingChange(RobotMetric[CumulativeHeadingChangeSpec]):
     """Scores ``cumulative_heading_change``: the sum of heading changes over the valid steps."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return [self.factory.ok("corrected", _all_turning(run, self.spec.jump_speed))]
 
 
-class PathIrregularity(RobotMetric[PathIrregularitySpec], declared=PATH_IRREGULARITY):
+class PathIrregularity(RobotMetric[PathIrregularitySpec]):
     """Scores ``path_irregularity``: turning per metre, beyond that from first to last heading."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -80,7 +70,7 @@ class PathIrregularity(RobotMetric[PathIrregularitySpec], declared=PATH_IRREGULA
         return [self.factory.ratio("corrected", extra, length, self.spec.zero_tol)]
 
 
-class Speed(RobotMetric[SpeedSpec], declared=SPEED):
+class Speed(RobotMetric[SpeedSpec]):
     """Scores ``speed``: the magnitude of the velocity; ``avg`` is the mean over time."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -88,7 +78,7 @@ class Speed(RobotMetric[SpeedSpec], declared=SPEED):
         return _spread(self.factory, speed, time_weights(run.t))
 
 
-class Acceleration(RobotMetric[AccelerationSpec], declared=ACCELERATION):
+class Acceleration(RobotMetric[AccelerationSpec]):
     """Scores ``acceleration``: the change of forward speed from step to step."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -97,14 +87,14 @@ class Acceleration(RobotMetric[AccelerationSpec], declared=ACCELERATION):
         return _spread(self.factory, np.abs(np.diff(v) / dt), dt)
 
 
-class Jerk(RobotMetric[JerkSpec], declared=JERK):
+class Jerk(RobotMetric[JerkSpec]):
     """Scores ``jerk``: the change of acceleration between neighbouring steps."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return _spread(self.factory, *_jerk(run, self.spec.jump_speed))
 
 
-class DimensionlessJerk(RobotMetric[DimensionlessJerkSpec], declared=DIMENSIONLESS_JERK):
+class DimensionlessJerk(RobotMetric[DimensionlessJerkSpec]):
     """Scores ``dimensionless_jerk``: T³/v_peak² times the integral of the squared jerk.
 
     Balasubramanian et al. 2015, without logarithm and sign.

@@ -32,7 +32,7 @@ from crowdbot.plugin.for_metrics import (
     valid_robot_steps,
 )
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.overtaking import OVERTAKING_COUNT, OvertakingCountSpec
+from crowdbot.plugins.metrics.overtaking import OvertakingCountSpec
 
 #: Tolerances for speed (m/s), angle (rad) and side (m), so that rounding does not decide.
 TOLERANCE = 1e-9
@@ -42,7 +42,7 @@ _SLACK = 1e-3
 Index = NDArray[np.intp]
 
 
-class OvertakingCount(DeclaredMetric[OvertakingCountSpec], declared=OVERTAKING_COUNT):
+class OvertakingCount(DeclaredMetric[OvertakingCountSpec]):
     """Scores ``overtaking_count``: people overtaken, minus those who overtook the robot.
 
     ``literal``: people overtaken. Without people the count is 0.

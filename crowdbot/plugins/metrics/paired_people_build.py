@@ -17,12 +17,7 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import Effects, Pairing, meeting_effects, whole_effects
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.paired_people import (
-    DELAY,
-    DISPLACEMENT,
-    DelaySpec,
-    DisplacementSpec,
-)
+from crowdbot.plugins.metrics.paired_people import DelaySpec, DisplacementSpec
 
 #: Share of the people who are affected most.
 WORST = 0.05
@@ -35,7 +30,7 @@ TOLERANCE = 1e-9
 _Spec = DisplacementSpec | DelaySpec
 
 
-class Displacement(DeclaredMetric[DisplacementSpec], declared=DISPLACEMENT):
+class Displacement(DeclaredMetric[DisplacementSpec]):
     """Scores ``displacement`` of people met: mean, worst 5 %, number, slope over speed.
 
     ``whole`` is the mean over everyone. Needs ``crowd_alone`` with the same people.
@@ -46,7 +41,7 @@ class Displacement(DeclaredMetric[DisplacementSpec], declared=DISPLACEMENT):
         return _scores(self.factory, run, refs, self.spec, lambda found: found.displacement, much)
 
 
-class Delay(DeclaredMetric[DelaySpec], declared=DELAY):
+class Delay(DeclaredMetric[DelaySpec]):
     """Scores ``delay`` of people met: mean, worst 5 %, number, slope over speed.
 
     ``whole`` is the mean over everyone. Needs ``crowd_alone`` with the same people.

@@ -22,9 +22,6 @@ from crowdbot.plugin.for_metrics import heading_changes, inf_to_nan, robot_of, v
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.path_efficiency import (
-    RELATIVE_JERK,
-    RELATIVE_PATH_LENGTH,
-    RELATIVE_TIME_TO_GOAL,
     RelativeJerkSpec,
     RelativePathLengthSpec,
     RelativeTimeToGoalSpec,
@@ -36,7 +33,7 @@ _OWN = ("literal", "corrected")
 RATE_TOLERANCE = 1e-9
 
 
-class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec], declared=RELATIVE_TIME_TO_GOAL):
+class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec]):
     """Scores ``relative_time_to_goal``: time alone over time in the crowd.
 
     ``common``: time of the shortest path at full speed over time in the crowd. Needs
@@ -60,7 +57,7 @@ class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec], declared=RELATI
         return travel_time(run, robot_of(run))
 
 
-class RelativePathLength(DeclaredMetric[RelativePathLengthSpec], declared=RELATIVE_PATH_LENGTH):
+class RelativePathLength(DeclaredMetric[RelativePathLengthSpec]):
     """Scores ``relative_path_length``: path alone over path in the crowd.
 
     Needs ``robot_alone``.
@@ -73,7 +70,7 @@ class RelativePathLength(DeclaredMetric[RelativePathLengthSpec], declared=RELATI
         return path_length(run.t, robot_of(run), self.spec.jump_speed)
 
 
-class RelativeJerk(DeclaredMetric[RelativeJerkSpec], declared=RELATIVE_JERK):
+class RelativeJerk(DeclaredMetric[RelativeJerkSpec]):
     """Scores ``relative_jerk``: ``literal`` with its sign, and total variations.
 
     Needs ``robot_alone``, sampled as often as the run.

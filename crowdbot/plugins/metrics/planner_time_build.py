@@ -8,15 +8,10 @@ import numpy as np
 
 from crowdbot.plugin import Array, References, Score, Trajectories
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.planner_time import (
-    MAX_PLANNER_TIME,
-    MEAN_PLANNER_TIME,
-    MaxPlannerTimeSpec,
-    MeanPlannerTimeSpec,
-)
+from crowdbot.plugins.metrics.planner_time import MaxPlannerTimeSpec, MeanPlannerTimeSpec
 
 
-class MeanPlannerTime(DeclaredMetric[MeanPlannerTimeSpec], declared=MEAN_PLANNER_TIME):
+class MeanPlannerTime(DeclaredMetric[MeanPlannerTimeSpec]):
     """Scores ``mean_planner_time``: the mean over all steps of the record.
 
     Needs the times of the planner's steps.
@@ -26,7 +21,7 @@ class MeanPlannerTime(DeclaredMetric[MeanPlannerTimeSpec], declared=MEAN_PLANNER
         return [self.factory.ok("corrected", _steps(run).mean())]
 
 
-class MaxPlannerTime(DeclaredMetric[MaxPlannerTimeSpec], declared=MAX_PLANNER_TIME):
+class MaxPlannerTime(DeclaredMetric[MaxPlannerTimeSpec]):
     """Scores ``max_planner_time``: the maximum over all steps of the record.
 
     Needs the times of the planner's steps.

@@ -9,13 +9,13 @@ import numpy as np
 from crowdbot.plugin import References, Score, Trajectories
 from crowdbot.plugins.metrics.common_reference_build import goal_distance
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.progress import REGRESS, RegressSpec
+from crowdbot.plugins.metrics.progress import RegressSpec
 
 #: Tolerance of the rule for a receding goal, m/s, so that rounding does not decide.
 TOLERANCE = 1e-9
 
 
-class Regress(DeclaredMetric[RegressSpec], declared=REGRESS):
+class Regress(DeclaredMetric[RegressSpec]):
     """Scores ``regress``: the sum of all increases of the goal distance.
 
     ``time_share`` is the share of time with a marked increase. Needs a goal point or zone.

@@ -7,22 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.plugin import (
-    Array,
-    Mask,
-    References,
-    Score,
-    Trajectories,
-    duration,
-    time_weights,
-)
+from crowdbot.plugin import Array, Mask, References, Score, Trajectories, duration, time_weights
 from crowdbot.plugin.for_metrics import DISTANCE_TOLERANCE, encounter
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.proximity import (
-    LOCAL_DENSITY,
-    NEIGHBOUR_COUNT,
-    NORMALIZED_PROXIMITY,
-    PROXIMITY,
     LocalDensitySpec,
     NeighbourCountSpec,
     NormalizedProximitySpec,
@@ -30,7 +18,7 @@ from crowdbot.plugins.metrics.proximity import (
 )
 
 
-class Proximity(RobotMetric[ProximitySpec], declared=PROXIMITY):
+class Proximity(RobotMetric[ProximitySpec]):
     """Scores ``proximity``: the mean over time of the reciprocal distance, which has a floor.
 
     ``literal``: the sum over samples. Samples without people add nothing.
@@ -64,7 +52,7 @@ class Proximity(RobotMetric[ProximitySpec], declared=PROXIMITY):
         return self.factory.ok(variant, mean, extras)
 
 
-class NormalizedProximity(RobotMetric[NormalizedProximitySpec], declared=NORMALIZED_PROXIMITY):
+class NormalizedProximity(RobotMetric[NormalizedProximitySpec]):
     """Scores ``normalized_proximity``: spread of distances over their mean.
 
     ``barycentre``: the definition in the text of the source.
@@ -103,14 +91,14 @@ class NormalizedProximity(RobotMetric[NormalizedProximitySpec], declared=NORMALI
         return self.factory.ok(variant, mean, {"coverage": total / float(weights.sum())})
 
 
-class NeighbourCount(RobotMetric[NeighbourCountSpec], declared=NEIGHBOUR_COUNT):
+class NeighbourCount(RobotMetric[NeighbourCountSpec]):
     """Scores ``neighbour_count``: the mean number of neighbours over time."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return [self.factory.ok("corrected", _neighbours(run, self.spec.neighbour_radius))]
 
 
-class LocalDensity(RobotMetric[LocalDensitySpec], declared=LOCAL_DENSITY):
+class LocalDensity(RobotMetric[LocalDensitySpec]):
     """Scores ``local_density``: the mean over time of neighbours per area of their circle."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

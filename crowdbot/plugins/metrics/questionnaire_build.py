@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from crowdbot.plugin import References, Score, Trajectories
 from crowdbot.plugin.for_metrics import TLX_SCALES, USE_ITEMS, Answer
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.questionnaire import NASA_TLX, USE, NasaTlxSpec, UseSpec
+from crowdbot.plugins.metrics.questionnaire import NasaTlxSpec, UseSpec
 
 #: Number of pairs of scales that are compared.
 PAIRS = 15
 
 
-class NasaTlx(DeclaredMetric[NasaTlxSpec], declared=NASA_TLX):
+class NasaTlx(DeclaredMetric[NasaTlxSpec]):
     """Scores ``nasa_tlx``: mean rating (``raw``), and weighted by chosen scales (``weighted``).
 
     Needs the answers of a NASA-TLX form.
@@ -36,7 +36,7 @@ class NasaTlx(DeclaredMetric[NasaTlxSpec], declared=NASA_TLX):
         return [raw, self.factory.ok("weighted", total / PAIRS)]
 
 
-class Use(DeclaredMetric[UseSpec], declared=USE):
+class Use(DeclaredMetric[UseSpec]):
     """Scores ``use``: the mean item of each dimension.
 
     Needs the answers of a USE form; items that do not apply are left out.

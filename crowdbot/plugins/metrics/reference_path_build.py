@@ -6,13 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.plugin import (
-    Array,
-    References,
-    Score,
-    Trajectories,
-    truncate_at_arrival,
-)
+from crowdbot.plugin import Array, References, Score, Trajectories, truncate_at_arrival
 from crowdbot.plugin.for_metrics import (
     inf_to_nan,
     least_warping,
@@ -23,10 +17,6 @@ from crowdbot.plugin.for_metrics import (
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 from crowdbot.plugins.metrics.reference_path import (
-    ADE_TO_REFERENCE,
-    FDE_TO_REFERENCE,
-    NDTW,
-    SDTW,
     AdeToReferenceSpec,
     FdeToReferenceSpec,
     NdtwSpec,
@@ -34,7 +24,7 @@ from crowdbot.plugins.metrics.reference_path import (
 )
 
 
-class AdeToReference(RobotMetric[AdeToReferenceSpec], declared=ADE_TO_REFERENCE):
+class AdeToReference(RobotMetric[AdeToReferenceSpec]):
     """Scores ``ade_to_reference``: unweighted mean distance over the common samples.
 
     Up to the earlier arrival. Needs ``robot_alone``, sampled at the same times after the start.
@@ -44,7 +34,7 @@ class AdeToReference(RobotMetric[AdeToReferenceSpec], declared=ADE_TO_REFERENCE)
         return [self.factory.ok("corrected", _apart(run, refs).mean())]
 
 
-class FdeToReference(RobotMetric[FdeToReferenceSpec], declared=FDE_TO_REFERENCE):
+class FdeToReference(RobotMetric[FdeToReferenceSpec]):
     """Scores ``fde_to_reference``: the distance at the last common sample.
 
     Needs ``robot_alone``, sampled at the same times after the start.
@@ -54,7 +44,7 @@ class FdeToReference(RobotMetric[FdeToReferenceSpec], declared=FDE_TO_REFERENCE)
         return [self.factory.ok("corrected", _apart(run, refs)[-1])]
 
 
-class Ndtw(RobotMetric[NdtwSpec], declared=NDTW):
+class Ndtw(RobotMetric[NdtwSpec]):
     """Scores ``ndtw``: ``exp(-DTW / (points of the reference x threshold))``.
 
     Needs ``robot_alone``. Ilharco et al. 2019.
@@ -64,7 +54,7 @@ class Ndtw(RobotMetric[NdtwSpec], declared=NDTW):
         return [self.factory.ok("corrected", _likeness(run, refs, self.spec))]
 
 
-class Sdtw(RobotMetric[SdtwSpec], declared=SDTW):
+class Sdtw(RobotMetric[SdtwSpec]):
     """Scores ``sdtw``: 0 without arrival, else ``ndtw``.
 
     Needs ``robot_alone``. Ilharco et al. 2019.

@@ -18,11 +18,6 @@ from crowdbot.plugin import (
 from crowdbot.plugin.for_metrics import approach, as_disc
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.risk import (
-    EXPECTED_SEVERITY,
-    INTEGRATED_TIME_TO_COLLISION,
-    MIN_TIME_TO_COLLISION,
-    RISK,
-    TIME_EXPOSED,
     ExpectedSeveritySpec,
     IntegratedTimeToCollisionSpec,
     MinTimeToCollisionSpec,
@@ -34,7 +29,7 @@ from crowdbot.plugins.metrics.risk import (
 TIE = 1e-9
 
 
-class Risk(RobotMetric[RiskSpec], declared=RISK):
+class Risk(RobotMetric[RiskSpec]):
     """Scores ``risk``: the imminence of collisions, integrated over time.
 
     ``literal``, ``corrected`` and ``exposed_time`` grow with the length of the run; ``rate`` and
@@ -63,7 +58,7 @@ class Risk(RobotMetric[RiskSpec], declared=RISK):
         ]
 
 
-class ExpectedSeverity(RobotMetric[ExpectedSeveritySpec], declared=EXPECTED_SEVERITY):
+class ExpectedSeverity(RobotMetric[ExpectedSeveritySpec]):
     """Scores ``expected_severity`` by the speed of the person touched first, or the fastest."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -93,7 +88,7 @@ class ExpectedSeverity(RobotMetric[ExpectedSeveritySpec], declared=EXPECTED_SEVE
         return first, np.where(is_first, speed, 0.0).max(axis=1, initial=0.0) ** 2
 
 
-class TimeExposed(RobotMetric[TimeExposedSpec], declared=TIME_EXPOSED):
+class TimeExposed(RobotMetric[TimeExposedSpec]):
     """Scores ``time_exposed``: the time, and its share, with a collision within the horizon.
 
     The same as the variant ``exposed_time`` of ``risk``.
@@ -103,9 +98,7 @@ class TimeExposed(RobotMetric[TimeExposedSpec], declared=TIME_EXPOSED):
         return _over_time(self.factory, run, self.spec, exposed=True)
 
 
-class IntegratedTimeToCollision(
-    RobotMetric[IntegratedTimeToCollisionSpec], declared=INTEGRATED_TIME_TO_COLLISION
-):
+class IntegratedTimeToCollision(RobotMetric[IntegratedTimeToCollisionSpec]):
     """Scores ``integrated_time_to_collision``: horizon minus time to contact, where positive.
 
     Its integral, which is ``risk`` times the horizon, and its mean.
@@ -115,7 +108,7 @@ class IntegratedTimeToCollision(
         return _over_time(self.factory, run, self.spec, exposed=False)
 
 
-class MinTimeToCollision(RobotMetric[MinTimeToCollisionSpec], declared=MIN_TIME_TO_COLLISION):
+class MinTimeToCollision(RobotMetric[MinTimeToCollisionSpec]):
     """Scores ``min_time_to_collision``: 0 after contact, undefined if none was predicted."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

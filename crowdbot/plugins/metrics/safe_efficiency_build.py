@@ -6,30 +6,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crowdbot.plugin import (
-    References,
-    Score,
-    Trajectories,
-    travel_time,
-    truncate_at_arrival,
-)
-from crowdbot.plugin.for_metrics import (
-    at_fault,
-    driven_aside,
-    person_contacts,
-    robot_of,
-)
+from crowdbot.plugin import References, Score, Trajectories, travel_time, truncate_at_arrival
+from crowdbot.plugin.for_metrics import at_fault, driven_aside, person_contacts, robot_of
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.fault_build import fault_rule
-from crowdbot.plugins.metrics.safe_efficiency import SAFE_EFFICIENCY, SafeEfficiencySpec
+from crowdbot.plugins.metrics.safe_efficiency import SafeEfficiencySpec
 from crowdbot.plugins.metrics.walls_build import wall_contacts
 
 #: People regain their velocity within this time after they have bounced off others, s.
 _REBOUND = 1.0
 
 
-class SafeEfficiency(DeclaredMetric[SafeEfficiencySpec], declared=SAFE_EFFICIENCY):
+class SafeEfficiency(DeclaredMetric[SafeEfficiencySpec]):
     """Scores ``safe_efficiency``: shortest time over time taken; 0 without arrival.
 
     0 after a contact at fault; each person driven aside and each contact with a wall takes off a

@@ -9,14 +9,7 @@ import numpy as np
 from crowdbot.plugin import Array, Commands, References, Score, Trajectories
 from crowdbot.plugin.for_metrics import wrap
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.shared_control import (
-    AGREEMENT,
-    FLUENCY,
-    USER_INPUT_ENTROPY,
-    AgreementSpec,
-    FluencySpec,
-    UserInputEntropySpec,
-)
+from crowdbot.plugins.metrics.shared_control import AgreementSpec, FluencySpec, UserInputEntropySpec
 
 #: Edges of the bins of prediction errors, in units of alpha (Nakayama et al. 1999).
 EDGES = (0.5, 1.0, 2.5, 5.0)
@@ -28,7 +21,7 @@ TOLERANCE = 1e-9
 REGULAR = 1e-6
 
 
-class AgreementMetric(DeclaredMetric[AgreementSpec], declared=AGREEMENT):
+class AgreementMetric(DeclaredMetric[AgreementSpec]):
     """Scores ``agreement`` in direction of the user's and the final commands.
 
     ``corrected``: by the angles of scaled commands; ``literal``: by arctan(v/w). Needs commands.
@@ -60,7 +53,7 @@ class AgreementMetric(DeclaredMetric[AgreementSpec], declared=AGREEMENT):
         return np.where(turns, np.arctan(v / np.where(turns, w, 1.0)), np.sign(v) * (np.pi / 2.0))
 
 
-class UserInputEntropy(DeclaredMetric[UserInputEntropySpec], declared=USER_INPUT_ENTROPY):
+class UserInputEntropy(DeclaredMetric[UserInputEntropySpec]):
     """Scores ``user_input_entropy``: steering entropy of the user's direction.
 
     Needs commands, and a baseline for the scale of the errors: on the scale of the drive itself
@@ -116,7 +109,7 @@ class UserInputEntropy(DeclaredMetric[UserInputEntropySpec], declared=USER_INPUT
         return np.asarray(theta[held], dtype=np.float64)
 
 
-class Fluency(DeclaredMetric[FluencySpec], declared=FLUENCY):
+class Fluency(DeclaredMetric[FluencySpec]):
     """Scores ``fluency``: ``literal``, raw differences; ``corrected``, scaled, the worse channel.
 
     Needs commands; compare only at the same command rate, except ``variation_rate``.

@@ -34,11 +34,6 @@ from crowdbot.plugin.for_metrics import (
 from crowdbot.plugins.metrics.common_reference_build import missed_goal
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.similarity import (
-    HEADING_SIMILARITY,
-    NEIGHBOUR_VELOCITY_SIMILARITY,
-    PATH_LENGTH_SIMILARITY,
-    TIME_TO_GOAL_SIMILARITY,
-    VELOCITY_SIMILARITY,
     HeadingSimilaritySpec,
     NeighbourVelocitySimilaritySpec,
     PathLengthSimilaritySpec,
@@ -50,7 +45,7 @@ from crowdbot.plugins.metrics.similarity import (
 SPEED_TOLERANCE = 1e-9
 
 
-class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec], declared=TIME_TO_GOAL_SIMILARITY):
+class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec]):
     """Scores ``time_to_goal_similarity``: the robot's time to goal over that of people.
 
     ``corrected``: each per straight distance. Needs trips, and no reference run.
@@ -70,7 +65,7 @@ class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec], declared=TIME_
         ]
 
 
-class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec], declared=PATH_LENGTH_SIMILARITY):
+class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec]):
     """Scores ``path_length_similarity``: the robot's path length over that of people.
 
     ``corrected``: each per straight distance. Needs trips, and no reference run.
@@ -88,7 +83,7 @@ class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec], declared=PATH_
         ]
 
 
-class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec], declared=HEADING_SIMILARITY):
+class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec]):
     """Scores ``heading_similarity``: the ratio of mean absolute turning rates.
 
     ``literal``: the mean ratio of signed rates.
@@ -123,7 +118,7 @@ class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec], declared=HEADING_SIM
         return np.where(valid, turn, np.nan) / np.diff(run.t)[:, None]
 
 
-class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec], declared=VELOCITY_SIMILARITY):
+class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec]):
     """Scores ``velocity_similarity``: the robot's speed over the mean speed of all people."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -131,9 +126,7 @@ class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec], declared=VELOCITY_
         return _speed_scores(self.factory, run, speeds, self.spec, "no_agents")
 
 
-class NeighbourVelocitySimilarity(
-    RobotMetric[NeighbourVelocitySimilaritySpec], declared=NEIGHBOUR_VELOCITY_SIMILARITY
-):
+class NeighbourVelocitySimilarity(RobotMetric[NeighbourVelocitySimilaritySpec]):
     """Scores ``neighbour_velocity_similarity``: speed over the mean speed of people near it."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

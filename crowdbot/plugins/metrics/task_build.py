@@ -25,16 +25,6 @@ from crowdbot.plugins.metrics.common_reference_build import (
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.path_efficiency_build import obstacle
 from crowdbot.plugins.metrics.task import (
-    AGGREGATED_TIME,
-    FAILURE_TO_PROGRESS,
-    FINAL_DISTANCE_TO_GOAL,
-    MIN_DISTANCE_TO_GOAL,
-    PATH_EFFICIENCY,
-    SPL,
-    STL,
-    SUCCESS,
-    SUCCESS_NO_COLLISION,
-    TIMEOUT,
     AggregatedTimeSpec,
     FailureToProgressSpec,
     FinalDistanceToGoalSpec,
@@ -51,7 +41,7 @@ from crowdbot.plugins.metrics.task import (
 TOLERANCE = 1e-9
 
 
-class Success(DeclaredMetric[SuccessSpec], declared=SUCCESS):
+class Success(DeclaredMetric[SuccessSpec]):
     """Scores ``success``: 1 if there is an arrival time, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -61,7 +51,7 @@ class Success(DeclaredMetric[SuccessSpec], declared=SUCCESS):
         return [self.factory.ok("corrected", run.robot.goal_time is not None)]
 
 
-class SuccessNoCollision(DeclaredMetric[SuccessNoCollisionSpec], declared=SUCCESS_NO_COLLISION):
+class SuccessNoCollision(DeclaredMetric[SuccessNoCollisionSpec]):
     """Scores ``success_no_collision``: 1 for arrival without any contact in the motion, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -72,7 +62,7 @@ class SuccessNoCollision(DeclaredMetric[SuccessNoCollisionSpec], declared=SUCCES
         return [self.factory.ok("corrected", run.robot.goal_time is not None and free)]
 
 
-class Timeout(DeclaredMetric[TimeoutSpec], declared=TIMEOUT):
+class Timeout(DeclaredMetric[TimeoutSpec]):
     """Scores ``timeout``: 1 if the robot did not arrive, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -82,7 +72,7 @@ class Timeout(DeclaredMetric[TimeoutSpec], declared=TIMEOUT):
         return [self.factory.ok("corrected", run.robot.goal_time is None)]
 
 
-class Spl(DeclaredMetric[SplSpec], declared=SPL):
+class Spl(DeclaredMetric[SplSpec]):
     """Scores ``spl``: shortest path over the longer of it and the driven path.
 
     0 without arrival. Needs a goal. Anderson et al. 2018.
@@ -97,7 +87,7 @@ class Spl(DeclaredMetric[SplSpec], declared=SPL):
         ]
 
 
-class PathEfficiency(DeclaredMetric[PathEfficiencySpec], declared=PATH_EFFICIENCY):
+class PathEfficiency(DeclaredMetric[PathEfficiencySpec]):
     """Scores ``path_efficiency``: shortest over driven path; an upper bound without arrival.
 
     Needs a goal, and an arrival.
@@ -113,7 +103,7 @@ class PathEfficiency(DeclaredMetric[PathEfficiencySpec], declared=PATH_EFFICIENC
         ]
 
 
-class Stl(DeclaredMetric[StlSpec], declared=STL):
+class Stl(DeclaredMetric[StlSpec]):
     """Scores ``stl``: time alone over the longer of it and the time taken; 0 without arrival.
 
     Needs ``robot_alone``.
@@ -129,7 +119,7 @@ class Stl(DeclaredMetric[StlSpec], declared=STL):
         return [self.factory.ratio("corrected", alone, max(alone, taken), self.spec.zero_tol)]
 
 
-class FinalDistanceToGoal(DeclaredMetric[FinalDistanceToGoalSpec], declared=FINAL_DISTANCE_TO_GOAL):
+class FinalDistanceToGoal(DeclaredMetric[FinalDistanceToGoalSpec]):
     """Scores ``final_distance_to_goal``: the distance at the last known position.
 
     Needs a goal point or zone.
@@ -139,7 +129,7 @@ class FinalDistanceToGoal(DeclaredMetric[FinalDistanceToGoalSpec], declared=FINA
         return [self.factory.ok("corrected", goal_distance(run)[1][-1])]
 
 
-class MinDistanceToGoal(DeclaredMetric[MinDistanceToGoalSpec], declared=MIN_DISTANCE_TO_GOAL):
+class MinDistanceToGoal(DeclaredMetric[MinDistanceToGoalSpec]):
     """Scores ``min_distance_to_goal``: the smallest distance at any sample up to the arrival.
 
     Needs a goal point or zone.
@@ -149,7 +139,7 @@ class MinDistanceToGoal(DeclaredMetric[MinDistanceToGoalSpec], declared=MIN_DIST
         return [self.factory.ok("corrected", goal_distance(run)[1].min())]
 
 
-class FailureToProgress(DeclaredMetric[FailureToProgressSpec], declared=FAILURE_TO_PROGRESS):
+class FailureToProgress(DeclaredMetric[FailureToProgressSpec]):
     """Scores ``failure_to_progress``: number of windows in which the goal came no nearer.
 
     Complete, consecutive windows from the start. Needs a goal point or zone.
@@ -164,7 +154,7 @@ class FailureToProgress(DeclaredMetric[FailureToProgressSpec], declared=FAILURE_
         return [self.factory.ok("corrected", stuck.sum(), {"windows": float(windows)})]
 
 
-class AggregatedTime(DeclaredMetric[AggregatedTimeSpec], declared=AGGREGATED_TIME):
+class AggregatedTime(DeclaredMetric[AggregatedTimeSpec]):
     """Scores ``aggregated_time``: sum of times; a lower bound if anyone had not arrived."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

@@ -25,16 +25,13 @@ from crowdbot.plugin.for_metrics import (
 )
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.walls import (
-    AVG_WALL_CLEARANCE,
-    MIN_WALL_CLEARANCE,
-    WALL_CONTACT_COUNT,
     AvgWallClearanceSpec,
     MinWallClearanceSpec,
     WallContactCountSpec,
 )
 
 
-class WallContactCount(RobotMetric[WallContactCountSpec], declared=WALL_CONTACT_COUNT):
+class WallContactCount(RobotMetric[WallContactCountSpec]):
     """Scores ``wall_contact_count``: contacts with all walls as one body.
 
     ``recorded`` needs a table of contacts; ``geometric`` needs walls, by the rules of
@@ -97,14 +94,14 @@ def wall_contacts(
     return 0 if value is None else int(value)
 
 
-class MinWallClearance(RobotMetric[MinWallClearanceSpec], declared=MIN_WALL_CLEARANCE):
+class MinWallClearance(RobotMetric[MinWallClearanceSpec]):
     """Scores ``min_wall_clearance``: the smallest gap at any sample. Needs walls."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return [self.factory.ok("corrected", np.nanmin(wall_gap(run)))]
 
 
-class AvgWallClearance(RobotMetric[AvgWallClearanceSpec], declared=AVG_WALL_CLEARANCE):
+class AvgWallClearance(RobotMetric[AvgWallClearanceSpec]):
     """Scores ``avg_wall_clearance``: the mean gap over time. Needs walls."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
