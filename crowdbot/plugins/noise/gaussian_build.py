@@ -25,6 +25,4 @@ class Gaussian:
         return errors
 
 
-def build(spec: GaussianSpec) -> Gaussian:
-    """Build a generator from its spec."""
-    return Gaussian(spec)
+build = Gaussian

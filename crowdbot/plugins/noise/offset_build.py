@@ -22,6 +22,4 @@ class Offset:
         return np.full(len(distance), self._value)
 
 
-def build(spec: OffsetSpec) -> Offset:
-    """Build a generator from its spec."""
-    return Offset(spec)
+build = Offset

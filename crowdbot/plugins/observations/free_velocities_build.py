@@ -10,12 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.plugin import Array, SensorInfo, kernel
 from crowdbot.plugin.for_learning import LearningContext, RobotInputs
 from crowdbot.plugins.observations.free_velocities import FreeVelocitiesSpec
-from crowdbot.plugins.observations.goal_build import (
-    SIZE,
-    bounds,
-    goal_and_motion,
-    lidar_named,
-)
+from crowdbot.plugins.observations.goal_build import SIZE, bounds, goal_and_motion, lidar_named
 from crowdbot.plugins.observations.tracked_people_build import TrackedPeople
 
 #: Numbers of a person: 1, x, y, vx, vy.
@@ -238,6 +233,4 @@ def _list(
         found[first + 4] = max(-1.0, min(1.0, body[_VY] / fastest))
 
 
-def build(spec: FreeVelocitiesSpec, context: LearningContext) -> FreeVelocities:
-    """Return an observer."""
-    return FreeVelocities(spec, context)
+build = FreeVelocities

@@ -81,6 +81,4 @@ def _write_scans(
                 found[w, k // stride * sectors + n] = kept[w, k, n]
 
 
-def build(spec: LidarStackSpec, context: LearningContext) -> LidarStack:
-    """Return an observer that has seen nothing yet."""
-    return LidarStack(spec, context)
+build = LidarStack

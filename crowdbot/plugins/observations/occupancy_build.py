@@ -40,6 +40,4 @@ class OccupancyGrid:
         return np.column_stack([grid.reshape(worlds, -1), rest]).astype(np.float32)
 
 
-def build(spec: OccupancySpec, context: LearningContext) -> OccupancyGrid:
-    """Return an observer."""
-    return OccupancyGrid(spec, context)
+build = OccupancyGrid

@@ -85,6 +85,4 @@ def _nearest(people: Array, x: float, y: float, most: float, away: Array, which:
     return count
 
 
-def build(spec: TracksSpec, context: LearningContext) -> TrackRows:
-    """Return an observer."""
-    return TrackRows(spec, context)
+build = TrackRows

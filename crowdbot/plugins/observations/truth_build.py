@@ -42,6 +42,4 @@ class EverythingSeen:
         return np.column_stack([*robot, found.reshape(worlds, -1)]).astype(np.float32)
 
 
-def build(spec: TruthSpec, context: LearningContext) -> EverythingSeen:
-    """Return an observer."""
-    return EverythingSeen(spec, context)
+build = EverythingSeen

@@ -50,6 +50,4 @@ def braking_speed(room: float, deceleration: float) -> float:
     return math.sqrt(2.0 * deceleration * max(room, 0.0))
 
 
-def build(spec: GoalSeekSpec) -> GoalSeek:
-    """Build a planner from its spec."""
-    return GoalSeek(spec)
+build = GoalSeek

@@ -58,6 +58,4 @@ class WallHug:
         return Command(v, w)
 
 
-def build(spec: WallHugSpec) -> WallHug:
-    """Build a planner from its spec."""
-    return WallHug(spec)
+build = WallHug

@@ -19,6 +19,4 @@ class Burden:
         return self._progress.of(change) - self._work * change.work
 
 
-def build(spec: BurdenSpec, context: LearningContext) -> Burden:
-    """Return the reward."""
-    return Burden(spec, context)
+build = Burden

@@ -19,6 +19,4 @@ class Comfort:
         return self._progress.of(change) - self._advance * change.advance
 
 
-def build(spec: ComfortSpec, context: LearningContext) -> Comfort:
-    """Return the reward."""
-    return Comfort(spec, context)
+build = Comfort

@@ -28,6 +28,4 @@ class ProgressReward:
         return np.asarray(found + spec.arrival * change.arrived)
 
 
-def build(spec: ProgressSpec, context: LearningContext) -> ProgressReward:
-    """Return the reward."""
-    return ProgressReward(spec, context)
+build = ProgressReward

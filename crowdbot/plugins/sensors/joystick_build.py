@@ -13,14 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.plugin import (
-    Array,
-    Pose,
-    Scene,
-    SensorContext,
-    SensorInfo,
-    SensorMessage,
-)
+from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SensorMessage
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 
 #: Layout of the memory: 1 after a reading, its time, and the hand's error ahead and aside, in
@@ -108,6 +101,4 @@ def _full(deflection: float) -> float:
     return min(1.0, max(-1.0, deflection))
 
 
-def build(spec: JoystickSpec, context: SensorContext) -> Joystick:
-    """Return a joystick; goal and limits default to those of the robot."""
-    return Joystick(spec, context)
+build = Joystick

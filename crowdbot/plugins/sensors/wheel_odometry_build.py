@@ -146,6 +146,4 @@ def _wrapped(angle: float) -> float:
     return angle
 
 
-def build(spec: WheelOdometrySpec | HolonomicOdometrySpec, context: SensorContext) -> WheelOdometry:
-    """Return wheel odometry; wheels default to those of the robot."""
-    return WheelOdometry(spec, context)
+build = WheelOdometry

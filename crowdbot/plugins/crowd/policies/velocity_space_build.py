@@ -99,11 +99,7 @@ class VelocitySpace:
         return found
 
 
-def build(
-    spec: VelocitySpaceSpec, costs: Sequence[CompiledCost | NumpyCost], agents: Agents
-) -> VelocitySpace:
-    """Build the policy for a set of agents."""
-    return VelocitySpace(spec, costs, agents)
+build = VelocitySpace
 
 
 __all__ = ["VelocitySpace", "build", "sampling_of"]

@@ -75,6 +75,4 @@ class CrowdModelPlanner(VelocityPlanner):
         return best_velocity(self._lines, count, hard, top, wanted, self._scratch)
 
 
-def build(spec: CrowdModelSpec) -> CrowdModelPlanner:
-    """Build a planner from its spec."""
-    return CrowdModelPlanner(spec)
+build = CrowdModelPlanner

@@ -55,6 +55,4 @@ class CrowdPrediction(PeopleMpc):
         return found
 
 
-def build(spec: CrowdPredictionSpec) -> CrowdPrediction:
-    """Build a planner from its spec."""
-    return CrowdPrediction(spec)
+build = CrowdPrediction

@@ -250,6 +250,4 @@ def direction_error(direction: float) -> float:
     return math.remainder(direction, 2.0 * math.pi)
 
 
-def build(spec: DwaSpec) -> Dwa:
-    """Return a planner from its spec."""
-    return Dwa(spec)
+build = Dwa

@@ -89,6 +89,4 @@ def widest_gap(right: Array, left: Array, view: float) -> tuple[float, float] | 
     return None if wide[best] < _NARROW else (float(ends[best]), float(min(starts[best], view)))
 
 
-def build(spec: FollowTheGapSpec) -> FollowTheGap:
-    """Build a planner from its spec."""
-    return FollowTheGap(spec)
+build = FollowTheGap

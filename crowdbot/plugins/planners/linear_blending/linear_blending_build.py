@@ -14,10 +14,7 @@ from crowdbot.plugin import Command, Observation, Planner, RobotLimits, SensorIn
 from crowdbot.plugins.planners.linear_blending.linear_blending import LinearBlendingSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.stopping_build import arc_gap_moving, compile_stopping
-from crowdbot.plugins.planners.shared.surroundings_build import (
-    PlannerSurroundings,
-    bodies_in_base,
-)
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerSurroundings, bodies_in_base
 from crowdbot.plugins.planners.shared.user_input_build import UserInput
 
 
@@ -60,6 +57,4 @@ class LinearBlending:
         return spec.least + (spec.most - spec.least) * min(1.0, max(0.0, near))
 
 
-def build(spec: LinearBlendingSpec, half: Planner) -> LinearBlending:
-    """Build a planner from its spec, and the planner to blend with."""
-    return LinearBlending(spec, half)
+build = LinearBlending

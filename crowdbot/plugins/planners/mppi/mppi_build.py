@@ -16,11 +16,7 @@ from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
 from crowdbot.plugins.planners.mppi import rollouts_build as rollouts
 from crowdbot.plugins.planners.mppi import samples_build as samples
 from crowdbot.plugins.planners.mppi.mppi import MppiSpec
-from crowdbot.plugins.planners.shared.braking_build import (
-    AroundRobot,
-    MotionState,
-    can_brake,
-)
+from crowdbot.plugins.planners.shared.braking_build import AroundRobot, MotionState, can_brake
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.driven_path_build import driven
@@ -147,6 +143,4 @@ def _parameters(spec: MppiSpec, limits: RobotLimits) -> Array:
     return p
 
 
-def build(spec: MppiSpec) -> Mppi:
-    """Build a planner from its spec."""
-    return Mppi(spec)
+build = Mppi

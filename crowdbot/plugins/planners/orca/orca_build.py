@@ -135,6 +135,4 @@ def half_planes(
     return walls, count
 
 
-def build(spec: OrcaPlannerSpec) -> Orca:
-    """Build a planner from its spec."""
-    return Orca(spec)
+build = Orca

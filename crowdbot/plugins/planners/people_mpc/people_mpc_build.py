@@ -182,6 +182,4 @@ class PeopleMpc:
         return np.column_stack([found, np.zeros(len(found))])
 
 
-def build(spec: PeopleMpcSpec) -> PeopleMpc:
-    """Build a planner from its spec."""
-    return PeopleMpc(spec)
+build = PeopleMpc

@@ -18,10 +18,7 @@ from crowdbot.plugins.planners.probabilistic import joint_build as joint
 from crowdbot.plugins.planners.probabilistic.probabilistic import ProbabilisticSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.robot_outline_build import half_width_and_front
-from crowdbot.plugins.planners.shared.surroundings_build import (
-    PlannerSurroundings,
-    bodies_in_base,
-)
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerSurroundings, bodies_in_base
 from crowdbot.plugins.planners.shared.user_input_build import UserInput
 
 #: Shares of the commands of user and planner that are candidates.
@@ -95,6 +92,4 @@ class Probabilistic:
         return np.ascontiguousarray(np.concatenate([*slowed, blends, reachable]))
 
 
-def build(spec: ProbabilisticSpec, half: Planner) -> Probabilistic:
-    """Build a planner from its spec, and the planner that it calls."""
-    return Probabilistic(spec, half)
+build = Probabilistic

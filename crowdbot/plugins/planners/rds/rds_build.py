@@ -245,6 +245,4 @@ def allowed(lines: Array, count: int, velocity: tuple[float, float]) -> bool:
     return worst <= _BEYOND
 
 
-def build(spec: RdsSpec) -> Rds:
-    """Build a planner from its spec."""
-    return Rds(spec)
+build = Rds

@@ -149,6 +149,4 @@ def arc_gap(discs: Array, robot: Array, v: float, w: float, time: float) -> floa
         t += _STEP
 
 
-def build(spec: RppSpec) -> Rpp:
-    """Build a planner from its spec."""
-    return Rpp(spec)
+build = Rpp

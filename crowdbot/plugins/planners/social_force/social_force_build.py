@@ -101,6 +101,4 @@ def push(
     return ax, ay
 
 
-def build(spec: SocialForceSpec) -> SocialForce:
-    """Build a planner from its spec."""
-    return SocialForce(spec)
+build = SocialForce

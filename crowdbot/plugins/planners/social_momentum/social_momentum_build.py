@@ -163,6 +163,4 @@ def touches(dx: float, dy: float, u: float, v: float, radius: float, horizon: fl
     return gx * gx + gy * gy < radius * radius
 
 
-def build(spec: SocialMomentumSpec) -> SocialMomentum:
-    """Build a planner from its spec."""
-    return SocialMomentum(spec)
+build = SocialMomentum

@@ -243,6 +243,4 @@ def _first_contact(points: Array, going: Array, before: Mask, radius: float) -> 
     return first
 
 
-def build(spec: StopAndGoSpec) -> StopAndGo:
-    """Build a planner from its spec."""
-    return StopAndGo(spec)
+build = StopAndGo

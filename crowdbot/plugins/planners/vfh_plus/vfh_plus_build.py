@@ -184,6 +184,4 @@ def masked(
             free[k] = False
 
 
-def build(spec: VfhPlusSpec) -> VfhPlus:
-    """Build a planner from its spec."""
-    return VfhPlus(spec)
+build = VfhPlus
