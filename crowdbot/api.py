@@ -38,6 +38,8 @@ def _draw(scenario: Scenario) -> str:
 #: Drawing is above the language in the layers; notebooks find it here.
 Scenario.draw_html = _draw
 
+#: A suite of the scenario language, its scenarios expanded.
+Suite = Expansion
 #: Changes to a scenario: ``key=value``, several of them, or a mapping.
 Overrides = str | Sequence[str] | Mapping[str, object]
 
@@ -53,10 +55,10 @@ def load(path_or_name: str | Path, scenario: str, *, set: Overrides = ...) -> Sc
 @overload
 def load(
     path_or_name: str | Path, scenario: None = ..., *, set: Overrides = ...
-) -> Expansion | Scenario: ...
+) -> Suite | Scenario: ...
 def load(
     path_or_name: str | Path, scenario: str | None = None, *, set: Overrides = ()
-) -> Expansion | Scenario:
+) -> Suite | Scenario:
     """Read a suite, or one scenario of it.
 
     Args:
@@ -80,7 +82,7 @@ def load(
     return expansion.scenarios[0] if expansion.single else expansion
 
 
-def expand(suite: Expansion | Scenario | str | Path, *, set: Overrides = ()) -> list[Scenario]:
+def expand(suite: Suite | Scenario | str | Path, *, set: Overrides = ()) -> list[Scenario]:
     """Return all scenarios of a suite, in order.
 
     Args:

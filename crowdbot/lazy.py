@@ -1,30 +1,40 @@
-"""Modules whose names are imported on first use."""
+"""Packages whose names are imported on first use, from the modules that their stubs name."""
 
 from __future__ import annotations
 
 import importlib
+import re
 from collections.abc import Callable, Mapping
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
+
+_IMPORT = re.compile(r"^from (\S+) import (?:\(\s*)?(\w+) as (\w+)", re.MULTILINE)
 
 
-def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """Return the ``__getattr__`` of a module.
+class Home(NamedTuple):
+    """Where a name comes from: a module, and the name there, which may be a submodule."""
+
+    module: str
+    name: str
+
+
+def stub_names(file: str) -> Mapping[str, Home]:
+    """Return the names that the stub beside a module imports as ``from m import a as b``.
 
     Args:
-        package: its name, for messages.
-        homes: module -> names that come from it, with spaces between them; ``Original=Name`` if the
-            module uses another name. A name may also be a submodule.
+        file: the module's ``__file__``.
     """
-    found = {
-        name or original: (module, original)
-        for module, names in homes.items()
-        for original, _, name in (text.partition("=") for text in names.split())
-    }
+    text = Path(file).with_suffix(".pyi").read_text(encoding="utf-8")
+    return {name: Home(module, original) for module, original, name in _IMPORT.findall(text)}
+
+
+def lazy_names(package: str, names: Mapping[str, Home]) -> Callable[[str], Any]:
+    """Return the ``__getattr__`` of a module with these names."""
 
     def get(name: str) -> Any:
-        if name not in found:
+        if name not in names:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
-        module, original = found[name]
+        module, original = names[name]
         home = importlib.import_module(module)
         if hasattr(home, original):
             return getattr(home, original)

@@ -1,7 +1,8 @@
 """Count the rooms of crowdbot, the arrows between them, imports that go up, and import circles.
 
 Imports under TYPE_CHECKING and inside functions count like all others, and so do those that are
-written as text (`import_module`, `lazy_names`), except in the lazy faces for users and authors.
+written as text (`import_module`, stubs of lazy names), except in the lazy faces for users and
+authors.
 The floors are those of the layers contracts in pyproject.toml. Ends with 1 when something is out
 of place.
 

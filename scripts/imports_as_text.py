@@ -1,4 +1,4 @@
-"""Imports that are written as text, which no import graph shows: `import_module`, `lazy_names`."""
+"""Imports that are written as text, which no import graph shows: `import_module`, lazy names."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from crowdbot.lazy import stub_names
+
 PACKAGE = "crowdbot"
 _IMPORTERS = ("import_module", "__import__", "resolve_name")
-_LAZY = "lazy_names"
 #: Modules whose names come from everywhere, for users and for authors of plugins.
 LAZY_FACES = (PACKAGE, f"{PACKAGE}.plugin")
 
@@ -54,31 +55,31 @@ class _Imports(NamedTuple):
 @cache
 def _read(root: Path, module: str) -> _Imports:
     """Parse a module, once for all that is asked about it, unless it cannot have any of that."""
-    text = _file(root, module).read_text("utf-8")
+    file = _file(root, module)
+    text, stub = file.read_text("utf-8"), tuple(_stub(file, module))
     if not _is_package(root, module) and not any(word in text for word in _words(module)):
-        return _Imports((), frozenset())
+        return _Imports(stub, frozenset())
     tree = ast.parse(text)
-    return _Imports(tuple(_texts(tree, module)), _imported_names(tree))
+    return _Imports((*_texts(tree), *stub), _imported_names(tree))
 
 
 def _words(module: str) -> Iterator[str]:
     """Yield texts of which a module has one if it imports by text or from a package around it."""
-    yield from (*_IMPORTERS, _LAZY)
+    yield from _IMPORTERS
     package = module.rpartition(".")[0]
     while package:
         yield f"from {package} import"
         package = package.rpartition(".")[0]
 
 
-def _texts(tree: ast.Module, module: str) -> Iterator[str]:
+def _stub(file: Path, module: str) -> Iterator[str]:
+    """Modules that a stub names beside a module; its names are imported on first use."""
+    if module not in LAZY_FACES and file.with_suffix(".pyi").is_file():
+        yield from (home.module for home in stub_names(str(file)).values())
+
+
+def _texts(tree: ast.Module) -> Iterator[str]:
     """Names of modules in calls that import what a text names."""
-    tables = {
-        target.id: node.value
-        for node in tree.body
-        if isinstance(node, ast.Assign)
-        for target in node.targets
-        if isinstance(target, ast.Name)
-    }
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not node.args:
             continue
@@ -86,12 +87,6 @@ def _texts(tree: ast.Module, module: str) -> Iterator[str]:
         called = node.func.id if isinstance(node.func, ast.Name) else called
         if called in _IMPORTERS:
             yield _literal(node.args[0])
-        elif called == _LAZY and module not in LAZY_FACES:
-            homes = node.args[1]
-            table = tables.get(homes.id, homes) if isinstance(homes, ast.Name) else homes
-            if not isinstance(table, ast.Dict):
-                raise SystemExit(f"{module}: write the homes of lazy names as a dictionary")
-            yield from (_literal(key) for key in table.keys if key is not None)
 
 
 def _literal(node: ast.expr) -> str:

@@ -10,8 +10,8 @@ from typing import Annotated, Any, get_args, get_origin
 
 from crowdbot import plugin
 from crowdbot.dsl.spec.quantities import UNITS, Quantity
+from crowdbot.lazy import stub_names
 from crowdbot.plugin import for_crowds, for_environments, for_learning, for_metrics, for_sensors
-from crowdbot.plugin.homes import HOMES
 
 #: Tools that few components need.
 ROOMS = (for_metrics, for_sensors, for_crowds, for_environments, for_learning)
@@ -172,7 +172,7 @@ def _title(name: str) -> str:
 
 
 def _home(name: str) -> str:
-    return next(m for m, names in HOMES.items() if name in names.split())
+    return stub_names(plugin.__file__)[name].module
 
 
 def _line(name: str, module: ModuleType = plugin) -> str:

@@ -48,9 +48,7 @@ def test_no_folder_has_more_files_than_one_can_look_through(
 TEXTS = {
     "crowdbot.core.low": 'from importlib import import_module\nimport_module("crowdbot.core.high")',
     "crowdbot.core.high": 'importlib.import_module(f"crowdbot.core.rooms.{name}")',
-    "crowdbot.core.lazy": (
-        '_HOMES = {"crowdbot.core.high": "a b"}\n_above = lazy_names(__name__, _HOMES)'
-    ),
+    "crowdbot.core.lazy": "__getattr__ = lazy_names(__name__, stub_names(__file__))",
     "crowdbot.core.named": 'import_module(name)\nimport_module("numpy.linalg")',
     "crowdbot.core.rooms": "from crowdbot.core.rooms.own import b",
     "crowdbot.core.rooms.own": "from crowdbot.core.rooms import b\nb = 1",
@@ -67,6 +65,10 @@ def made_up(tmp_path: Path) -> Path:
         file = place / "__init__.py" if inside else place.with_suffix(".py")
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text)
+    stub = tmp_path / "crowdbot" / "core" / "lazy.pyi"
+    stub.write_text(
+        "from crowdbot.core.high import a as a\nfrom crowdbot.core.high import b as c\n"
+    )
     return tmp_path
 
 

@@ -11,18 +11,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from crowdbot.lazy import lazy_names
+from crowdbot.lazy import lazy_names, stub_names
 from crowdbot.rl.libraries import gym
-
-if TYPE_CHECKING:
-    from crowdbot.rl.env import NavEnv
-    from crowdbot.rl.parallel_env import ParallelNavEnv
-    from crowdbot.rl.policy_export import conventions, save_layers, save_onnx
-    from crowdbot.rl.recorder import EpisodeRecorder
-    from crowdbot.rl.sb3 import StableVecEnv
-    from crowdbot.rl.vector_env import NavVectorEnv
 
 #: Name of the environment in Gymnasium.
 NAV = "crowdbot/Nav-v0"
@@ -35,26 +25,6 @@ if gym is not None and NAV not in gym.registry:
         order_enforce=True,
     )
 
-__all__ = [
-    "NAV",
-    "EpisodeRecorder",
-    "NavEnv",
-    "NavVectorEnv",
-    "ParallelNavEnv",
-    "StableVecEnv",
-    "conventions",
-    "save_layers",
-    "save_onnx",
-]
-
-__getattr__ = lazy_names(
-    __name__,
-    {
-        "crowdbot.rl.env": "NavEnv",
-        "crowdbot.rl.vector_env": "NavVectorEnv",
-        "crowdbot.rl.parallel_env": "ParallelNavEnv",
-        "crowdbot.rl.recorder": "EpisodeRecorder",
-        "crowdbot.rl.sb3": "StableVecEnv",
-        "crowdbot.rl.policy_export": "conventions save_layers save_onnx",
-    },
-)
+_NAMES = stub_names(__file__)
+__all__ = ["NAV", *_NAMES]
+__getattr__ = lazy_names(__name__, _NAMES)

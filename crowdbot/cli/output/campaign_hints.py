@@ -49,6 +49,3 @@ class OwnFirst:
             f"your planners are done; {plural(len(left), 'job')} of floors and ceilings left. "
             "Ctrl-C keeps what is done"
         )
-
-
-__all__ = ["OwnFirst", "known_runs"]

@@ -186,6 +186,3 @@ def _steer(
             limit, size = traits[2, i], math.hypot(wanted[i, 0], wanted[i, 1])
             share = min(1.0, limit / max(size, limit))
             people[i].ax, people[i].ay = wanted[i, 0] * share, wanted[i, 1] * share
-
-
-__all__ = ["CompiledWalk", "walks_compiled"]

@@ -51,6 +51,3 @@ def compile_ahead() -> None:
     person = CrowdEngine(Agents.of(x=0.0, y=0.0), CrowdWorld(entrance=box, out=box + 5.0), _Chooses)
     far_away = np.array([[50.0, 50.0, 0.0, 0.0, 0.3, 0.3, 0.0, 0.0]])
     person.advance(person.initial_state(), far_away)
-
-
-__all__ = ["compile_ahead", "crowd_compiled_ahead"]

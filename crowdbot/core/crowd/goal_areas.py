@@ -78,6 +78,3 @@ def area_fraction(
         one, other = (-half - start) / step, (half - start) / step
         enter, leave = max(enter, min(one, other)), min(leave, max(one, other))
     return enter if enter <= leave else 2.0
-
-
-__all__ = ["PLACE", "PlaceRecord", "area_fraction", "into_area", "point_in_area"]

@@ -165,6 +165,3 @@ def _within(x: float, y: float, limit: float) -> float:
     """Factor by which a vector is no longer than a limit."""
     norm = math.hypot(x, y)
     return limit / norm if norm > limit else 1.0
-
-
-__all__ = ["SIGHT", "Cohesion", "groups_of", "hold_together"]

@@ -102,6 +102,3 @@ def _one(
     if given is not None:
         return draw_one(rng(purpose, i), given)
     return usual if isinstance(usual, float) else draw_normal(rng(purpose, i), *usual)
-
-
-__all__ = ["HIP", "Bodies", "draw_bodies"]

@@ -78,6 +78,3 @@ def _heading(start: Start) -> float:
         return start.heading
     goals = [g for g in start.route.goals if g != start.at]
     return heading_to(*start.at, goals[0]) if goals else 0.0
-
-
-__all__ = ["StreamSampler"]

@@ -207,6 +207,3 @@ def _wandering(
 
 def _end(word: str) -> AtGoal:
     return _AT_GOAL[word]
-
-
-__all__ = ["Start", "starts"]

@@ -292,6 +292,3 @@ def registry_of(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Re
 @cache
 def _reference(files: tuple[str, ...]) -> RealismReference:
     return read_reference([Path(f) for f in files]) if files else shipped()
-
-
-__all__ = ["Fit", "FitTask", "Fitted", "Generation", "digest", "fit", "loss", "registry_of"]

@@ -68,6 +68,3 @@ def _count(
                     b = int(math.sqrt(dx * dx + dy * dy) / bin_width)
                     if b < counts.shape[1]:
                         counts[cell, b] += 1.0
-
-
-__all__ = ["pair_correlation"]

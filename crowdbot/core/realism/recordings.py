@@ -124,6 +124,3 @@ _READERS: Mapping[str, Callable[[Path], Trajectories]] = {
     ".txt": _data_set,
     **dict.fromkeys(_BAGS, _bag),
 }
-
-
-__all__ = ["read_runs", "read_tracks"]

@@ -217,13 +217,3 @@ def _mean(scores: Sequence[RealismScore]) -> RealismScore:
 def _of(cell: tuple[str, str], scores: Sequence[RealismScore]) -> float:
     known = [s.cells[cell] for s in scores if cell in s.cells]
     return sum(known) / len(known)
-
-
-__all__ = [
-    "FLOORS",
-    "RealismReference",
-    "floors_of",
-    "read_reference",
-    "reference_of",
-    "shipped",
-]

@@ -123,6 +123,3 @@ def _placed_in(part: Xml.Element) -> Iterator[Xml.Element]:
     yield part
     yield from part.iter("pose")
     yield from part.iter("xyz")
-
-
-__all__ = ["without_nested"]

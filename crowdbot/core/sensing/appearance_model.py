@@ -135,6 +135,3 @@ def place_things(
         out[row, Y] = people[i, 1] + ahead * fy + left * fx
         out[row, RADIUS] = owned[t, _RADIUS]
         out[row, BOTTOM], out[row, TOP] = owned[t, _BOTTOM], owned[t, _TOP]
-
-
-__all__ = ["gaits", "heights", "place_looks", "place_things", "things"]

@@ -89,6 +89,3 @@ def _places(flat: Array, late: float) -> Array:
     here = rows[:, s.WAITING] == s.PRESENT
     places = rows[:, s.X : s.Y + 1] + late * rows[:, s.VX : s.VY + 1]
     return np.where(here[:, np.newaxis], places, AWAY)
-
-
-__all__ = ["AWAY", "Foresight"]

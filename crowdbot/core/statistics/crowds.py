@@ -231,6 +231,3 @@ def _weights(orders: Sequence[CrowdOrder]) -> dict[str, float]:
 
 def _sign(value: float) -> int:
     return (value > 0) - (value < 0)
-
-
-__all__ = ["CrowdOrder", "CrowdRanks", "CrowdVerdict", "crowd_ranks", "kendall"]

@@ -159,6 +159,3 @@ def _heights(score: Estimate) -> dict[str, float]:
         end: round(_HEIGHT - _BELOW - min(1.0, max(0.0, value if v is None else v)) * room, 1)
         for end, v in ends.items()
     }
-
-
-__all__ = ["RUNGS", "Ladder", "Rung", "ladders"]

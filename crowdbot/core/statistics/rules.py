@@ -148,6 +148,3 @@ def _led(pair: Ranked) -> tuple[str, str] | None:
     if pair.standing == "ahead":
         return pair.planner, pair.other
     return (pair.other, pair.planner) if pair.standing == "behind" else None
-
-
-__all__ = ["RULE", "Order", "Orders", "orders"]

@@ -33,6 +33,3 @@ def _flush(file: io.IOBase) -> None:
         file.flush()
     except (OSError, ValueError):  # disk full, reader gone, or closed
         return
-
-
-__all__ = ["end_without_collecting"]

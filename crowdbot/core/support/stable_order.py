@@ -77,6 +77,3 @@ def _merge(values: Array, order: Order, merged: Order, first: int, middle: int, 
         else:
             merged[k] = order[j]
             j += 1
-
-
-__all__ = ["stable_order", "write_stable_order"]

@@ -98,5 +98,3 @@ USUAL_BODIES: dict[AppearanceName, UsualBody] = {
     "stroller": UsualBody((1.70, 0.09), (75.0, 13.0), None, 0.9),
     "suitcase": UsualBody((1.70, 0.09), (75.0, 13.0), None, 0.95),
 }
-
-__all__ = ["USUAL_BODIES", "WIDEST", "AppearanceName", "PeopleKind", "UsualBody"]

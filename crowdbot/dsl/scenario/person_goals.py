@@ -187,14 +187,3 @@ class LeadGoal(PersonGoal):
                 "the person would never walk"
             )
         return self
-
-
-__all__ = [
-    "AccompanyGoal",
-    "ApproachGoal",
-    "FollowGoal",
-    "LeadGoal",
-    "PersonGoal",
-    "TaskGoal",
-    "WhichPerson",
-]

@@ -243,5 +243,3 @@ RobotResponseChoice = Annotated[
     Annotated[HumanResponse | GivingWay, Field(discriminator="kind")],
     BeforeValidator(_usual),
 ]
-
-__all__ = ["GivingWay", "HumanResponse", "RobotResponse", "RobotResponseChoice"]

@@ -55,5 +55,3 @@ RoutingChoice = Annotated[
     Annotated[StraightRouting | MeshRouting, Field(discriminator="kind")],
     BeforeValidator(_usual),
 ]
-
-__all__ = ["MeshRouting", "Routing", "RoutingChoice", "StraightRouting"]

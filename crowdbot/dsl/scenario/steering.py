@@ -115,13 +115,3 @@ class SteeringSpec(Spec):
     wander: WanderSpec | None = Field(
         default=None, exclude_if=unset, description="Never walk quite straight."
     )
-
-
-__all__ = [
-    "LanesSpec",
-    "PersonalSpaceSpec",
-    "SteeringSpec",
-    "TimeGapSpec",
-    "WallPushSpec",
-    "WanderSpec",
-]

@@ -299,13 +299,3 @@ StreamChoice = Annotated[
     ThroughStream | DirectionsStream | QueueStream | TalkingStream | WanderingStream,
     Field(discriminator="kind"),
 ]
-
-__all__ = [
-    "DirectionsStream",
-    "Lanes",
-    "QueueStream",
-    "StreamChoice",
-    "TalkingStream",
-    "ThroughStream",
-    "WanderingStream",
-]

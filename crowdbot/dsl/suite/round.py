@@ -124,6 +124,3 @@ def _at(text: str, alone: time) -> datetime:
     """Return a moment; of a day without a time, its first or last."""
     found = datetime.fromisoformat(text)
     return found if found.tzinfo is not None else datetime.combine(found.date(), alone, UTC)
-
-
-__all__ = ["HandedIn", "Round"]

@@ -218,6 +218,3 @@ def _push_by_walls(
         placed[a].push_y += rate * py
         nearest2 = min(nearest2, (x - nx) * (x - nx) + (y - ny) * (y - ny))
     return math.sqrt(nearest2)
-
-
-__all__ = ["PLACED", "PlacedRecord", "push_apart"]

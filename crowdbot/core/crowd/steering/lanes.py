@@ -66,6 +66,3 @@ def aside_of(
     if comers == 0.0:
         return 0.0
     return math.tanh(away + follow * towards * comers / all_)
-
-
-__all__ = ["aside_of", "keep_all"]

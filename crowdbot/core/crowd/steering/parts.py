@@ -142,9 +142,6 @@ def steer_people(
         wanted[i, 1] *= share
 
 
-__all__ = ["PARTS", "SteeringParts", "part_numbers", "parts_of", "steer_people"]
-
-
 @kernel
 def steer_among_discs(
     parts: Array, near: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,

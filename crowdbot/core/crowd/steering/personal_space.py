@@ -95,6 +95,3 @@ def _felt(push: float, nx: float, ny: float, heading: Array, behind: float) -> f
     """Return the size of a push by the other in direction n, less from behind, m/s^2."""
     ahead = 0.5 * (1.0 + nx * heading[0] + ny * heading[1])
     return float(min(push * (behind + (1.0 - behind) * ahead), HARDEST))
-
-
-__all__ = ["HARDEST", "push_all"]

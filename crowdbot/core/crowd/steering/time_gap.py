@@ -77,6 +77,3 @@ def allowed_speed(
         comes = discs[b].vx * hx + discs[b].vy * hy < -_ONCOMING
         fastest = min(fastest, max(0.0, (along - room) / (oncoming_time if comes else time)))
     return fastest
-
-
-__all__ = ["allowed_speed", "limit_all"]

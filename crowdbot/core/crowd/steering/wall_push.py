@@ -52,6 +52,3 @@ def push_off_walls(
             push = min(HARDEST, strength * math.exp((radius[i] - distance) / reach)) / distance
             wanted[i, 0] += push * dx
             wanted[i, 1] += push * dy
-
-
-__all__ = ["HARDEST", "LEAST", "push_off_walls"]

@@ -57,6 +57,3 @@ def _normal(agent: int, knot: int, key: np.uint64) -> tuple[float, float]:
     v = uniform(key, agent, knot, WANDER, 1)
     size = math.sqrt(-2.0 * math.log(u))
     return size * math.cos(2.0 * math.pi * v), size * math.sin(2.0 * math.pi * v)
-
-
-__all__ = ["E_FOLD", "wander_all", "wandering"]

@@ -103,6 +103,3 @@ def _write_images(
                 image.x, image.y, image.index = x, y, -1.0
                 count += 1
     return count
-
-
-__all__ = ["most_discs", "write_discs"]

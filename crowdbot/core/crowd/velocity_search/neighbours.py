@@ -194,16 +194,3 @@ def gather_walls_in(
         found[count].nx, found[count].ny, found[count].d2 = nx, ny, d2
         count += 1
     return count
-
-
-__all__ = [
-    "DISC",
-    "START_ROWS",
-    "DiscRecord",
-    "Starts",
-    "gather",
-    "gather_walls",
-    "gather_walls_in",
-    "sort_discs",
-    "strip_height",
-]  # fmt: skip

@@ -232,6 +232,3 @@ def _umans(item: Item, number: int, policies: Mapping[int, tuple[Data, Item]]) -
 def law_alone() -> Data:
     """Return the policy of people who follow their control law and avoid no one."""
     return _in_space("gradient", 0.1, drive={"kind": "goal_reaching_force"})
-
-
-__all__ = ["SIMS", "Simulated", "law_alone", "read_sim"]

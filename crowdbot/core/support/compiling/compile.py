@@ -78,6 +78,3 @@ def _compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
 
     whole = {**options, "nopython": True, "boundscheck": None}
     return KernelDispatcher(function, targetoptions=whole)
-
-
-__all__ = ["array_kernel", "declared_kernel", "free_kernel", "inline_kernel", "kernel"]

@@ -83,6 +83,3 @@ def _end_with_caller() -> None:
 
     with SAVING:  # or else a partial file would remain
         os._exit(0)
-
-
-__all__ = ["compiled_ahead"]

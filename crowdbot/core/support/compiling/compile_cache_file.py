@@ -137,6 +137,3 @@ def _read(path: str) -> bytes:
 
 def _digest(data: bytes) -> bytes:
     return hashlib.blake2b(data, digest_size=_LENGTH).digest()
-
-
-__all__ = ["CheckedCacheFile", "check_all_cache_files"]

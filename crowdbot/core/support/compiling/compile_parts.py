@@ -249,5 +249,3 @@ def _leave_scipy() -> None:
 
 
 _leave_scipy()
-
-__all__ = ["SAVING", "KernelDispatcher"]

@@ -98,6 +98,3 @@ def _from_behind(run: Trajectories, found: PersonContacts, k: int) -> bool:
     dx, dy = float(crowd.x[n, agent] - robot.x[n]), float(crowd.y[n, agent] - robot.y[n])
     speed = math.hypot(vx, vy)
     return dx * vx + dy * vy < 0.0 and px * vx + py * vy > speed * speed > 0.0
-
-
-__all__ = ["USUAL_RULE", "TopplingContact", "struck_over"]

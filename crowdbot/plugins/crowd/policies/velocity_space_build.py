@@ -100,6 +100,3 @@ class VelocitySpace:
 
 
 build = VelocitySpace
-
-
-__all__ = ["VelocitySpace", "build", "sampling_of"]

@@ -102,6 +102,3 @@ class Forced:
             nearest = to - along[..., np.newaxis] * way
             soon |= np.hypot(nearest[..., 0], nearest[..., 1]) < own + radius
         return soon
-
-
-__all__ = ["Forced"]

@@ -122,6 +122,3 @@ def _looks(poses: Array) -> Array:
     steps = STEP * np.arange(len(poses))
     times = _LOOK * np.arange(int(steps[-1] / _LOOK) + 1)
     return np.column_stack([np.interp(times, steps, column) for column in poses.T])
-
-
-__all__ = ["Rehearsal", "TriedPath"]

@@ -193,6 +193,3 @@ def prepare(
     kept = _select(count, room, work)
     _write(kept, not descends, near, near_count, walls, room, work)
     return kept
-
-
-__all__ = ["prepare"]
