@@ -12,7 +12,7 @@ _IMPORT = re.compile(r"^from (\S+) import (?:\(\s*)?(\w+) as (\w+)", re.MULTILIN
 
 
 class Home(NamedTuple):
-    """Where a name comes from: a module, and the name there, which may be a submodule."""
+    """The source of a name: a module, and the name there, which may be a submodule."""
 
     module: str
     name: str
