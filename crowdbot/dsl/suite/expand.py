@@ -45,7 +45,8 @@ class Expansion:
     Attributes:
         suite_id: id of the suite; of the scenario in a document with only one.
         metrics: names or patterns of the metrics to score; None means all.
-        trees: id -> the merged tree of the scenario, which knows the position of each value.
+        trees: id -> the merged tree of the scenario, which knows the position of each value; not
+            compared, since scenarios hold the same values.
         axes: id -> axis -> label, in the suite's order; no axes in a document without a matrix.
         commitment: commitment to the suite's seed, or empty. While the seed is hidden, the
             scenarios are marked; a revealed seed has been checked.
@@ -60,7 +61,7 @@ class Expansion:
     title: str
     scenarios: list[Scenario]
     metrics: tuple[str, ...] | None = None
-    trees: dict[str, Node] = field(default_factory=dict, repr=False)
+    trees: dict[str, Node] = field(default_factory=dict, repr=False, compare=False)
     axes: dict[str, dict[str, str]] = field(default_factory=dict, repr=False)
     commitment: str = ""
     run_seeds: tuple[int, ...] = (0,)

@@ -50,13 +50,8 @@ def test_suites(suite: str) -> None:
     given = crowdbot.load(suite)
     assert isinstance(given, Expansion)
     found = pickle.loads(pickle.dumps(given))  # noqa: S301
-    assert found.scenarios == given.scenarios
+    assert found == given
     assert [type(s) for s in found.scenarios] == [type(s) for s in given.scenarios]
-    assert (found.suite_id, found.metrics, found.axes) == (
-        given.suite_id,
-        given.metrics,
-        given.axes,
-    )
 
 
 def test_scores_and_trajectories() -> None:
