@@ -38,7 +38,7 @@ OwnRecordings = Annotated[
     typer.Option(
         metavar="FILE",
         help="Recordings of your own: .mcap, .csv (t,id,x,y), .ndjson "
-        "(TrajNet++), .txt (ETH, UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
+        "(TrajNet++), .txt, .vsp (ETH, UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
     ),
 ]
 ScenarioSet = Annotated[

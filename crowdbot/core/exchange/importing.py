@@ -83,14 +83,36 @@ def _by_format(opened: Sequence[OpenedScene]) -> dict[str, list[OpenedScene]]:
     return found
 
 
-#: A tag of files other than scenes; what they are, and what a scenario reads them with.
+_FLOOR = "environment: {{kind: floor_plan, file: {}}}"
+_NOT_READ = (
+    "is not read: export its floor as WKT or GeoJSON, for "
+    "environment: {{kind: floor_plan, file: plan.wkt}}"
+)
+_TRACKS = (
+    "trajectories of people are read by Trajectories.from_csv or from_eth_ucy, and by crowdbot "
+    "realism --reference {}; to walk as recorded, they are a CSV t,id,x,y"
+)
+#: A tag of files other than scenes, or their ending; what reads them, or what to do.
 _ELSEWHERE = (
-    ("robot", "a scenario reads a robot's URDF", "robots.robot.model: {{kind: urdf, file: {}}}"),
-    ("sdf", "a scenario reads a robot's SDFormat", "robots.robot.model: {{kind: urdf, file: {}}}; "
+    ("robot", "a scenario reads a robot's URDF with "
+     "robots.robot.model: {{kind: urdf, file: {}}}"),
+    ("sdf", "a scenario reads a robot's SDFormat with "
+     "robots.robot.model: {{kind: urdf, file: {}}}; "
      "worlds of Gazebo are not read, maps made of them are"),
-    ("occupied_thresh", "a scenario reads a map of ROS",
-     "environment: {{kind: floor_plan, file: {}}}"),
-    ("features", "a scenario reads GeoJSON", "environment: {{kind: floor_plan, file: {}}}"),
+    ("occupied_thresh", f"a scenario reads a map of ROS with {_FLOOR}"),
+    ("resets", "Arena-Rosnav's JSON is not read: its map is a floor plan, for "
+     "environment: {{kind: floor_plan, file: map.yaml}}, and its pos and waypoints are x, y and "
+     "goals of crowd.agents"),
+    ("features", f"a scenario reads GeoJSON with {_FLOOR}"),
+    *((ending, f"a scenario reads a floor plan with {_FLOOR}")
+      for ending in (".dxf", ".png", ".pgm")),
+    (".ifc", f"IFC {_NOT_READ}"),
+    ("osm", f"OpenStreetMap's XML {_NOT_READ}"),
+    *((tag, f"Menge's XML {_NOT_READ}") for tag in ("Experiment", "Project", "BFSM")),
+    *((tag, f"XML of JuPedSim before 1.0 {_NOT_READ}")
+      for tag in ("geometry", "JuPedSim", "routing")),
+    *((tag, f"SUMO's XML {_NOT_READ}") for tag in ("routes", "net", "additional")),
+    *((ending, _TRACKS) for ending in (".vsp", ".txt", ".tsv", ".ndjson")),
 )  # fmt: skip
 
 
@@ -101,8 +123,8 @@ def _format_of(file: OpenedScene) -> SceneFormat:
     shown = ", ".join(sorted(file.tags)[:5]) or "plain text"
     message = f"a file of no known format (it has: {shown[:100]})"
     hint = next(
-        (f"{what} with {way.format(file.path.name)}" for tag, what, way in _ELSEWHERE
-         if tag in file.tags),
+        (way.format(file.path.name) for tag, way in _ELSEWHERE
+         if tag in file.tags or tag == file.path.suffix.lower()),
         f"known are {', '.join(form.title for form in FORMATS.values())}",
     )  # fmt: skip
     mark = file.roots[0].mark if file.roots else file.top

@@ -20,7 +20,7 @@ _BAGS = (".bag", ".db3")
 _HEAD, _LONGEST = 8 + 1 + 8, 1000
 _FORMATS = (
     "a recording (.mcap), a table t,id,x,y (.csv, .tsv), a bag of ROS (.bag, .db3, .mcap, or a "
-    "folder with metadata.yaml), TrajNet++ (.ndjson), or ETH and UCY (.txt)"
+    "folder with metadata.yaml), TrajNet++ (.ndjson), or ETH and UCY (.txt, .vsp)"
 )
 
 
@@ -122,5 +122,6 @@ _READERS: Mapping[str, Callable[[Path], Trajectories]] = {
     ".tsv": _table,
     ".ndjson": Trajectories.from_trajnet,
     ".txt": _data_set,
+    ".vsp": _data_set,
     **dict.fromkeys(_BAGS, _bag),
 }

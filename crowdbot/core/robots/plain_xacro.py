@@ -31,12 +31,13 @@ def write_out(top: Xml.Element) -> tuple[str, ...]:
         their names; none if something else is left to xacro, and nothing was changed.
     """
     definitions = [element for element in top if _tag(element)]
-    values: dict[str, str] = {}
+    values: dict[tuple[str, str], str] = {}
     for element in definitions:
-        given = element.get({"property": "value", "arg": "default"}.get(_tag(element), ""))
+        kind = _tag(element)
+        given = element.get({"property": "value", "arg": "default"}.get(kind, ""))
         if given is None or len(element):
             return ()
-        values[element.get("name", "")] = given
+        values[kind, element.get("name", "")] = given
     texts = [(e, key, value) for e in top.iter() for key, value in e.items()]
     variables = [found[1] for _, _, value in texts for found in _VARIABLE.finditer(value)]
     pairs = [(e, key, _filled(value, values)) for e, key, value in texts]
@@ -49,7 +50,7 @@ def write_out(top: Xml.Element) -> tuple[str, ...]:
         return ()
     for element, key, text in pairs:
         element.set(key, text)
-    return (*values, *dict.fromkeys(variables))
+    return tuple(dict.fromkeys((*(name for _, name in values), *variables)))
 
 
 def _tag(element: Xml.Element) -> str:
@@ -60,10 +61,15 @@ def _tag(element: Xml.Element) -> str:
     return name if "xacro" in space else ""
 
 
-def _filled(text: str, values: Mapping[str, str]) -> str:
+def _filled(text: str, values: Mapping[tuple[str, str], str]) -> str:
+    """Return a text with values by kind and name: an argument may be called as a property is."""
+
+    def value(use: re.Match[str]) -> str:
+        return values.get(("property", use[1]) if use[1] else ("arg", use[2]), use[0])
+
     text = _VARIABLE.sub(lambda use: use[2].strip(), text)
     for _ in range(_DEPTH):
-        found = _USE.sub(lambda use: values.get(use[1] or use[2], use[0]), text)
+        found = _USE.sub(value, text)
         if found == text:
             break
         text = found

@@ -15,7 +15,9 @@ from numpy.typing import ArrayLike
 import crowdbot.core.trajectories.own_recordings as own
 from crowdbot.core.support.arguments import mapping_of, number_of, path_of, point_of
 from crowdbot.core.trajectories.bag.tables import bag_tables
-from crowdbot.core.trajectories.datasets import eth_ucy_table, split_robot, trajnet_table
+from crowdbot.core.trajectories.data_sets.readers import eth_ucy_table, split_robot, trajnet_table
+from crowdbot.core.trajectories.data_sets.splines import Homography
+from crowdbot.core.trajectories.message_columns import QUATERNION
 from crowdbot.core.trajectories.plausibility.findings import implausible
 from crowdbot.core.trajectories.raw_table import ColumnNames, RawTable
 from crowdbot.core.trajectories.recording_options import (
@@ -31,7 +33,12 @@ from crowdbot.errors import InputError, RecordingWarning
 
 #: Table -> our name of a column -> the name that it has there.
 TableColumns = Mapping[str, ColumnNames]
-_COLUMNS = {"robot": own.ROBOT, "agents": own.AGENT, "trips": own.TRIP, "contacts": own.CONTACT}
+_COLUMNS = {
+    "robot": (*own.ROBOT, *QUATERNION),
+    "agents": own.AGENT,
+    "trips": own.TRIP,
+    "contacts": own.CONTACT,
+}
 _Run = TypeVar("_Run", bound="FromRecordings")
 
 
@@ -229,15 +236,30 @@ class FromRecordings:
         *,
         robot: int | None = None,
         frame_rate: float | None = None,
+        homography: Homography | None = None,
         **options: Unpack[DataSetOptions],
     ) -> Self:
-        """Read people of ETH or UCY: ``obsmat.txt``, or rows of frame, id, x, y.
+        """Read people of ETH or UCY: ``obsmat.txt``, ``.vsp``, or rows of frame, id, x, y.
 
         A comment above the rows may name other columns, as in files of PeTrack and JuPedSim.
 
-        Arguments, errors and warnings are those of `from_trajnet`.
+        Args:
+            path: the file.
+            robot: number of a person who is taken for the robot, as for `from_trajnet`.
+            frame_rate: frames per second; None: a comment states it, or 2.5 annotations a second;
+                for splines 25.
+            homography: where positions are pixels: the matrix (3, 3) to metres, its file, or
+                metres per pixel. None: they are metres; of splines, ``H.txt`` beside them.
+            options: all further keywords are those of `from_csv`.
+
+        Raises:
+            InputError: it cannot be read, or is of another format.
+            UnknownNameError: there is no such person.
+
+        Warns:
+            RecordingWarning: units or frames cannot be what they should be.
         """
-        table, notes = eth_ucy_table(path_of("path", path), frame_rate)
+        table, notes = eth_ucy_table(path_of("path", path), frame_rate, homography)
         for note in notes:
             warnings.warn(f"{path}: {note}", RecordingWarning, stacklevel=3)
         return _made(cls, _people_and_robot(table, robot), options)

@@ -69,6 +69,11 @@ class RawTable:
         missing = [c for c in columns if c not in self.columns]
         if missing:
             has = ", ".join(self.header or self.columns) or "nothing"
+            if {"topic", "value"} <= {name.lower() for name in self.header}:
+                raise InputError(
+                    f"{self.name}:1: the table has a row for each value (topic, value), as plots "
+                    "export them: write one column for each topic, and a row for each time"
+                )
             renaming = ", ".join(f"'{c}': 'ITS NAME THERE'" for c in missing)
             subject = "columns {} are" if len(missing) > 1 else "column {} is"
             raise InputError(

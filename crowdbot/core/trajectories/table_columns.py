@@ -12,6 +12,7 @@ import numpy as np
 
 import crowdbot.core.trajectories.plausibility.exchanged as exchanged
 from crowdbot.core.support.arguments import expect, number_of
+from crowdbot.core.trajectories.message_columns import joined, nanosecond_halves
 from crowdbot.core.trajectories.plausibility.times import PERSON_SPEED
 from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, Ids, RawTable, as_number
 from crowdbot.core.types.arrays import Array
@@ -36,7 +37,7 @@ _USUAL: Mapping[str, Sequence[str]] = {
 #: Our name -> how fields of ROS messages end that mean the same.
 _FIELDS = {
     "t": re.compile(r"^(?:%|__)time$"),
-    **{axis: re.compile(rf"[./]position[./]{axis}$") for axis in "xy"},
+    **{axis: re.compile(rf"(?:^|[./_])position[./_]{axis}$|^p_\w+_{axis}$") for axis in "xy"},
 }
 #: Vadere's columns end in the number of what wrote them: ``startX-PID1``.
 _PROCESSOR = re.compile(r"-PID\d+$")
@@ -79,7 +80,10 @@ _ENDING = re.compile(
     re.IGNORECASE,
 )
 #: Columns that say nothing about the plane, or number the rows.
-_NEEDLESS = ("z", "tz", "point", "geometry", "", "index", "unnamed: 0")
+_NEEDLESS = ("z", "tz", "pos_z", "point", "geometry", "", "index", "unnamed: 0")
+_HEIGHT = re.compile(r"(?:^|[./_])position[./_]z$|^p_\w+_z$")
+#: Most columns that are told by name.
+_MOST_NAMED = 12
 #: Least extent of x and z, m, if y seems to be the height.
 _FLAT = 0.5
 #: Prefixes of numbers of people.
@@ -158,6 +162,12 @@ def without_unit(column: str) -> str:
     return match[1] if match is not None and match[1] else column
 
 
+def without_units(header: Sequence[str]) -> list[str]:
+    """Return names of columns without units, but for nanoseconds that belong to seconds."""
+    halves = nanosecond_halves(header)
+    return [name if i in halves else without_unit(name) for i, name in enumerate(header)]
+
+
 def unit_in(column: str) -> float | None:
     """Return the unit that a column's name states, in m, s or rad; None if it states none."""
     match = _UNIT.match(column) or _ENDING.match(column)
@@ -207,7 +217,7 @@ def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str])
     frame = frame.data if rate is not None else frame
     try:
         spelled = [str(c) for c in frame]
-        header = [without_unit(column) for column in spelled]
+        header = without_units(spelled)
         made = chosen(name, header, names, known, spelled)
         keys = dict(zip(header, frame, strict=True))
 
@@ -224,7 +234,8 @@ def frame_table(name: str, frame: Any, names: ColumnNames, known: Iterable[str])
         raise InputError(f"{name}: its columns differ in length")
     counts = "t" in made and header[made["t"]].lower() in FRAMES
     raw = RawTable(name, columns, header=spelled, frame_rate=rate, counts_frames=counts)
-    return completed(raw, header, cells, 1.0, made.values(), wide="id" in known)
+    raw, more = joined(raw, made, lambda place: cells(header[place]), known)
+    return completed(raw, header, cells, 1.0, {*made.values(), *more}, wide="id" in known)
 
 
 def _plain(series: Any) -> Any:
@@ -236,11 +247,13 @@ def _plain(series: Any) -> Any:
 
 def not_used(columns: Iterable[str]) -> list[str]:
     """Return a sentence that names columns which are not read, if they could matter."""
-    left = [column for column in columns if without_unit(column).lower() not in _NEEDLESS]
+    names = ((column, without_unit(column).lower()) for column in columns)
+    left = [column for column, name in names if name not in _NEEDLESS and not _HEIGHT.search(name)]
     if not left:
         return []
+    more = f" and {len(left) - _MOST_NAMED} more" if len(left) > _MOST_NAMED else ""
     return [
-        f"the column{'s' if len(left) > 1 else ''} {', '.join(left)} "
+        f"the column{'s' if len(left) > 1 else ''} {', '.join(left[:_MOST_NAMED])}{more} "
         f"{'are' if len(left) > 1 else 'is'} not used"
     ]
 
@@ -271,7 +284,7 @@ def completed(
     read = {*used, *(header.index(c) for axes in people.values() for c in axes.values())}
     notes = not_used(table.header[i] for i in range(len(header)) if i not in read)
     notes += _height_is_y(table, header, cells)
-    table = replace(table, notes=[f"{table.name}: {note}" for note in notes])
+    table = replace(table, notes=[*table.notes, *(f"{table.name}: {note}" for note in notes)])
     return _in_rows(table, people, cells, unit) if people else table
 
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
+from crowdbot.core.trajectories.message_columns import joined
 from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, RawTable, as_number
 from crowdbot.core.trajectories.table_columns import (
     FRAMES,
@@ -20,6 +23,7 @@ from crowdbot.core.trajectories.table_columns import (
     unit_of,
     whole_numbers,
     without_unit,
+    without_units,
 )
 from crowdbot.errors import InputError
 
@@ -71,11 +75,8 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     if not table.rows:
         raise InputError(f"{path}: the table has no rows")
     if not table.header:
-        raise InputError(
-            f"{path}:{table.lines[0]}: the table has no header row that names its columns: write "
-            f"one above it, such as '{','.join(known[:4])}'"
-        )
-    header = [without_unit(cell) for cell in table.header]
+        raise InputError(f"{path}:{table.lines[0]}: {_nameless(len(table.rows[0]), known)}")
+    header = without_units(table.header)
     cells = {name: [row[i] for row in table.rows] for i, name in enumerate(header)}
     made = chosen(str(path), header, names, known, spelled=table.header)
     columns: dict[str, Cells] = {
@@ -94,7 +95,9 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     )
     if table.assumed and {"t", "id"} <= set(made):
         whole_numbers(raw, "t", "id")
-    return completed(raw, header, cells.__getitem__, table.unit, made.values(), wide="id" in known)
+    raw, more = joined(raw, made, lambda place: [row[place] for row in table.rows], known)
+    used = {*made.values(), *more}
+    return completed(raw, header, cells.__getitem__, table.unit, used, wide="id" in known)
 
 
 def split(path: Path, text: str) -> TextTable:
@@ -108,6 +111,11 @@ def split(path: Path, text: str) -> TextTable:
     first = next((line for line in lines if line.strip() and line not in comments), "")
     if not first:
         raise InputError(f"{path}:1: the file is empty")
+    if "number of splines" in first:
+        raise InputError(
+            f"{path}: has splines of UCY, not a table of rows; Trajectories.from_eth_ucy(path, "
+            "homography=...) reads it"
+        )
     for start, other in _DOCUMENTS.items():
         if first.strip().startswith(start) or first.strip() == "[":
             raise InputError(f"{path}: is {other}, not a table of rows; convert it to CSV")
@@ -119,13 +127,26 @@ def split(path: Path, text: str) -> TextTable:
         header = [cell.strip() for cell in rows[0]]
         rows, numbers = rows[1:], numbers[1:]
     else:
-        header = _header_of_comments(comments, len(rows[0]))
+        header = _header_of_comments(comments, len(rows[0]), mark) or _of_tum(rows)
     assumed = not header and _of_petrack(comments, len(rows[0]))
     if assumed:
         header = list((*_TRAJECTORY, *_ELLIPSE)[: len(rows[0])])
     comment = " ".join(comments)
     rate = _frame_rate(path, comments)
     return TextTable(header, rows, numbers, rate, length_unit(comment) or 1.0, assumed)
+
+
+def _nameless(width: int, known: Sequence[str]) -> str:
+    """Return what is wrong with rows of some width, whose columns nothing names."""
+    if width == _KITTI:
+        return (
+            "12 numbers a row are poses of KITTI, matrices (3, 4) without times, of a camera that "
+            "looks along z: write a table t,x,y of its times, column 12 and minus column 4"
+        )
+    return (
+        "the table has no header row that names its columns: write one above it, such as "
+        f"'{','.join(known[:4])}'"
+    )
 
 
 def _plain_viswalk(lines: list[str]) -> list[str]:
@@ -150,7 +171,20 @@ def _is_number(cell: str) -> bool:
         return False
 
 
-def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
+def _of_tum(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the columns of TUM's benchmark if rows end in quaternions and begin with times."""
+    if len(rows[0]) != len(_TUM):
+        return []
+    try:
+        numbers = [[as_number(cell) for cell in row] for row in rows]
+    except ValueError:
+        return []
+    turns = all(abs(math.hypot(*row[4:]) - 1.0) < _NEARLY_ONE for row in numbers)
+    times = [row[0] for row in numbers]
+    return list(_TUM) if turns and all(a < b for a, b in pairwise(times)) else []
+
+
+def _header_of_comments(comments: Sequence[str], width: int, mark: str) -> list[str]:
     """Return the names of columns in the last comment that has one for each; empty if none has.
 
     Comments that name people or times come first: others may be sentences about x and y.
@@ -168,6 +202,10 @@ def _header_of_comments(comments: Sequence[str], width: int) -> list[str]:
             words = words if len(words) == width else words[min(starts) :]
             if len(words) >= width:
                 return [word.strip("\"':") for word in words[:width]]
+    for comment in reversed(named):
+        words = [word.strip() for word in comment.lstrip("#%/ \t").split(mark)]
+        if mark != " " and len(words) == width and all(words):
+            return words
     return []
 
 
@@ -179,6 +217,11 @@ def _of_petrack(comments: Sequence[str], width: int) -> bool:
 
 #: Names of the two coordinates in comments; those of TUM's benchmark come second.
 _PLACES = (("x", "y"), ("tx", "ty"))
+_TUM = ("timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw")
+#: Numbers in each row of a file of KITTI's odometry.
+_KITTI = 12
+#: Quaternions have the length 1, but for rounding.
+_NEARLY_ONE = 0.02
 _VISWALK = "$PEDESTRIAN:"
 #: How files begin that are not tables.
 _DOCUMENTS = {"{": "JSON", "[{": "JSON", "[[": "JSON", "<": "XML or HTML"}

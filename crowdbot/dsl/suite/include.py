@@ -11,7 +11,7 @@ from pathlib import Path
 
 from crowdbot.dsl.suite.agents_csv import read_agents
 from crowdbot.dsl.text.bounded_files import read_text
-from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
+from crowdbot.dsl.text.diagnostics import OTHER_FILES, Diagnostic, Mark, Source
 from crowdbot.dsl.text.finder import Finder, Roots
 from crowdbot.dsl.text.merge import merge, undot
 from crowdbot.dsl.text.nodes import Node, parse
@@ -30,6 +30,13 @@ class _File:
     path: Path
     name: str
     chain: tuple[Path, ...]
+
+
+def _refuse_xml(text: str, source: Source) -> None:
+    """Raise E011 for XML, of which YAML would only tell the tabs."""
+    if text.lstrip("\ufeff \t\r\n").startswith("<"):
+        message = "the document is XML, and must be a map of fields in YAML"
+        raise SpecError([Diagnostic("E011", message, Mark(source), OTHER_FILES)])
 
 
 @dataclass
@@ -52,13 +59,15 @@ class Loader:
         try:
             text = _read_text(file, source)
             source = replace(source, lines=text.split("\n"))
+            _refuse_xml(text, source)
             root = parse(text, source, self.problems)
         except SpecError as error:
             self.problems += [d for d in error.diagnostics if d not in self.problems]
             return Node(Mark(source), {}, implied=True)
         if not isinstance(root.value, dict):
             problem = "is empty" if root.value is None else "must be a map of fields"
-            self.problems.append(Diagnostic("E011", f"the document {problem}", root.mark))
+            hint = OTHER_FILES if isinstance(root.value, str) else ""
+            self.problems.append(Diagnostic("E011", f"the document {problem}", root.mark, hint))
             return Node(root.mark, {})
         here = replace(file, chain=(*file.chain, file.path.resolve()))
         return self._resolve(

@@ -34,7 +34,7 @@ from crowdbot.dsl.suite.installed import Installed, check_metrics, check_version
 from crowdbot.dsl.suite.matrix import DRAW, MAX_COMBINATIONS, Axis, read_axes
 from crowdbot.dsl.suite.round import Round
 from crowdbot.dsl.suite.selection import Kept, read_selection
-from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
+from crowdbot.dsl.text.diagnostics import OTHER_FILES, Diagnostic, Mark
 from crowdbot.dsl.text.finder import Finder
 from crowdbot.dsl.text.nodes import Node, count, to_data
 from crowdbot.dsl.text.path_names import PathName
@@ -304,7 +304,10 @@ def _right_version(root: Node, problems: list[Diagnostic]) -> bool:
     node = root.child("crowdbot")
     if node is None:
         text = "the document does not say which format it has"
-        problems.append(Diagnostic("E012", text, root.mark, f"start with 'crowdbot: {FORMAT}'"))
+        parts = {"extends", "environment"}
+        ours = {*SuiteDocument.model_fields, *ScenarioDocument.model_fields, *parts}
+        hint = f"start with 'crowdbot: {FORMAT}'" if ours & set(root.entries) else OTHER_FILES
+        problems.append(Diagnostic("E012", text, root.mark, hint))
     elif type(node.value) is not int or node.value < 1:
         text = "the format version must be a whole number"
         problems.append(Diagnostic("E012", text, node.mark, f"write 'crowdbot: {FORMAT}'"))

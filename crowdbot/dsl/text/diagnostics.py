@@ -8,6 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from unicodedata import category
 
+#: Hint for files of other programs.
+OTHER_FILES = (
+    "'crowdbot import FILE' makes a scenario of other simulators' scenes, and says which field "
+    "reads a map, a floor plan or a robot"
+)
 #: Every code and its title; docs/reference/errors.md explains each.
 CODES = {
     "E001": "file that cannot be read",

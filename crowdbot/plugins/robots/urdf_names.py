@@ -1,4 +1,4 @@
-"""Names of links and joints in a URDF, without building a robot."""
+"""Names of links and joints in a URDF or an SDFormat model, without building a robot."""
 
 from __future__ import annotations
 
@@ -24,9 +24,12 @@ def urdf_names(file: Path) -> dict[DescribedPart, frozenset[str]]:
         top = Xml.fromstring(text)  # noqa: S314 - files that declare entities are left out
     except (Xml.ParseError, ValueError):  # the build tells it
         return {}
-    if top.tag != "robot":
+    model = top.find("model") if top.tag == "sdf" else top
+    if model is None or top.tag not in ("robot", "sdf"):
+        return {}
+    if top.tag == "sdf" and any(model.find(other) is not None for other in ("model", "include")):
         return {}
     return {
-        "link": frozenset(link.get("name", "") for link in top.findall("link")),
-        "joint": frozenset(joint.get("name", "") for joint in top.findall("joint")),
+        "link": frozenset(link.get("name", "") for link in model.findall("link")),
+        "joint": frozenset(joint.get("name", "") for joint in model.findall("joint")),
     }

@@ -134,3 +134,29 @@ def test_mutated_files_never_end_in_a_traceback(tmp_path: Path, name: str) -> No
         file.write_text(rng.choice(MUTATIONS)(rng, text), encoding="utf-8")
         refused += fails_well(file)
     assert refused
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "hint"),
+    [
+        ("scene.xml", "<Experiment version='2.0'/>", "Menge's XML is not read: export its floor"),
+        ("geo.xml", "<geometry version='0.8'/>", "XML of JuPedSim before 1.0 is not read"),
+        (
+            "arena.json",
+            '{"robots": [], "resets": 5, "map": "a"}',
+            "Arena-Rosnav's JSON is not read",
+        ),
+        ("a.osm", "<osm version='0.6'/>", "{kind: floor_plan, file: plan.wkt}"),
+        ("a.ifc", "ISO-10303-21;", "IFC is not read"),
+        ("a.vsp", "1 - the number of splines", "realism --reference a.vsp"),
+        ("r.urdf", "<robot name='r'/>", "robots.robot.model: {kind: urdf, file: r.urdf}"),
+        ("map.yaml", "{image: m.pgm, occupied_thresh: 0.6}", "{kind: floor_plan, file: map.yaml}"),
+    ],
+)
+def test_other_files_are_refused_with_what_to_do(
+    tmp_path: Path, name: str, text: str, hint: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(SpecError, match="E403") as caught:
+        imported(tmp_path / name)
+    assert hint in caught.value.diagnostics[0].hint

@@ -55,8 +55,10 @@ def test_petrack_and_jupedsim(tmp_path: Path, head: str, scale: float) -> None:
 def test_petrack_as_a_data_set(tmp_path: Path) -> None:
     head = "# framerate: 25\n# id frame x/cm y/cm z/cm\n"
     _check(READ.from_eth_ucy(_written(tmp_path / "a.txt", head, 100.0)))
-    with pytest.warns(RecordingWarning, match="the first column is read as the id"):
+    with pytest.warns(RecordingWarning) as warned:
         _check(READ.from_eth_ucy(_written(tmp_path / "b.txt", "", columns=4)), 2.5)
+    assert "the first column is read as the id" in str(warned[0].message)
+    assert "walk at 0.12 m/s" in str(warned[1].message)
     with pytest.raises(InputError, match=r"5 columns; 4 .*or a comment that names others"):
         READ.from_eth_ucy(_written(tmp_path / "c.txt", ""))
 
@@ -372,17 +374,51 @@ def test_an_id_that_is_used_again_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    "head", ["# timestamp tx ty tz qx qy qz qw\n", "# timestamp x y z qx qy qz qw\n"]
+    "head",
+    [
+        "# timestamp tx ty tz qx qy qz qw\n",
+        "# timestamp x y z qx qy qz qw\n",
+        "",  # as evo writes it
+        "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_x [],q_RS_y [],q_RS_z [],"
+        "q_RS_w []\n",
+    ],
 )
 def test_poses_of_benchmarks_whose_comment_names_the_columns(tmp_path: Path, head: str) -> None:
-    rows = (f"{1.3e9 + 0.1 * k:.1f} {0.3 * k} {0.1 * k} 0 0 0 0.16 0.99\n" for k in range(9))
-    (tmp_path / "groundtruth.txt").write_text("# ground truth\n" + head + "".join(rows))
-    with pytest.warns(RecordingWarning, match="the columns qx, qy, qz, qw are not used"):
-        run = READ.from_csv(tmp_path / "groundtruth.txt", **BODY)
+    z, w = math.sin(0.25), math.cos(0.25)
+    rows = [[1.3e9 + 0.1 * k, 0.3 * k, 0.1 * k, 0, 0, 0, z, w] for k in range(9)]
+    mark = "," if "," in head else " "
+    if mark == ",":
+        rows = [[round(row[0] * 1e9), *row[1:]] for row in rows]
+    lines = (mark.join(map(str, row)) + "\n" for row in rows)
+    (tmp_path / "groundtruth.txt").write_text("# ground truth\n" + head + "".join(lines))
+    run = READ.from_csv(tmp_path / "groundtruth.txt", **BODY)
     assert run.robot is not None
+    np.testing.assert_allclose(run.t - run.t[0], 0.1 * np.arange(9), atol=1e-6)
     np.testing.assert_allclose(run.robot.x, 0.3 * np.arange(9))
     np.testing.assert_allclose(run.robot.y, 0.1 * np.arange(9))
-    np.testing.assert_allclose(run.robot.theta, math.atan2(0.1, 0.3))
+    np.testing.assert_allclose(run.robot.theta, 0.5)
+
+
+def test_a_row_for_each_value_is_told(tmp_path: Path) -> None:
+    head = "elapsed time,receive time,header.stamp,topic,value\n"
+    (tmp_path / "plot.csv").write_text(head + "0,1.7e9,1.7e9,/odom.pose.pose.position.x,1\n")
+    with pytest.raises(InputError, match=r"plot\.csv:1: .* one column for each topic"):
+        READ.from_csv(tmp_path / "plot.csv", **BODY)
+
+
+def test_matrices_of_kitti_are_refused_with_the_columns_to_take(tmp_path: Path) -> None:
+    (tmp_path / "00.txt").write_text("1 0 0 0.1 0 1 0 0.2 0 0 1 0.3\n")
+    with pytest.raises(InputError, match=r"00\.txt:1: .* KITTI.* column 12 and minus column 4"):
+        READ.from_csv(tmp_path / "00.txt", **BODY)
+
+
+def test_frames_of_a_video_taken_for_annotations_are_told(tmp_path: Path) -> None:
+    rows = (f"{f} 1 {0.05 * f} 0\n" for f in range(20))
+    (tmp_path / "a.txt").write_text("".join(rows))
+    with pytest.warns(RecordingWarning, match=r"walk at 0.12 m/s .*frame_rate=25"):
+        READ.from_eth_ucy(tmp_path / "a.txt")
+    run = READ.from_eth_ucy(tmp_path / "a.txt", frame_rate=25)
+    assert run.t[-1] == pytest.approx(19 / 25)
 
 
 @pytest.mark.parametrize(

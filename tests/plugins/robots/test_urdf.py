@@ -146,6 +146,20 @@ def test_plain_properties_of_xacro_are_written_out(tmp_path: Path) -> None:
     for left in ("${before + 1}", "${unknown}"):
         with pytest.raises(PluginError, match="xacro macros; expand them"):
             _model(tmp_path, text.replace("${before}", left), **fields)
+    alike = text.replace('name="before"', 'name="prefix"').replace("${before}", "${prefix}")
+    model = _model(tmp_path, alike, **fields)  # as in files of TurtleBot3
+    assert model.notes[0] == "2 of xacro's properties written out: prefix, mast_mass"
+
+
+def test_names_in_sdformat_are_checked_at_their_place(tmp_path: Path) -> None:
+    links = '<link name="chassis"/><link name="wheel"/><joint name="hinge" type="revolute"/>'
+    text = f'<sdf version="1.6"><model name="cart">{links}</model></sdf>'
+    drive = {"left": "hinge", "right": "hinge", "radius": 0.1, "effort": 4}
+    fields: dict[str, Any] = {"drive": drive, "disc": {"radius": 0.25, "height": 0.9}}
+    with pytest.raises(SpecError, match="no link 'base_link'; known: chassis, wheel"):
+        _scenario(tmp_path, text, **fields)
+    included = text.replace(links, links + "<include><uri>model://camera</uri></include>")
+    _scenario(tmp_path, included, **fields)
 
 
 def test_sensors_by_link(tmp_path: Path) -> None:

@@ -21,15 +21,17 @@ def steps(columns: Mapping[str, Array]) -> tuple[float | None, float] | None:
     Returns:
         Medians, m; the first is None if no one is there twice. None: nothing is exchanged.
     """
-    read, other = _median(columns, "id", "frame"), _median(columns, "frame", "id")
+    place = (columns["x"], columns["y"])
+    read = median_step(columns["id"], columns["frame"], *place)
+    other = median_step(columns["frame"], columns["id"], *place)
     if other is None or (read is not None and other >= _MUCH_LESS * read):
         return None
     return read, other
 
 
-def _median(columns: Mapping[str, Array], person: str, frame: str) -> float | None:
+def median_step(person: Array, frame: Array, x: Array, y: Array) -> float | None:
     """Return the median distance between successive rows of a person, m; None without any."""
-    order = np.lexsort((columns[frame], columns[person]))
-    same = np.diff(columns[person][order]) == 0
-    x, y = (np.diff(columns[n][order])[same] for n in ("x", "y"))
-    return float(np.nanmedian(np.hypot(x, y))) if np.isfinite(x + y).any() else None
+    order = np.lexsort((frame, person))
+    same = np.diff(person[order]) == 0
+    dx, dy = (np.diff(axis[order])[same] for axis in (x, y))
+    return float(np.nanmedian(np.hypot(dx, dy))) if np.isfinite(dx + dy).any() else None

@@ -16,7 +16,7 @@ USUAL, _USUAL_STEP = 0.8, 0.05
 #: Median speed of people that no crowd exceeds, m/s.
 PERSON_SPEED = 5.0
 #: Slower than anyone walks or drives, m/s.
-_CREEPING = 0.15
+CREEPING = 0.15
 #: What whole numbers may count -> how many there are in a second.
 _TICKS = {"numbers of frames": 25.0, "milliseconds": 1e3, "microseconds": 1e6, "nanoseconds": 1e9}
 
@@ -34,7 +34,7 @@ def findings(t: Array, speeds: dict[str, float]) -> Iterator[str]:
         yield f"median time between samples {step:.3g} s: minutes or hours? Times are in seconds"
     elif step > STEPS[1]:
         yield f"median time between samples {step:.3g} s: {_advice(step, fastest)}"
-    elif fastest is not None and fastest < _CREEPING and np.all(t == np.round(t)):
+    elif fastest is not None and fastest < CREEPING and np.all(t == np.round(t)):
         fastest_name = max(speeds, key=lambda name: speeds[name])
         yield (
             f"{fastest_name}: median speed {fastest:.3g} m/s, and all times are whole numbers: "

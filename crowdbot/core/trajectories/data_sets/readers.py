@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,13 @@ import numpy as np
 
 import crowdbot.core.trajectories.plausibility.exchanged as exchanged
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
+from crowdbot.core.trajectories.data_sets.splines import (
+    Homography,
+    is_spline_file,
+    projected,
+    spline_table,
+)
+from crowdbot.core.trajectories.plausibility.times import CREEPING
 from crowdbot.core.trajectories.raw_table import RawTable
 from crowdbot.core.trajectories.table_columns import (
     FRAMES,
@@ -26,7 +33,18 @@ from crowdbot.errors import InputError, UnknownNameError
 
 #: Columns of ETH's ``obsmat.txt``: y is the height, and the third column is y in the plane.
 _OBSMAT = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
+#: Median of what people move by in a second from which positions are hardly metres.
+_PIXELS = 10.0
 _PLAIN = ("frame", "id", "x", "y")
+#: Columns of the Stanford Drone Dataset, which hold boxes.
+_BOXES = (
+    "id", "xmin", "ymin", "xmax", "ymax", "frame", "lost", "occluded", "generated", "label",
+)  # fmt: skip
+_OF_SDD = (
+    f"10 columns, as in the Stanford Drone Dataset: {', '.join(_BOXES)}. These are boxes in "
+    "pixels: write rows of frame, id, and the middle (xmin + xmax)/2, (ymin + ymax)/2 of those "
+    "that are not lost; from_eth_ucy(path, frame_rate=30, homography=...) takes metres per pixel"
+)
 #: Names of columns in comments, in lower case -> ours.
 _OURS = {**dict.fromkeys(FRAMES, "frame"), **{n: n for n in ("id", "x", "y", "vx", "vy")},
          **dict.fromkeys(("persid", "personid", "ped_id"), "id")}  # fmt: skip
@@ -72,8 +90,10 @@ def trajnet_table(path: Path, scene: int | None, frame_rate: float | None) -> Ra
     return _once(RawTable(str(path), columns, [n for n, _ in rows]))
 
 
-def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[str]]:
-    """Read people from ETH or UCY: ``obsmat.txt`` with 8 columns, or 4: frame, id, x, y.
+def eth_ucy_table(
+    path: Path, frame_rate: float | None, homography: Homography | None = None
+) -> tuple[RawTable, list[str]]:
+    """Read people from ETH or UCY: splines, ``obsmat.txt`` (8 columns), or 4: frame, id, x, y.
 
     A comment such as ``# id frame x/m y/m z/m``, as in files of PeTrack and JuPedSim, names the
     columns otherwise.
@@ -82,6 +102,8 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
         path: the file; blanks, tabs or commas between the columns, no header.
         frame_rate: frames per second; None: as a comment states, else one annotation per 0.4 s, as
             in both data sets.
+        homography: from positions in the file to metres, see `spline_table`; velocities in the
+            file are then left out.
 
     Returns:
         The table, and sentences on what is not as the format has it.
@@ -89,7 +111,10 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
     Raises:
         InputError: it cannot be read, or a row is invalid.
     """
-    found = split(path, input_text(path, LARGEST_TABLE))
+    text = input_text(path, LARGEST_TABLE)
+    if is_spline_file(path, text):
+        return spline_table(path, homography, frame_rate)
+    found = split(path, text)
     width = len(found.rows[0])
     names = [_OURS.get(without_unit(name).lower(), "") for name in found.header]
     assumed = found.assumed
@@ -97,6 +122,8 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
         assumed = True
         if found.header or width not in (4, 8):
             seen = f"columns {', '.join(found.header)}" if found.header else f"{width} columns"
+            if not found.header and width == len(_BOXES) and len(set(found.rows[0][6:9])) <= 2:
+                raise InputError(f"{path}:{found.lines[0]}: {_OF_SDD}")
             raise InputError(
                 f"{path}:{found.lines[0]}: {seen}; 4 (frame, id, x, y) or 8 (obsmat.txt) are "
                 "wanted, or a comment that names others, such as '# id frame x/m y/m z/m'"
@@ -110,6 +137,10 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
     for name in ("x", "y"):
         header = found.header[names.index(name)] if found.header else ""
         columns[name] = columns[name] * (unit_in(header) or found.unit)
+    if homography is not None:
+        places = np.column_stack([columns["x"], columns["y"]])
+        columns["x"], columns["y"] = projected(path, homography, places).T
+        columns = {n: c for n, c in columns.items() if n not in ("vx", "vy")}
     if assumed:
         whole_numbers(raw, "frame", "id")
     notes = _exchanged(columns, names) if assumed else []
@@ -118,9 +149,32 @@ def eth_ucy_table(path: Path, frame_rate: float | None) -> tuple[RawTable, list[
     frames = columns.pop("frame")
     t = _seconds(frames, 0.4) if rate is None else (frames - frames.min()) / rate
     table = RawTable(str(path), {"t": t, **columns}, found.lines)
+    notes += _odd_speeds(columns, frames, t, rate)
     if not assumed:
         refuse_exchanged(table, frames)
     return table, notes
+
+
+def _odd_speeds(
+    columns: Mapping[str, Array], frames: Array, t: Array, rate: float | None
+) -> list[str]:
+    """Return a sentence if positions seem pixels, or frames of a video annotations."""
+    moved = exchanged.median_step(columns["id"], frames, columns["x"], columns["y"])
+    times, steps = np.diff(np.unique(t)), np.diff(np.unique(frames))
+    if moved is None or not len(times):
+        return []
+    speed = moved / float(np.median(times))
+    if speed > _PIXELS:
+        return [
+            f"people move by {speed:.3g} a second (median): pixels? homography=... takes the "
+            "matrix (3, 3) to metres, its file, or metres per pixel"
+        ]
+    if rate is not None or np.min(steps) != 1.0 or speed >= CREEPING:
+        return []
+    return [
+        f"people walk at {speed:.2g} m/s (median) if a step of frame numbers takes 0.4 s: "
+        "frames of a video? frame_rate=25 says how many there are in a second"
+    ]
 
 
 def _exchanged(columns: dict[str, Array], names: Sequence[str]) -> list[str]:

@@ -1,0 +1,1 @@
+"""People of data sets: TrajNet++, ETH and UCY."""
