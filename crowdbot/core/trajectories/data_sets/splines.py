@@ -153,7 +153,7 @@ def _given(homography: Homography) -> Array:
     """Return the matrix that is given as numbers, as one number, or as a file.
 
     Raises:
-        InputError: it is none, or the file cannot be read.
+        InputError: it is neither, or the file cannot be read.
     """
     name = "homography"
     values: ArrayLike | list[list[str]] = []
