@@ -170,7 +170,8 @@ class Description:
             behind = abs(left[1] - right[1]) < abs(left[0] - right[0])
             raise PluginError(
                 f"'{left_joint}' and '{right_joint}' lie along the x axis of '{base}', not beside "
-                f"it; robots drive along that axis"
+                "it; robots drive along that axis: name as base a link whose x axis points ahead, "
+                "or add one with a fixed joint that turns it, rpy='0 0 1.5708' or '0 0 -1.5708'"
                 if behind
                 else f"'{left_joint}' is on the right of '{base}', '{right_joint}' on its left: "
                 "exchange them"

@@ -30,6 +30,8 @@ _ORIENTATION = re.compile(
 _CLOCK = re.compile(r"^(?!\s*\d{4}-\d\d-\d\d[T ]).*\d:\d\d")
 #: Seconds since 1970 from 1973 on; smaller ones count from any start.
 _SINCE_1970 = 1e8
+#: Least share of a ground robot's z axis that points up or down.
+_UPRIGHT = 0.7
 #: Quaternions have this length, but for rounding.
 _LENGTHS = (0.9, 1.1)
 #: A shorter one does not rotate, such as one of zeros, which was not filled in.
@@ -136,6 +138,13 @@ def _with_heading(
         note = (
             f"{table.name}: {names} do not rotate: their length is {usual:.3g} (median) instead "
             "of 1; the heading is the direction of motion"
+        )
+        return replace(bare, notes=[*table.notes, note]), used
+    up = (w * w + z * z - x * x - y * y) / np.where(length > 0.0, length, 1.0) ** 2
+    if float(np.median(np.abs(up[length > _NO_ROTATION]))) < _UPRIGHT:
+        note = (
+            f"{table.name}: the rotated z axis points sideways, as a camera's or a drone's does; "
+            "the heading is the direction of motion"
         )
         return replace(bare, notes=[*table.notes, note]), used
     return replace(bare, columns={**columns, "theta": _heading(x, y, z, w, length)}), used

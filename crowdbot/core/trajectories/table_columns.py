@@ -82,6 +82,19 @@ _ENDING = re.compile(
 #: Columns that say nothing about the plane, or number the rows.
 _NEEDLESS = ("z", "tz", "pos_z", "point", "geometry", "", "index", "unnamed: 0")
 _HEIGHT = re.compile(r"(?:^|[./_])position[./_]z$|^p_\w+_z$")
+#: Columns that say what moves, and what they say of people, in lower case.
+_KINDS = ("type", "object_type", "agent_type", "class", "label", "category", "classification")
+_PEOPLE = {
+    "ped",
+    "peds",
+    "pedestrian",
+    "pedestrians",
+    "person",
+    "people",
+    "human",
+    "adult",
+    "child",
+}
 #: Most columns that are told by name.
 _MOST_NAMED = 12
 #: Least extent of x and z, m, if y seems to be the height.
@@ -281,11 +294,25 @@ def completed(
         InputError: a person has two columns of one name, or a number has x without y.
     """
     people = _columns_of_people(table, header) if wide else {}
-    read = {*used, *(header.index(c) for axes in people.values() for c in axes.values())}
+    kinds, others = _not_people(header, cells) if wide else (set(), [])
+    read = {*used, *kinds, *(header.index(c) for axes in people.values() for c in axes.values())}
     notes = not_used(table.header[i] for i in range(len(header)) if i not in read)
-    notes += _height_is_y(table, header, cells)
+    notes += others + _height_is_y(table, header, cells)
     table = replace(table, notes=[*table.notes, *(f"{table.name}: {note}" for note in notes)])
     return _in_rows(table, people, cells, unit) if people else table
+
+
+def _not_people(header: Sequence[str], cells: Callable[[str], Cells]) -> tuple[set[int], list[str]]:
+    """Return the places of columns of kinds, and a sentence if they hold others than people."""
+    places = {i for i, column in enumerate(header) if column.lower() in _KINDS}
+    found = {i: sorted({str(cell).strip() for cell in cells(header[i])}) for i in places}
+    notes = [
+        f"the column {header[i]} says {', '.join(kinds[:6])}: all rows are read as people; leave "
+        "out those that are not"
+        for i, kinds in found.items()
+        if not {kind.lower() for kind in kinds} <= _PEOPLE
+    ]
+    return places, notes
 
 
 def _height_is_y(

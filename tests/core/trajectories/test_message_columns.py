@@ -115,6 +115,18 @@ def test_times_of_day_give_way_to_stamps_beside_them(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.t, 0.1 * np.arange(5), atol=1e-9)
 
 
+@pytest.mark.parametrize("frame", [(0.813, -0.027, 0.581, 0.028), (-0.5, 0.5, -0.5, 0.5)])
+def test_frames_of_cameras_and_drones_give_no_heading(
+    tmp_path: Path, frame: tuple[float, ...]
+) -> None:
+    rows = (f"{0.1 * k} 0 {0.05 * k} 0 {' '.join(map(str, frame))}\n" for k in range(9))
+    (tmp_path / "V102.txt").write_text("".join(rows))
+    with pytest.warns(RecordingWarning, match="z axis points sideways"):
+        run = READ.from_csv(tmp_path / "V102.txt", **BODY)
+    assert run.robot is not None
+    np.testing.assert_allclose(run.robot.theta, math.pi / 2)
+
+
 def test_a_heading_comes_before_a_quaternion(tmp_path: Path) -> None:
     rows = "".join(f"{0.1 * k},{0.05 * k},0,0,1,0\n" for k in range(6))
     (tmp_path / "both.csv").write_text("t,x,y,theta,qz,qw\n" + rows)

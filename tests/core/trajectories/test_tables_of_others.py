@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -397,6 +398,22 @@ def test_poses_of_benchmarks_whose_comment_names_the_columns(tmp_path: Path, hea
     np.testing.assert_allclose(run.robot.x, 0.3 * np.arange(9))
     np.testing.assert_allclose(run.robot.y, 0.1 * np.arange(9))
     np.testing.assert_allclose(run.robot.theta, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("kinds", "told"), [(("ped", "veh"), "ped, veh"), (("Pedestrian",) * 2, "")]
+)
+def test_what_moves_besides_people_is_told(
+    tmp_path: Path, kinds: tuple[str, str], told: str
+) -> None:
+    rows = (f"{0.4 * f},{i},{i},{0.4 * f},{kinds[i]}\n" for f in range(5) for i in (0, 1))
+    (tmp_path / "a.csv").write_text("t,id,x,y,type\n" + "".join(rows))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        READ.from_csv(agents=tmp_path / "a.csv")
+    texts = [str(warning.message) for warning in caught]
+    assert len(texts) == bool(others)
+    assert all(f"type says {others}: all rows are read as people" in text for text in texts)
 
 
 def test_a_row_for_each_value_is_told(tmp_path: Path) -> None:
