@@ -401,10 +401,10 @@ def test_poses_of_benchmarks_whose_comment_names_the_columns(tmp_path: Path, hea
 
 
 @pytest.mark.parametrize(
-    ("kinds", "told"), [(("ped", "veh"), "ped, veh"), (("Pedestrian",) * 2, "")]
+    ("kinds", "others"), [(("ped", "veh"), "ped, veh"), (("Pedestrian",) * 2, "")]
 )
 def test_what_moves_besides_people_is_told(
-    tmp_path: Path, kinds: tuple[str, str], told: str
+    tmp_path: Path, kinds: tuple[str, str], others: str
 ) -> None:
     rows = (f"{0.4 * f},{i},{i},{0.4 * f},{kinds[i]}\n" for f in range(5) for i in (0, 1))
     (tmp_path / "a.csv").write_text("t,id,x,y,type\n" + "".join(rows))
