@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -57,15 +57,40 @@ def pytest_collection() -> Iterator[None]:
         gc.enable()
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Let every second worker list the files of a folder from the last to the first.
+
+    Workers list the same files at the same time. Where these have no byte code yet, as in a fresh
+    clone, two workers that meet in the middle translate half of them each, which saves 5 s each.
+    """
+    report = yield
+    if isinstance(collector, pytest.Directory) and _is_backward(collector.config):
+        report.result.reverse()
+    return report
+
+
+def _is_backward(config: pytest.Config) -> bool:
+    """True for every second worker of a run of everything."""
+    return _is_whole(config) and os.environ.get("PYTEST_XDIST_WORKER", "gw0")[-1] in "13579"
+
+
+def _is_whole(config: pytest.Config) -> bool:
+    return not config.args or config.args == config.getini("testpaths")
+
+
 @pytest.hookimpl(tryfirst=True)  # before `-m` chooses
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark what was slow; leave long ones out of a run of everything, unless asked for."""
+    if _is_backward(config):  # workers have to agree
+        items.sort(key=lambda item: item.path.parts)
     slow = processor_time.listed()
     for item in items:
         if processor_time.function_of(item.nodeid) in slow:
             item.add_marker(pytest.mark.slow)
-    whole = not config.args or config.args == config.getini("testpaths")
-    if os.environ.get("CROWDBOT_ALL_TESTS") or not whole:
+    if os.environ.get("CROWDBOT_ALL_TESTS") or not _is_whole(config):
         return
     long = [item for item in items if item.nodeid.startswith(LONG + VARIANTS)]
     config.hook.pytest_deselected(items=long)
